@@ -1,0 +1,21 @@
+//! Flexible-joint robots and virtual-contraction control, written once over a number type.
+//!
+//! Everything here is `no_std`, allocates nothing and has no panic path: it is what runs on the robot's
+//! controller. The same functions evaluated on [`scalar::Jet`] give exact time derivatives, on [`scalar::Dual`]
+//! Jacobians, on `Interval` rigorous bounds and on `Lanes` batches.
+
+#![no_std]
+#![forbid(unsafe_code)]
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::indexing_slicing,
+        clippy::unreachable
+    )
+)]
+
+pub mod linalg;
+pub mod scalar;

@@ -1,0 +1,68 @@
+//! Pivot-free `L D Lᵀ`: the same arithmetic for every symmetric positive definite matrix, so it runs on intervals,
+//! lanes and jets as it runs on `f64`.
+
+use super::{Matrix, Vector};
+use crate::scalar::Scalar;
+
+/// The factorisation `A = L D Lᵀ` of a symmetric positive definite matrix.
+///
+/// Nothing is tested on the way: a matrix that is not positive definite shows in [`pivots`](Self::pivots).
+#[derive(Clone, Copy, Debug)]
+pub struct Ldl<S, const N: usize> {
+    /// Unit lower triangular; the diagonal and what is above it are not used.
+    lower: Matrix<S, N, N>,
+    pivots: Vector<S, N>,
+    reciprocals: Vector<S, N>,
+}
+
+impl<S: Scalar, const N: usize> Ldl<S, N> {
+    /// Factorises `a`, reading its lower triangle.
+    #[inline]
+    pub fn new(a: &Matrix<S, N, N>) -> Self {
+        let mut lower = Matrix::ZERO;
+        let mut pivots = Vector::ZERO;
+        let mut reciprocals = Vector::ZERO;
+        for j in 0..N {
+            // Column j of L D, from the columns before it.
+            let mut pivot = a[(j, j)];
+            for k in 0..j {
+                let l: S = lower[(j, k)];
+                pivot -= l.square() * pivots[k];
+            }
+            pivots[j] = pivot;
+            reciprocals[j] = pivot.recip();
+            for i in j + 1..N {
+                let mut sum = a[(i, j)];
+                for k in 0..j {
+                    sum -= lower[(i, k)] * lower[(j, k)] * pivots[k];
+                }
+                lower[(i, j)] = sum * reciprocals[j];
+            }
+        }
+        Self { lower, pivots, reciprocals }
+    }
+
+    /// The diagonal of D: all positive if and only if the matrix is positive definite.
+    #[inline]
+    pub fn pivots(&self) -> &Vector<S, N> {
+        &self.pivots
+    }
+
+    /// `A⁻¹ b`.
+    #[inline]
+    pub fn solve(&self, b: &Vector<S, N>) -> Vector<S, N> {
+        let mut x = *b;
+        for i in 0..N {
+            for k in 0..i {
+                x.0[i] -= self.lower[(i, k)] * x.0[k];
+            }
+        }
+        for i in (0..N).rev() {
+            x[i] *= self.reciprocals[i];
+            for k in i + 1..N {
+                x.0[i] -= self.lower[(k, i)] * x.0[k];
+            }
+        }
+        x
+    }
+}

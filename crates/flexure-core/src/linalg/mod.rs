@@ -1,0 +1,13 @@
+//! Small fixed-size linear algebra over any [`Scalar`](crate::scalar::Scalar), on the stack.
+#![expect(
+    clippy::indexing_slicing,
+    reason = "indices run over const dimensions; the no-panic check covers them"
+)]
+
+mod ldl;
+mod matrix;
+mod vector;
+
+pub use ldl::Ldl;
+pub use matrix::Matrix;
+pub use vector::Vector;

@@ -1,0 +1,83 @@
+//! `f64` and `f32`: elementary functions from `libm`, the same bits on every platform.
+
+use super::{Piecewise, Scalar, leaf};
+
+macro_rules! float {
+    ($t:ident, $from:expr, $sqrt:ident, $exp:ident, $ln:ident, $sincos:ident, $tanh:ident, $log1p:ident, $fabs:ident, $atan:ident) => {
+        impl Scalar for $t {
+            const ZERO: Self = 0.0;
+            const ONE: Self = 1.0;
+
+            #[inline]
+            fn from_f64(x: f64) -> Self {
+                $from(x)
+            }
+            #[inline]
+            fn sqrt(self) -> Self {
+                libm::$sqrt(self)
+            }
+            #[inline]
+            fn exp(self) -> Self {
+                libm::$exp(self)
+            }
+            #[inline]
+            fn ln(self) -> Self {
+                libm::$ln(self)
+            }
+            #[inline]
+            fn sin_cos(self) -> (Self, Self) {
+                libm::$sincos(self)
+            }
+            #[inline]
+            fn tanh(self) -> Self {
+                libm::$tanh(self)
+            }
+            /// `|x| + ln((1 + e^(−2|x|)) / 2)`, which neither overflows nor cancels for large `|x|`; near 0, where it
+            /// would cancel, `½ ln(1 + sinh² x)`.
+            #[inline]
+            fn ln_cosh(self) -> Self {
+                let a = libm::$fabs(self);
+                if a < 0.5 {
+                    let e = libm::$exp(a);
+                    let sinh = 0.5 * (e - 1.0 / e);
+                    // sinh loses relative accuracy below 1e-2; its series does not.
+                    let sinh = if a < 0.03125 { a * (1.0 + a * a / 6.0 * (1.0 + a * a / 20.0 * (1.0 + a * a / 42.0))) } else { sinh };
+                    0.5 * libm::$log1p(sinh * sinh)
+                } else {
+                    a - core::$t::consts::LN_2 + libm::$log1p(libm::$exp(-2.0 * a))
+                }
+            }
+            #[inline]
+            fn atan(self) -> Self {
+                libm::$atan(self)
+            }
+        }
+
+        impl Piecewise for $t {
+            #[inline]
+            fn select(self, then: Self, otherwise: Self) -> Self {
+                if self >= 0.0 {
+                    then
+                } else if self < 0.0 {
+                    otherwise
+                } else {
+                    self // NaN
+                }
+            }
+        }
+
+        leaf!([] $t);
+    };
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "rounding to the narrower type is the documented meaning"
+)]
+#[inline]
+fn narrow(x: f64) -> f32 {
+    x as f32
+}
+
+float!(f64, core::convert::identity, sqrt, exp, log, sincos, tanh, log1p, fabs, atan);
+float!(f32, narrow, sqrtf, expf, logf, sincosf, tanhf, log1pf, fabsf, atanf);

@@ -1,0 +1,6 @@
+//! Everything offline about flexible-joint robots: files, simulation, figures and reports.
+
+pub use flexure_core as core;
+
+pub mod summary;
+pub mod trace;

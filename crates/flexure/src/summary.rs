@@ -1,0 +1,38 @@
+//! What a closed-loop run is judged by.
+
+use serde::Serialize;
+
+/// The figures of one closed-loop run: the contract of `run --json` and `reproduce --json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// Scenario name.
+    pub name: String,
+    /// Controller kind, as in the scenario file.
+    pub controller: String,
+    /// Shaping function, as in the scenario file.
+    pub phi: String,
+    /// Largest |q_l − q_ld| over all joints and the whole run [rad].
+    pub max_abs_e_l: f64,
+    /// Root mean square over time of |q_l − q_ld|, the largest over the joints [rad].
+    pub rms_e_l: f64,
+    /// Largest |q_l − q_ld| over the joints at the end [rad].
+    pub final_abs_e_l: f64,
+    /// Time after which every |q_l − q_ld| stays below 1 mrad [s]; none if it does not settle.
+    pub settling_time: Option<f64>,
+    /// Largest |u_m| [N m].
+    pub max_abs_u_m: f64,
+    /// Root mean square of u_m over time, the largest over the joints [N m].
+    pub rms_u_m: f64,
+    /// Fraction of control periods in which a torque limit was active.
+    pub saturated_fraction: f64,
+    /// Smallest contraction rate evaluated along the run [1/s]: a sample, not a proof.
+    pub rate_measured: f64,
+    /// Proved contraction rate [1/s]; none until it is certified.
+    pub rate_certified: Option<f64>,
+    /// |H(T) − H(0) − supplied + dissipated| relative to the energy that went through the robot.
+    pub energy_drift: f64,
+    /// Integration steps taken.
+    pub steps: u64,
+    /// Wall-clock time of the simulation [s].
+    pub wall_seconds: f64,
+}

@@ -1,0 +1,66 @@
+//! Traces: what a run recorded, column by column.
+
+/// One recorded signal.
+#[derive(Clone, Debug)]
+pub struct Column {
+    /// Name, valid as a pandas column and as a MATLAB variable: `t`, `q_l1`, `e_l2`, `u_m1`, `hamiltonian`, …
+    pub name: String,
+    /// SI unit as plain text (`rad`, `N m`, `kg m^2/s`, `J`), empty for none.
+    pub unit: &'static str,
+    /// One value per recorded instant.
+    pub values: Vec<f64>,
+}
+
+/// Columns of equal length.
+#[derive(Clone, Debug, Default)]
+pub struct Trace {
+    columns: Vec<Column>,
+}
+
+impl Trace {
+    /// An empty trace with the given `(name, unit)` columns.
+    pub fn new(columns: impl IntoIterator<Item = (String, &'static str)>) -> Self {
+        Self {
+            columns: columns
+                .into_iter()
+                .map(|(name, unit)| Column { name, unit, values: Vec::new() })
+                .collect(),
+        }
+    }
+
+    /// Appends one instant: a value per column, in the order of [`columns`](Self::columns).
+    ///
+    /// # Panics
+    /// If `row` does not have one value per column: a programming error of the recorder.
+    pub fn push(&mut self, row: &[f64]) {
+        assert_eq!(row.len(), self.columns.len(), "a trace row has one value per column");
+        for (column, &value) in self.columns.iter_mut().zip(row) {
+            column.values.push(value);
+        }
+    }
+
+    /// All columns, in the order they were declared.
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// The column called `name`.
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        self.columns.iter().find(|column| column.name == name).map(|column| column.values.as_slice())
+    }
+
+    /// The columns `prefix1`, `prefix2`, … of a vector signal, one per joint.
+    pub fn joints(&self, prefix: &str) -> Vec<&[f64]> {
+        (1..).map_while(|joint| self.column(&format!("{prefix}{joint}"))).collect()
+    }
+
+    /// Number of recorded instants.
+    pub fn len(&self) -> usize {
+        self.columns.first().map_or(0, |column| column.values.len())
+    }
+
+    /// Whether nothing was recorded.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
