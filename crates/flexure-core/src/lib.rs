@@ -17,5 +17,9 @@
     )
 )]
 
+pub mod control;
 pub mod linalg;
+pub mod model;
+pub mod robots;
 pub mod scalar;
+pub mod spatial;

@@ -1,0 +1,36 @@
+//! The v-CBC law for a fully actuated rigid robot.
+
+use super::{LinkGains, LinkTorque, Shaping};
+use crate::linalg::Vector;
+use crate::model::Links;
+use crate::scalar::{Jet, Over, Scalar};
+
+/// The law of a robot whose links are driven directly. Paper, lemma fullstatecontroller-rigid.
+#[derive(Clone, Copy, Debug)]
+pub struct RigidVcbc<C, P, const N: usize> {
+    /// Gains of the links.
+    pub link: LinkGains<C, P, N>,
+}
+
+impl<C: Scalar, P: Shaping<C, N>, const N: usize> RigidVcbc<C, P, N> {
+    /// The joint torque u_l with its errors, at positions `q` [rad] and velocities `v` [rad/s]. `link_damping` is
+    /// the diagonal of D_l; `q_d` the reference to order 2; `omega` an external torque [N m] that is added.
+    #[inline]
+    pub fn command<T: Over<C>, L: Links<C, N>>(
+        &self,
+        links: &L,
+        link_damping: &Vector<C, N>,
+        q: &Vector<T, N>,
+        v: &Vector<T, N>,
+        q_d: &Vector<Jet<T, 3>, N>,
+        omega: &Vector<T, N>,
+    ) -> LinkTorque<T, N, 1> {
+        let motion = Vector::from_fn(|i| Jet::new([q[i], v[i]]));
+        let mut law = self.link.torque(link_damping, &motion, q_d, |v_r, a_r| {
+            let value = |x: &Vector<Jet<T, 1>, N>| x.map(|jet| jet.coefficient(0));
+            links.inverse_dynamics(q, v, &value(v_r), &value(a_r)).map(Jet::value)
+        });
+        law.torque += omega.map(Jet::value);
+        law
+    }
+}

@@ -1,0 +1,71 @@
+//! Shaping functions φ: how a position error turns into a velocity towards the reference.
+
+use crate::linalg::Vector;
+use crate::scalar::{Over, Scalar};
+
+/// A shaping function φ with φ(0) = 0 whose slope contracts in the metric Π: eq. controllaw-positionmetricinquality.
+pub trait Shaping<C: Scalar, const N: usize> {
+    /// φ(q̃) [rad/s] at the position error q̃ [rad].
+    fn eval<T: Over<C>>(&self, error: &Vector<T, N>) -> Vector<T, N>;
+}
+
+/// φ_2 = Λ q̃: the linear law. Keeps the pH-like structure when Π = Λ.
+#[derive(Clone, Copy, Debug)]
+pub struct Linear<C, const N: usize> {
+    /// Diagonal of Λ [1/s].
+    pub gain: Vector<C, N>,
+}
+
+/// φ_1 = Λ tanh q̃, entry by entry: bounded, so that far errors do not ask for high speeds. Keeps the variational
+/// structure; its contraction rate tends to 0 far from the reference. Paper, corollary controller-tanh.
+#[derive(Clone, Copy, Debug)]
+pub struct Tanh<C, const N: usize> {
+    /// Diagonal of Λ [rad/s].
+    pub gain: Vector<C, N>,
+}
+
+/// φ_3,i = (1 + κ_i) q̃_i + Σ_{j≠i} (θ_j/θ_i) tanh(q̃_j) / (n − 1): contracting in the matrix measure μ_1 at the rate
+/// min κ whatever Λ is. Paper, eq. matrixmeasure1-phi-flexible, which is the case n = 2.
+#[derive(Clone, Copy, Debug)]
+pub struct CoupledTanh<C, const N: usize> {
+    kappa: Vector<C, N>,
+    theta: Vector<C, N>,
+}
+
+impl<C: Scalar, const N: usize> CoupledTanh<C, N> {
+    /// From κ [1/s] and the diagonal of Λ, whose square root is Θ.
+    pub fn new(kappa: Vector<C, N>, gain: &Vector<C, N>) -> Self {
+        Self { kappa, theta: gain.map(C::sqrt) }
+    }
+}
+
+impl<C: Scalar, const N: usize> Shaping<C, N> for Linear<C, N> {
+    #[inline]
+    fn eval<T: Over<C>>(&self, error: &Vector<T, N>) -> Vector<T, N> {
+        self.gain.diag_mul(error)
+    }
+}
+
+impl<C: Scalar, const N: usize> Shaping<C, N> for Tanh<C, N> {
+    #[inline]
+    fn eval<T: Over<C>>(&self, error: &Vector<T, N>) -> Vector<T, N> {
+        self.gain.diag_mul(&error.map(T::tanh))
+    }
+}
+
+impl<C: Scalar, const N: usize> Shaping<C, N> for CoupledTanh<C, N> {
+    #[inline]
+    fn eval<T: Over<C>>(&self, error: &Vector<T, N>) -> Vector<T, N> {
+        // Σ_{j≠i} θ_j tanh(q̃_j): all of them once, so that the cost is O(n).
+        let others = i32::try_from(N).unwrap_or(i32::MAX).saturating_sub(1).max(1);
+        let weighted = self.theta.diag_mul(&error.map(T::tanh));
+        let mut total = T::ZERO;
+        for w in weighted.iter() {
+            total += w;
+        }
+        Vector::from_fn(|i| {
+            let share = C::from_ratio(1, others) / self.theta[i];
+            error[i].scale(C::ONE + self.kappa[i]) + (total - weighted[i]).scale(share)
+        })
+    }
+}

@@ -1,0 +1,96 @@
+//! What a robot must say of its links.
+
+use crate::linalg::{Ldl, Matrix, Vector};
+use crate::scalar::{Dual, Over, Scalar};
+
+/// The rigid links of a robot with `N` joints and constants of type `C`: everything between the springs and the world.
+///
+/// A robot in closed form gives its mass matrix and potential energy; torques follow by [`Dual`] numbers. A tree of
+/// joints overrides the torques with O(n) recursions. Either way no derivative is written by hand.
+pub trait Links<C: Scalar, const N: usize> {
+    /// The mass matrix made ready for solving.
+    type Factor<'a, T: Over<C>>: MassFactor<T, N>
+    where
+        Self: 'a;
+
+    /// Mass matrix M_l(q) [kg m²], symmetric positive definite.
+    fn mass_matrix<T: Over<C>>(&self, q: &Vector<T, N>) -> Matrix<T, N, N>;
+
+    /// Potential energy P_l(q) [J] of the links in the gravity field.
+    fn potential_energy<T: Over<C>>(&self, q: &Vector<T, N>) -> T;
+
+    /// The mass matrix at q, ready for [`MassFactor::solve`].
+    fn factor<T: Over<C>>(&self, q: &Vector<T, N>) -> Self::Factor<'_, T>;
+
+    /// Gravity torque g_l(q) = ∂P_l/∂q [N m].
+    #[inline]
+    fn gravity_torque<T: Over<C>>(&self, q: &Vector<T, N>) -> Vector<T, N> {
+        Vector(self.potential_energy(&seeded(q)).gradient)
+    }
+
+    /// M(q) a_r + C(q, v) v_r [N m], with the Christoffel factorisation of the Coriolis terms.
+    ///
+    /// `v` is the velocity of the links [rad/s]; `v_r` and `a_r` are any velocity and acceleration, for instance a
+    /// reference [rad/s, rad/s²].
+    #[inline]
+    fn inertial_torque<T: Over<C>>(
+        &self,
+        q: &Vector<T, N>,
+        v: &Vector<T, N>,
+        v_r: &Vector<T, N>,
+        a_r: &Vector<T, N>,
+    ) -> Vector<T, N> {
+        // C v_r = ½ [Ṁ(v) v_r + Ṁ(v_r) v − ∂(vᵀ M v_r)/∂q], Ṁ(v) = Σ_i ∂M/∂q_i v_i.
+        let mass = self.mass_matrix(&seeded(q));
+        let half = T::from_f64(0.5);
+        let mut torque = Vector::ZERO;
+        for (k, row) in mass.0.iter().enumerate() {
+            for (j, entry) in row.iter().enumerate() {
+                let slope = Vector(entry.gradient);
+                torque[k] += entry.value * a_r[j] + half * (slope.dot(v) * v_r[j] + slope.dot(v_r) * v[j]);
+                let product = half * v[k] * v_r[j];
+                for (torque_i, slope_i) in torque.0.iter_mut().zip(entry.gradient) {
+                    *torque_i -= slope_i * product;
+                }
+            }
+        }
+        torque
+    }
+
+    /// M(q) a_r + C(q, v) v_r + g(q) [N m]; with `v_r = v` the ordinary inverse dynamics.
+    #[inline]
+    fn inverse_dynamics<T: Over<C>>(
+        &self,
+        q: &Vector<T, N>,
+        v: &Vector<T, N>,
+        v_r: &Vector<T, N>,
+        a_r: &Vector<T, N>,
+    ) -> Vector<T, N> {
+        self.inertial_torque(q, v, v_r, a_r) + self.gravity_torque(q)
+    }
+
+    /// M(q) a [N m].
+    #[inline]
+    fn mass_mul<T: Over<C>>(&self, q: &Vector<T, N>, a: &Vector<T, N>) -> Vector<T, N> {
+        self.mass_matrix(q) * *a
+    }
+}
+
+/// A mass matrix that can be solved with.
+pub trait MassFactor<T, const N: usize> {
+    /// M⁻¹ b.
+    fn solve(&self, b: &Vector<T, N>) -> Vector<T, N>;
+}
+
+impl<T: Scalar, const N: usize> MassFactor<T, N> for Ldl<T, N> {
+    #[inline]
+    fn solve(&self, b: &Vector<T, N>) -> Vector<T, N> {
+        Self::solve(self, b)
+    }
+}
+
+/// `q` as dual numbers seeded with the identity.
+#[inline]
+pub(crate) fn seeded<T: Scalar, const N: usize>(q: &Vector<T, N>) -> Vector<Dual<T, N>, N> {
+    Vector::from_fn(|i| Dual::variable(q[i], i))
+}

@@ -1,0 +1,11 @@
+//! The port-Hamiltonian model of a flexible-joint robot over any [`Links`].
+
+mod fjr;
+mod links;
+mod matrices;
+mod state;
+
+pub use fjr::{Fjr, Power};
+pub use links::{Links, MassFactor};
+pub use matrices::LinkMatrices;
+pub use state::{Motion, State};

@@ -1,0 +1,36 @@
+//! A single joint under gravity.
+
+use crate::linalg::{Ldl, Matrix, Vector};
+use crate::model::Links;
+use crate::scalar::{Over, Scalar};
+
+/// One link on a horizontal axis; q = 0 hangs straight down.
+#[derive(Clone, Copy, Debug)]
+pub struct Pendulum<C> {
+    /// Rotational inertia about the joint axis [kg m²].
+    pub inertia: C,
+    /// m g r [N m]: weight times the distance of the centre of mass from the axis.
+    pub weight_moment: C,
+}
+
+impl<C: Scalar> Links<C, 1> for Pendulum<C> {
+    type Factor<'a, T: Over<C>>
+        = Ldl<T, 1>
+    where
+        C: 'a;
+
+    #[inline]
+    fn mass_matrix<T: Over<C>>(&self, _: &Vector<T, 1>) -> Matrix<T, 1, 1> {
+        Matrix([[T::constant(self.inertia)]])
+    }
+
+    #[inline]
+    fn potential_energy<T: Over<C>>(&self, q: &Vector<T, 1>) -> T {
+        (T::ONE - q[0].cos()).scale(self.weight_moment)
+    }
+
+    #[inline]
+    fn factor<T: Over<C>>(&self, q: &Vector<T, 1>) -> Ldl<T, 1> {
+        self.mass_matrix(q).ldl()
+    }
+}

@@ -1,0 +1,58 @@
+//! The planar two-link arm in closed form.
+
+use crate::linalg::{Ldl, Matrix, Vector};
+use crate::model::Links;
+use crate::scalar::{Over, Scalar};
+
+/// Two links in a horizontal plane: the paper's arm. M_l = [[a1 + a2 + 2 b c2, a2 + b c2], [a2 + b c2, a2]].
+#[derive(Clone, Copy, Debug)]
+pub struct PlanarTwoLink<C> {
+    a1: C,
+    a2: C,
+    b: C,
+}
+
+impl<C: Scalar> PlanarTwoLink<C> {
+    /// From masses [kg], the length of the first link [m], distances of the centres of mass from the joints [m] and
+    /// rotational inertias about the centres of mass [kg m²].
+    pub fn new(mass: [C; 2], length: C, com: [C; 2], inertia: [C; 2]) -> Self {
+        let ([m1, m2], [r1, r2], [i1, i2]) = (mass, com, inertia);
+        Self {
+            a1: m1 * r1.square() + m2 * length.square() + i1,
+            a2: m2 * r2.square() + i2,
+            b: m2 * length * r2,
+        }
+    }
+}
+
+impl<C: Scalar> Links<C, 2> for PlanarTwoLink<C> {
+    type Factor<'a, T: Over<C>>
+        = Ldl<T, 2>
+    where
+        C: 'a;
+
+    #[inline]
+    fn mass_matrix<T: Over<C>>(&self, q: &Vector<T, 2>) -> Matrix<T, 2, 2> {
+        let coupling = q[1].cos().scale(self.b);
+        let off_diagonal = T::constant(self.a2) + coupling;
+        Matrix([
+            [T::constant(self.a1) + coupling + off_diagonal, off_diagonal],
+            [off_diagonal, T::constant(self.a2)],
+        ])
+    }
+
+    #[inline]
+    fn potential_energy<T: Over<C>>(&self, _: &Vector<T, 2>) -> T {
+        T::ZERO
+    }
+
+    #[inline]
+    fn gravity_torque<T: Over<C>>(&self, _: &Vector<T, 2>) -> Vector<T, 2> {
+        Vector::ZERO
+    }
+
+    #[inline]
+    fn factor<T: Over<C>>(&self, q: &Vector<T, 2>) -> Ldl<T, 2> {
+        self.mass_matrix(q).ldl()
+    }
+}

@@ -1,0 +1,145 @@
+//! One joint of a tree and the coordinate changes across it.
+
+use super::JointKind;
+use crate::scalar::{Over, Scalar};
+use crate::spatial::{Force, Motion, RigidInertia, Rotation, Vec3};
+
+/// A joint about or along the z axis of its frame, and the body it carries.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Joint<C> {
+    /// Index of the parent; `usize::MAX`, which is no index, for the base.
+    pub parent: usize,
+    pub kind: JointKind,
+    /// Joint frame at q = 0 in the parent's frame.
+    pub rotation: Rotation<C>,
+    pub translation: Vec3<C>,
+    pub inertia: RigidInertia<C>,
+}
+
+impl<C: Scalar> Joint<C> {
+    pub(super) fn map<D: Scalar>(&self, f: impl Fn(C) -> D) -> Joint<D> {
+        Joint {
+            parent: self.parent,
+            kind: self.kind,
+            rotation: self.rotation.map(&f),
+            translation: self.translation.map(&f),
+            inertia: self.inertia.map(&f),
+        }
+    }
+
+    /// The joint at position `q`.
+    #[inline]
+    pub(super) fn at<T: Over<C>>(&self, q: T) -> Pose<T> {
+        match self.kind {
+            JointKind::Revolute => {
+                let (sin, cos) = q.sin_cos();
+                Pose::Turned { sin, cos }
+            }
+            JointKind::Prismatic => Pose::Slid(q),
+        }
+    }
+
+    #[inline]
+    pub(super) fn is_prismatic(&self) -> bool {
+        self.kind == JointKind::Prismatic
+    }
+
+    /// A motion vector from parent to child coordinates.
+    #[inline]
+    pub(super) fn motion_to_child<T: Over<C>>(&self, pose: &Pose<T>, m: &Motion<T>) -> Motion<T> {
+        let angular = self.rotation.unrotate(m.angular);
+        let linear = self.rotation.unrotate(m.linear + m.angular.cross_constant(&self.translation));
+        match *pose {
+            Pose::Turned { sin, cos } => {
+                Motion { angular: unturn(angular, sin, cos), linear: unturn(linear, sin, cos) }
+            }
+            // v + ω × e_z q
+            Pose::Slid(q) => Motion {
+                angular,
+                linear: Vec3::new(linear.x + angular.y * q, linear.y - angular.x * q, linear.z),
+            },
+        }
+    }
+
+    /// A force vector from child to parent coordinates.
+    #[inline]
+    pub(super) fn force_to_parent<T: Over<C>>(&self, pose: &Pose<T>, f: &Force<T>) -> Force<T> {
+        let (moment, linear) = match *pose {
+            Pose::Turned { sin, cos } => (turn(f.moment, sin, cos), turn(f.linear, sin, cos)),
+            // n + e_z q × f
+            Pose::Slid(q) => {
+                let (n, f) = (f.moment, f.linear);
+                (Vec3::new(n.x - q * f.y, n.y + q * f.x, n.z), f)
+            }
+        };
+        let linear = self.rotation.rotate(linear);
+        Force { moment: self.rotation.rotate(moment) - linear.cross_constant(&self.translation), linear }
+    }
+
+    /// A free vector from child to parent axes.
+    #[inline]
+    pub(super) fn rotate<T: Over<C>>(&self, pose: &Pose<T>, v: Vec3<T>) -> Vec3<T> {
+        self.rotation.rotate(match *pose {
+            Pose::Turned { sin, cos } => turn(v, sin, cos),
+            Pose::Slid(_) => v,
+        })
+    }
+
+    /// Origin of the child frame in the parent frame.
+    #[inline]
+    pub(super) fn origin<T: Over<C>>(&self, pose: &Pose<T>) -> Vec3<T> {
+        let fixed = self.translation.map(T::constant);
+        match *pose {
+            Pose::Turned { .. } => fixed,
+            Pose::Slid(q) => fixed + self.rotation.rotate(Vec3::new(T::ZERO, T::ZERO, q)),
+        }
+    }
+
+    /// `S q̇`: the joint's own velocity in child coordinates.
+    #[inline]
+    pub(super) fn along_axis<T: Scalar>(&self, rate: T) -> Motion<T> {
+        let axis = Vec3::new(T::ZERO, T::ZERO, rate);
+        match self.kind {
+            JointKind::Revolute => Motion { angular: axis, linear: Vec3::ZERO },
+            JointKind::Prismatic => Motion { angular: Vec3::ZERO, linear: axis },
+        }
+    }
+
+    /// `v × (S q̇)`.
+    #[inline]
+    pub(super) fn cross_axis<T: Scalar>(&self, v: &Motion<T>, rate: T) -> Motion<T> {
+        let across = |a: Vec3<T>| Vec3::new(a.y * rate, -a.x * rate, T::ZERO);
+        match self.kind {
+            JointKind::Revolute => Motion { angular: across(v.angular), linear: across(v.linear) },
+            JointKind::Prismatic => Motion { angular: Vec3::ZERO, linear: across(v.angular) },
+        }
+    }
+
+    /// `Sᵀ f`: the torque [N m] or force [N] at the joint.
+    #[inline]
+    pub(super) fn project<T: Scalar>(&self, f: &Force<T>) -> T {
+        match self.kind {
+            JointKind::Revolute => f.moment.z,
+            JointKind::Prismatic => f.linear.z,
+        }
+    }
+}
+
+/// A joint's displacement, with what a rotation needs computed once.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Pose<T> {
+    Turned { sin: T, cos: T },
+    Slid(T),
+}
+
+/// Rotation about z.
+#[inline]
+fn turn<T: Scalar>(v: Vec3<T>, sin: T, cos: T) -> Vec3<T> {
+    Vec3 { x: cos * v.x - sin * v.y, y: sin * v.x + cos * v.y, z: v.z }
+}
+
+/// Rotation about z, backwards.
+#[inline]
+fn unturn<T: Scalar>(v: Vec3<T>, sin: T, cos: T) -> Vec3<T> {
+    Vec3 { x: cos * v.x + sin * v.y, y: cos * v.y - sin * v.x, z: v.z }
+}

@@ -1,0 +1,111 @@
+//! A tree of revolute and prismatic joints, with O(n) recursions.
+//!
+//! Featherstone, *Rigid Body Dynamics Algorithms*, Springer 2008, chapters 5 to 7.
+
+mod factor;
+mod joint;
+mod recursions;
+
+use crate::linalg::Matrix;
+use crate::scalar::Scalar;
+use crate::spatial::{RigidInertia, Rotation, Vec3};
+
+pub use factor::TreeFactor;
+use joint::Joint;
+
+/// How a joint moves along or about its axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointKind {
+    /// Rotation about the axis [rad].
+    Revolute,
+    /// Translation along the axis [m].
+    Prismatic,
+}
+
+/// A body and the joint that carries it, as data: the unit a [`Tree`] is built from.
+#[derive(Clone, Copy, Debug)]
+pub struct Body {
+    /// Index of the body that carries the joint, smaller than the body's own; none for the base.
+    pub parent: Option<usize>,
+    /// Kind of joint.
+    pub kind: JointKind,
+    /// Unit joint axis in the joint frame.
+    pub axis: [f64; 3],
+    /// Orientation of the joint frame at q = 0 in the parent's link frame (columns are its axes).
+    pub rotation: [[f64; 3]; 3],
+    /// Origin of the joint frame in the parent's link frame [m].
+    pub translation: [f64; 3],
+    /// Mass [kg].
+    pub mass: f64,
+    /// Centre of mass in the link frame [m].
+    pub com: [f64; 3],
+    /// Rotational inertia about the centre of mass in link axes [kg m²].
+    pub inertia: [[f64; 3]; 3],
+}
+
+/// Rigid links joined in a tree, `N` joints, constants of type `C`.
+///
+/// Link frames are turned so that every joint axis is z: joint transforms then cost four products instead of nine.
+#[derive(Clone, Copy, Debug)]
+pub struct Tree<C, const N: usize> {
+    joints: [Joint<C>; N],
+    gravity: Vec3<C>,
+}
+
+impl<const N: usize> Tree<f64, N> {
+    /// From bodies in an order where parents come before children, and the gravity vector in the base frame [m/s²].
+    ///
+    /// None if some body's parent does not come before it. The physics (positive masses and inertias, unit axes) is
+    /// the caller's duty: the file reader checks it where it can point at the number.
+    pub fn new(bodies: &[Body; N], gravity: [f64; 3]) -> Option<Self> {
+        let ordered = bodies.iter().enumerate().all(|(i, body)| body.parent.is_none_or(|parent| parent < i));
+        let turn = |body: &Body| axis_frame(body.axis);
+        let joints = bodies.each_ref().map(|body| {
+            let own = turn(body);
+            // Everything that was said in the parent's link frame, in the parent's turned frame.
+            let carrier =
+                body.parent.and_then(|parent| bodies.get(parent)).map_or_else(Matrix::identity, turn);
+            let rotation = carrier.transpose() * Matrix(body.rotation) * own;
+            let translation = carrier.transpose() * crate::linalg::Vector(body.translation);
+            let com = own.transpose() * crate::linalg::Vector(body.com);
+            let inertia = own.transpose() * Matrix(body.inertia) * own;
+            let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = inertia.0;
+            Joint {
+                parent: body.parent.unwrap_or(usize::MAX),
+                kind: body.kind,
+                rotation: Rotation::from_matrix(&rotation),
+                translation: Vec3::from_array(translation.0),
+                inertia: RigidInertia::new(body.mass, com.0, [xx, xy, xz, yy, yz, zz]),
+            }
+        });
+        ordered.then_some(Self { joints, gravity: Vec3::from_array(gravity) })
+    }
+}
+
+impl<C: Scalar, const N: usize> Tree<C, N> {
+    /// The same robot with constants of another type.
+    pub fn map<D: Scalar>(&self, f: impl Fn(C) -> D) -> Tree<D, N> {
+        Tree { joints: self.joints.each_ref().map(|joint| joint.map(&f)), gravity: self.gravity.map(&f) }
+    }
+}
+
+/// A rotation whose third column is the unit vector `axis`; a permutation of axes where `axis` is one of them, so
+/// that nothing is rounded.
+fn axis_frame(axis: [f64; 3]) -> Matrix<f64, 3, 3> {
+    let [x, y, z] = axis;
+    let (ax, ay, az) = (libm::fabs(x), libm::fabs(y), libm::fabs(z));
+    // The coordinate axis farthest from the joint axis, made orthogonal to it, is the first column.
+    let farthest = if ax <= ay && ax <= az {
+        [1.0, 0.0, 0.0]
+    } else if ay <= az {
+        [0.0, 1.0, 0.0]
+    } else {
+        [0.0, 0.0, 1.0]
+    };
+    let k = Vec3::from_array(axis);
+    let e = Vec3::from_array(farthest);
+    let first = e - k.scaled(k.dot(e));
+    let first = first.scaled(1.0 / libm::sqrt(first.dot(first)));
+    let second = k.cross(first);
+    Matrix([[first.x, second.x, k.x], [first.y, second.y, k.y], [first.z, second.z, k.z]])
+}

@@ -1,0 +1,12 @@
+//! Spatial vectors and rigid-body inertias in link coordinates.
+//!
+//! Featherstone, *Rigid Body Dynamics Algorithms*, Springer 2008, chapter 2: Plücker coordinates, angular part first.
+
+mod inertia;
+mod motion;
+mod vec3;
+
+pub use inertia::{ArticulatedInertia, RigidInertia};
+pub use motion::{Force, Motion};
+pub(crate) use vec3::Rotation;
+pub use vec3::Vec3;
