@@ -73,7 +73,7 @@ fn shaping_rate<const N: usize>(
 /// Smallest and largest eigenvalue of the symmetric `a` relative to the positive diagonal `weight`.
 fn relative<const N: usize>(a: &Matrix<f64, N, N>, weight: &Vector<f64, N>) -> (f64, f64) {
     let root = weight.map(f64::sqrt);
-    let values = eigenvalues(Matrix::from_fn(|i, j| a[(i, j)] / (root[i] * root[j])));
+    let values: Vector<f64, N> = eigenvalues(Matrix::from_fn(|i, j| a[(i, j)] / (root[i] * root[j])));
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
 }
 

@@ -206,7 +206,7 @@ fn an_independent_solver_agrees() {
         .method(ExplicitRungeKutta::dop853().rtol(1e-13).atol(1e-13))
         .solve()
         .expect("the reference solver converges");
-    let (_, reference) = solution.iter().last().expect("an end point");
+    let (_, reference) = solution.iter().next_back().expect("an end point");
     let (end, _, _) = advance(&plant.robot, unflat(&start), 0.05, plant.u);
     // DOP853 at 1e-13 resolves the 9000 1/s damper with some 300 explicit steps.
     assert!(distance(&end, &unflat(reference)) < 1e-8, "{end:?} against {reference:?}");

@@ -38,12 +38,12 @@ fn close(got: f64, expected: f64) {
 #[test]
 fn the_paper_s_gains() {
     let linear = rates(Linear { gain: Vector([55.0, 30.0]) }, Linear { gain: Vector([70.0, 60.0]) }, 3.0);
-    close(linear.sigma_l, 69.0131549393930643);
-    close(linear.sigma_m, 44.3478260869565217);
+    close(linear.sigma_l, 69.013_154_939_393_06);
+    close(linear.sigma_m, 44.347_826_086_956_52);
     close(linear.phi_l, 30.0);
     close(linear.overall(), 30.0);
     let tanh = rates(Tanh { gain: Vector([55.0, 30.0]) }, Tanh { gain: Vector([70.0, 60.0]) }, 3.0);
-    close(tanh.phi_l, 0.295981114963205738);
+    close(tanh.phi_l, 0.295_981_114_963_205_7);
     let kappa = Vector([10.0, 8.0]);
     let coupled = rates(
         CoupledTanh::new(kappa, &Vector([55.0, 30.0])),
