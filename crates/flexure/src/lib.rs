@@ -4,6 +4,6 @@ pub use flexure_core as core;
 
 pub mod rates;
 pub mod sim;
-pub mod reference;
+pub mod report;
 pub mod summary;
 pub mod trace;
