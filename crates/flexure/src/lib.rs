@@ -3,7 +3,7 @@
 pub use flexure_core as core;
 
 pub mod rates;
-pub mod sim;
 pub mod report;
+pub mod sim;
 pub mod summary;
 pub mod trace;
