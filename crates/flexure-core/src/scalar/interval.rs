@@ -170,6 +170,10 @@ impl Mul for Interval {
     #[inline]
     fn mul(self, rhs: Self) -> Self {
         let (a, b) = (self, rhs);
+        if a.magnitude() == 0.0 || b.magnitude() == 0.0 {
+            return Self::ZERO;
+        }
+        // Ends of one sign, not both 0: negating gives a positive upper end.
         if a.hi <= 0.0 {
             return -((-a) * b);
         }
