@@ -205,8 +205,7 @@ fn isotone() {
         for (wide, narrow) in pairs {
             assert!(wide.contains_interval(narrow), "{x:?} {y:?} {wide_x:?} {wide_y:?}");
         }
-        let name =
-            ["sin", "cos", "tanh", "ln_cosh", "exp", "atan", "recip", "sin"][random.bits() as usize % 8];
+        let name = random.choice(["sin", "cos", "tanh", "ln_cosh", "exp", "atan", "recip"]);
         assert!(apply(name, wide_x).contains_interval(apply(name, x)), "{name} {x:?} in {wide_x:?}");
     });
 }

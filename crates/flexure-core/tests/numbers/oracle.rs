@@ -66,6 +66,10 @@ impl Random {
         self.uniform(-bound, bound + 1.0).floor()
     }
 
+    pub fn choice<T: Copy, const N: usize>(&mut self, from: [T; N]) -> T {
+        from[usize::try_from(self.bits() % N as u64).unwrap()]
+    }
+
     /// Either sign, magnitude log-uniform between powers of two.
     #[cfg(any(feature = "interval", feature = "lanes"))]
     pub fn magnitude(&mut self, low: i32, high: i32) -> f64 {
@@ -77,7 +81,8 @@ impl Random {
 /// How many floats apart.
 #[cfg(any(feature = "interval", feature = "lanes"))]
 pub fn ulps(a: f64, b: f64) -> u64 {
-    let ordered =
-        |x: f64| if x.to_bits() >> 63 == 0 { x.to_bits() as i64 } else { -((x.to_bits() << 1 >> 1) as i64) };
+    let ordered = |x: f64| {
+        if x.to_bits() >> 63 == 0 { x.to_bits().cast_signed() } else { -(x.abs().to_bits().cast_signed()) }
+    };
     ordered(a).abs_diff(ordered(b))
 }

@@ -2,6 +2,7 @@
 //!
 //! core-math returns the float nearest to the exact value, so one step down and one step up enclose it. The values that are
 //! floats exactly (0 ↦ 0 and the like; by Lindemann there are no others) are given as points.
+#![expect(clippy::float_cmp, reason = "the arguments with exact values are exact")]
 
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2, LN_2, TAU};
 

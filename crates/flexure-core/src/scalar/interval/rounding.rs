@@ -3,6 +3,7 @@
 //! Each computes the rounded result and the *sign* of its exact error. A correctly rounded result is within half a step
 //! of the exact one, so one step in the direction of the error reaches past it, and no step is needed where the error is
 //! zero. Where the error cannot be had (overflow, underflow, infinities) it is NaN, and both sides step.
+#![expect(clippy::float_cmp, reason = "factors of exactly one are exact")]
 
 use super::Interval;
 
