@@ -23,3 +23,4 @@ pub mod model;
 pub mod robots;
 pub mod scalar;
 pub mod spatial;
+pub mod virtual_system;
