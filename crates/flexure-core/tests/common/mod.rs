@@ -88,6 +88,21 @@ pub fn branched<const N: usize>(seed: u64) -> Tree<f64, N> {
     Tree::new(&bodies, [0.3, -0.2, -9.81]).expect("parents come first")
 }
 
+/// A serial arm of revolute joints with the proportions of a seven-joint arm: neighbouring axes at right angles.
+pub fn serial<const N: usize>() -> Tree<f64, N> {
+    let bodies = core::array::from_fn(|i| Body {
+        parent: i.checked_sub(1),
+        kind: JointKind::Revolute,
+        axis: [0.0, 0.0, 1.0],
+        rotation: rotation(if i % 2 == 0 { -1.0 } else { 1.0 } * core::f64::consts::FRAC_PI_2, 0.0, 0.0),
+        translation: if i % 2 == 0 { [0.08, 0.0, 0.0] } else { [0.0, -0.32, 0.0] },
+        mass: 3.0,
+        com: [0.01, -0.03, 0.06],
+        inertia: [[0.03, 0.001, 0.002], [0.001, 0.02, 0.003], [0.002, 0.003, 0.01]],
+    });
+    Tree::new(&bodies, [0.0, 0.0, -9.81]).expect("parents come first")
+}
+
 pub fn close<const N: usize>(a: &Vector<f64, N>, b: &Vector<f64, N>, tolerance: f64) {
     let scale = b.iter().fold(1.0, |m: f64, x| m.max(x.abs()));
     for (x, y) in a.iter().zip(b.iter()) {
