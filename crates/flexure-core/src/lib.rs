@@ -24,3 +24,4 @@ pub mod reference;
 pub mod robots;
 pub mod scalar;
 pub mod spatial;
+pub mod virtual_system;

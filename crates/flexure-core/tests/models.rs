@@ -2,8 +2,11 @@
 
 use flexure_core::linalg::{Matrix, Vector};
 use flexure_core::model::{Fjr, LinkMatrices, Links, MassFactor, Motion, State};
-use flexure_core::robots::{Body, JointKind, Pendulum, PlanarTwoLink, Tree};
+use flexure_core::robots::{Body, JointKind, Pendulum, Tree};
 use flexure_core::scalar::{Dual, Jet, Scalar};
+
+mod common;
+use common::{IDENTITY, Numbers, PLANAR, branched, close, planar};
 
 /// A robot that hides its recursions: only mass matrix and potential energy, so that every torque comes from the
 /// derived (dual-number) defaults. The oracle for the recursions.
@@ -25,31 +28,6 @@ impl<C: Scalar, L: Links<C, N>, const N: usize> Links<C, N> for Derived<'_, L> {
     }
 }
 
-/// Deterministic numbers in [−1, 1) (a linear congruential generator).
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-    fn vector<const N: usize>(&mut self, scale: f64) -> Vector<f64, N> {
-        Vector::from_fn(|_| scale * self.next())
-    }
-}
-
-const PLANAR: PlanarData =
-    PlanarData { mass: [1.510, 0.873], length: 0.343, com: [0.159, 0.055], inertia: [0.0392, 0.00808] };
-
-struct PlanarData {
-    mass: [f64; 2],
-    length: f64,
-    com: [f64; 2],
-    inertia: [f64; 2],
-}
-
-const IDENTITY: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-
 fn planar_tree() -> Tree<f64, 2> {
     let body = |i: usize, translation| Body {
         parent: i.checked_sub(1),
@@ -64,55 +42,9 @@ fn planar_tree() -> Tree<f64, 2> {
     Tree::new(&[body(0, [0.0; 3]), body(1, [PLANAR.length, 0.0, 0.0])], [0.0; 3]).expect("ordered")
 }
 
-fn rotation(roll: f64, pitch: f64, yaw: f64) -> [[f64; 3]; 3] {
-    let ((sr, cr), (sp, cp), (sy, cy)) = (roll.sin_cos(), pitch.sin_cos(), yaw.sin_cos());
-    [
-        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-        [-sp, cp * sr, cp * cr],
-    ]
-}
-
-/// A branched tree with revolute and prismatic joints about arbitrary axes.
-fn branched<const N: usize>(seed: u64) -> Tree<f64, N> {
-    let mut r = Numbers(seed);
-    let bodies = core::array::from_fn(|i| {
-        let axis: Vector<f64, 3> = r.vector(1.0);
-        let norm = axis.dot(&axis).sqrt();
-        let axis =
-            if i % 3 == 1 { [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0]][i % 2] } else { axis.map(|x| x / norm).0 };
-        let principal: Vector<f64, 3> = r.vector(1.0).map(|x| 0.02 + 0.01 * x);
-        let turn = Matrix(rotation(r.next(), r.next(), r.next()));
-        Body {
-            parent: if i == 0 {
-                None
-            } else if i % 3 == 0 {
-                Some(i / 2)
-            } else {
-                Some(i - 1)
-            },
-            kind: if i % 4 == 2 { JointKind::Prismatic } else { JointKind::Revolute },
-            axis,
-            rotation: rotation(3.0 * r.next(), r.next(), 3.0 * r.next()),
-            translation: r.vector::<3>(0.4).0,
-            mass: 1.0 + 0.5 * r.next(),
-            com: r.vector::<3>(0.1).0,
-            inertia: (turn * Matrix::diagonal(&principal) * turn.transpose()).0,
-        }
-    });
-    Tree::new(&bodies, [0.3, -0.2, -9.81]).expect("parents come first")
-}
-
-fn close<const N: usize>(a: &Vector<f64, N>, b: &Vector<f64, N>, tolerance: f64) {
-    let scale = b.iter().fold(1.0, |m: f64, x| m.max(x.abs()));
-    for (x, y) in a.iter().zip(b.iter()) {
-        assert!((x - y).abs() <= tolerance * scale, "{a:?} against {b:?}");
-    }
-}
-
 #[test]
 fn the_tree_is_the_closed_form() {
-    let closed = PlanarTwoLink::new(PLANAR.mass, PLANAR.length, PLANAR.com, PLANAR.inertia);
+    let closed = planar();
     let tree = planar_tree();
     let mut r = Numbers(1);
     for _ in 0..200 {

@@ -1,12 +1,19 @@
 //! Shaping functions φ: how a position error turns into a velocity towards the reference.
 
-use crate::linalg::Vector;
-use crate::scalar::{Over, Scalar};
+use crate::linalg::{Matrix, Vector};
+use crate::scalar::{Dual, Over, Scalar};
 
 /// A shaping function φ with φ(0) = 0 whose slope contracts in the metric Π: eq. controllaw-positionmetricinquality.
 pub trait Shaping<C: Scalar, const N: usize> {
     /// φ(q̃) [rad/s] at the position error q̃ [rad].
     fn eval<T: Over<C>>(&self, error: &Vector<T, N>) -> Vector<T, N>;
+
+    /// Slope ∂φ/∂q̃ [1/s].
+    #[inline]
+    fn slope<T: Over<C>>(&self, error: &Vector<T, N>) -> Matrix<T, N, N> {
+        let variables = Vector::from_fn(|j| Dual::<T, N>::variable(error[j], j));
+        Matrix(self.eval(&variables).map(|phi| phi.gradient).0)
+    }
 }
 
 /// φ_2 = Λ q̃: the linear law. Keeps the pH-like structure when Π = Λ.

@@ -2,7 +2,7 @@
 
 use super::{LinkGains, LinkTorque, MotorGains, Shaping};
 use crate::linalg::Vector;
-use crate::model::{Fjr, Links, MassFactor, Motion};
+use crate::model::{Fjr, Links, Motion};
 use crate::scalar::{Jet, Over, Scalar};
 
 /// The virtual-contraction law (Π, K_d, φ). Paper, proposition fullstatecontroller-flexible and eq. control-flexible.
@@ -53,46 +53,6 @@ pub struct Command<T, const N: usize> {
     pub s_m: Vector<T, N>,
 }
 
-/// Link position along the motion to order 3, from the link dynamics and their rate: q̈_l and q⃛_l from the state.
-///
-/// `bias` is C q̇ + g at order 0. `bias_along(a)` gives M a + C q̇ + g to order 1 along the motion with acceleration
-/// `a` held: M q⃛ is the rate of the torque on the links minus its first coefficient.
-#[inline]
-fn link_motion<T: Over<C>, C: Scalar, L: Links<C, N>, const N: usize>(
-    robot: &Fjr<C, L, N>,
-    factor: &impl MassFactor<T, N>,
-    x: &Motion<T, N>,
-    bias: &Vector<T, N>,
-    bias_along: impl FnOnce(&Vector<T, N>) -> Vector<Jet<T, 2>, N>,
-) -> Vector<Jet<T, 4>, N> {
-    let a = factor.solve(&(robot.link_torque(x) - *bias));
-    let torque_rate = robot.spring_torque(&x.v_l, &x.v_m) - robot.link_damping.diag_mul(&a);
-    let jerk = factor.solve(&(torque_rate - bias_along(&a).map(|x| x.coefficient(1))));
-    let (half, sixth) = (T::from_ratio(1, 2), T::from_ratio(1, 6));
-    Vector::from_fn(|i| Jet::new([x.q_l[i], x.v_l[i], half * a[i], sixth * jerk[i]]))
-}
-
-/// The motion of the robot itself.
-#[inline]
-fn real_motion<T: Over<C>, C: Scalar, L: Links<C, N>, const N: usize>(
-    robot: &Fjr<C, L, N>,
-    factor: &impl MassFactor<T, N>,
-    x: &Motion<T, N>,
-) -> Vector<Jet<T, 4>, N> {
-    let links = &robot.links;
-    let bias = links.inverse_dynamics(&x.q_l, &x.v_l, &x.v_l, &Vector::ZERO);
-    link_motion(robot, factor, x, &bias, |a| {
-        let v = series(&x.v_l, a);
-        links.inverse_dynamics(&series(&x.q_l, &x.v_l), &v, &v, &a.map(Jet::value))
-    })
-}
-
-/// `[x, dx]` as series of two coefficients.
-#[inline]
-fn series<T: Scalar, const N: usize>(x: &Vector<T, N>, dx: &Vector<T, N>) -> Vector<Jet<T, 2>, N> {
-    Vector::from_fn(|i| Jet::new([x[i], dx[i]]))
-}
-
 impl<C: Scalar, Pl: Shaping<C, N>, Pm: Shaping<C, N>, const N: usize> Vcbc<C, Pl, Pm, N> {
     /// The motor torque for the robot at `x`, following `q_ld`, the reference [rad] to order 4.
     #[inline]
@@ -105,7 +65,7 @@ impl<C: Scalar, Pl: Shaping<C, N>, Pm: Shaping<C, N>, const N: usize> Vcbc<C, Pl
     ) -> Command<T, N> {
         let links = &robot.links;
         let factor = links.factor(&x.q_l);
-        let motion = real_motion(robot, &factor, x);
+        let motion = robot.link_motion(&factor, x);
         let (q, v) = (motion.map(|x| x.truncate::<3>()), motion.map(|x| x.differentiate::<3>()));
         let link = self
             .link
@@ -126,15 +86,15 @@ impl<C: Scalar, Pl: Shaping<C, N>, Pm: Shaping<C, N>, const N: usize> Vcbc<C, Pl
     ) -> Command<T, N> {
         let links = &robot.links;
         let factor = links.factor(&x.q_l);
-        let real = real_motion(robot, &factor, x);
+        let real = robot.link_motion(&factor, x);
         let (q, v) = (real.map(|x| x.truncate::<3>()), real.map(|x| x.differentiate::<3>()));
         let (q2, v2) = (q.map(|x| x.truncate::<2>()), v.map(|x| x.truncate::<2>()));
 
         // M(q) a_v = K ζ_v − D_l v_v − C(q, v) v_v − g(q_v).
         let bias =
             links.inertial_torque(&x.q_l, &x.v_l, &x_v.v_l, &Vector::ZERO) + links.gravity_torque(&x_v.q_l);
-        let virtual_motion = link_motion(robot, &factor, x_v, &bias, |a_v| {
-            let (q_v, v_v) = (series(&x_v.q_l, &x_v.v_l), series(&x_v.v_l, a_v));
+        let virtual_motion = robot.link_motion_with(&factor, x_v, &bias, |a_v| {
+            let (q_v, v_v) = (x_v.q_l.with_rate(&x_v.v_l), x_v.v_l.with_rate(a_v));
             links.inertial_torque(&q2, &v2, &v_v, &a_v.map(Jet::value)) + links.gravity_torque(&q_v)
         });
         let q_v = virtual_motion.map(|x| x.truncate::<3>());
@@ -161,7 +121,7 @@ impl<C: Scalar, Pl: Shaping<C, N>, Pm: Shaping<C, N>, const N: usize> Vcbc<C, Pl
         let q_md = *q + robot.stiffness.map(C::recip).diag_mul(&u_l);
 
         // Only q_m and q̇_m are known: the motor errors are series of two coefficients.
-        let e_m = series(&x.q_m, &x.v_m) - q_md.map(|x| x.truncate::<2>());
+        let e_m = x.q_m.with_rate(&x.v_m) - q_md.map(|x| x.truncate::<2>());
         let coupling = Vector::from_fn(|i| s_l[i].scale(robot.stiffness[i] / gains.metric[i]));
         let v_mr = q_md.map(|x| x.differentiate::<2>()) - gains.shaping.eval(&e_m) - coupling;
 

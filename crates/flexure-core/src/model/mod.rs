@@ -1,6 +1,7 @@
 //! The port-Hamiltonian model of a flexible-joint robot over any [`Links`].
 
 mod fjr;
+mod link_motion;
 mod links;
 mod matrices;
 mod state;

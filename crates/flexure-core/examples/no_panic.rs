@@ -1,0 +1,67 @@
+//! Links only if the optimiser proves that law, dynamics and arithmetic cannot panic:
+//!
+//! `cargo build -p flexure-core --profile no-panic --example no_panic`
+//!
+//! An "undefined symbol" at the end of the build names the function in which a panic is reachable.
+
+use std::hint::black_box;
+
+use flexure_core::control::{Command, CoupledTanh, Input, Vcbc};
+use flexure_core::linalg::Vector;
+use flexure_core::model::{Fjr, Links, Motion, State};
+use flexure_core::robots::{PlanarTwoLink, Tree};
+use flexure_core::scalar::{Jet, Scalar};
+use flexure_core::virtual_system::virtual_dynamics;
+#[cfg(not(debug_assertions))]
+use no_panic::no_panic;
+
+type Law<const N: usize> = Vcbc<f64, CoupledTanh<f64, N>, CoupledTanh<f64, N>, N>;
+type Arm = Fjr<f64, PlanarTwoLink<f64>, 2>;
+type Chain = Fjr<f64, Tree<f64, 7>, 7>;
+
+#[cfg_attr(not(debug_assertions), no_panic)]
+fn law_of_the_arm(
+    robot: &Arm,
+    law: &Law<2>,
+    x: &Motion<f64, 2>,
+    q_d: &Vector<Jet<f64, 5>, 2>,
+) -> Command<f64, 2> {
+    law.command(robot, x, q_d, &Input::ZERO)
+}
+
+#[cfg_attr(not(debug_assertions), no_panic)]
+fn law_of_a_tree(
+    robot: &Chain,
+    law: &Law<7>,
+    x: &Motion<f64, 7>,
+    q_d: &Vector<Jet<f64, 5>, 7>,
+) -> Command<f64, 7> {
+    law.command(robot, x, q_d, &Input::ZERO)
+}
+
+#[cfg_attr(not(debug_assertions), no_panic)]
+fn dynamics(robot: &Chain, x: &State<f64, 7>, u_m: &Vector<f64, 7>) -> [State<f64, 7>; 2] {
+    let plant = robot.hamiltonian_dynamics(x, u_m);
+    [plant, virtual_dynamics(robot, x, &robot.motion(x), u_m)]
+}
+
+#[cfg_attr(not(debug_assertions), no_panic)]
+fn factor_and_solve(robot: &Chain, q: &Vector<f64, 7>, b: &Vector<f64, 7>) -> Vector<f64, 7> {
+    robot.links.mass_matrix(q).ldl().solve(b)
+}
+
+#[cfg_attr(not(debug_assertions), no_panic)]
+fn jets(x: Jet<f64, 5>) -> Jet<f64, 5> {
+    (x.sin() * x.exp() + x.tanh() / x.ln()).sqrt().atan().ln_cosh().square()
+}
+
+fn main() {
+    // The functions are linked in without being called on a made-up robot.
+    black_box((
+        law_of_the_arm as fn(&_, &_, &_, &_) -> _,
+        law_of_a_tree as fn(&_, &_, &_, &_) -> _,
+        dynamics as fn(&_, &_, &_) -> _,
+        factor_and_solve as fn(&_, &_, &_) -> _,
+    ));
+    assert!(jets(black_box(Jet::variable(0.5))).coefficient(4).is_finite());
+}

@@ -1,0 +1,78 @@
+//! Law, dynamics and reference allocate nothing.
+
+use assert_no_alloc::{AllocDisabler, assert_no_alloc, violation_count};
+use flexure_core::control::{Input, RigidVcbc};
+use flexure_core::linalg::Vector;
+use flexure_core::model::{LinkMatrices, Links, MassFactor};
+use flexure_core::scalar::{Jet, Scalar};
+use flexure_core::virtual_system::{Structure, closed_loop, error_coordinates, virtual_dynamics};
+
+mod common;
+use common::{Numbers, branched, coupled_tanh, flexible, gains, planar, random_error};
+
+#[global_allocator]
+static COUNTER: AllocDisabler = AllocDisabler;
+
+/// Allocations and releases on this thread while `f` runs.
+fn allocations<R>(f: impl FnOnce() -> R) -> u32 {
+    let before = violation_count();
+    let result = assert_no_alloc(f);
+    let count = violation_count() - before;
+    drop(result);
+    count
+}
+
+fn law_and_dynamics_allocate_nothing<L: Links<f64, N>, const N: usize>(links: L) {
+    let mut r = Numbers(1);
+    let robot = flexible(links, &mut r);
+    let law = gains(coupled_tanh, true, &mut r);
+    let (x, x_v, error) = (r.motion(1.5), r.motion(1.5), random_error(&mut r));
+    let omega = Input { link: r.series(1.0), motor: r.vector(1.0) };
+    let count = allocations(|| {
+        let reference = Vector([Jet::variable(0.3).sin(); N]);
+        let command = law.command(&robot, &x, &reference, &omega);
+        let virtual_command = law.virtual_command(&robot, &x_v, &x, &reference, &omega);
+        let rigid = RigidVcbc { link: law.link }.command(
+            &robot.links,
+            &robot.link_damping,
+            &x.q_l,
+            &x.v_l,
+            &reference.map(|x| x.truncate()),
+            &omega.motor,
+        );
+        (command, virtual_command, rigid)
+    });
+    assert_eq!(count, 0, "law");
+    let count = allocations(|| {
+        let state = robot.state(&x);
+        let dynamics = robot.hamiltonian_dynamics(&state, &omega.motor);
+        let a = robot.link_acceleration(&x);
+        let (factor, matrices) =
+            (robot.links.factor(&x.q_l), LinkMatrices::new(&robot.links, &x.q_l, &x.v_l));
+        (dynamics, a, factor.solve(&a), matrices, robot.links.mass_matrix(&x.q_l).ldl().solve(&a))
+    });
+    assert_eq!(count, 0, "dynamics");
+    let count = allocations(|| {
+        let (state, reference) = (robot.state(&x_v), Vector([Jet::variable(0.3).sin(); N]));
+        let dynamics = virtual_dynamics(&robot, &state, &x, &omega.motor);
+        let coordinates = error_coordinates(&robot, &law, &state, &x, &reference, &omega);
+        let rate = closed_loop(&robot, &law, &error, &x, &omega);
+        (dynamics, coordinates, rate, Structure::new(&robot, &law, &error, &x))
+    });
+    assert_eq!(count, 0, "virtual system");
+}
+
+#[test]
+fn planar_arm() {
+    law_and_dynamics_allocate_nothing(planar());
+}
+
+#[test]
+fn branched_tree() {
+    law_and_dynamics_allocate_nothing(branched::<7>(2));
+}
+
+#[test]
+fn the_counter_counts() {
+    assert_eq!(allocations(|| Box::new(std::hint::black_box(1.0))), 1);
+}
