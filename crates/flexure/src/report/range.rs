@@ -40,10 +40,20 @@ impl Linear {
         Range { low: quantile(&values, 0.0), high: quantile(&values, 1.0) }.padded(0.06)
     }
 
-    pub(super) fn of(values: impl Iterator<Item = f64>) -> Self {
+    pub(super) fn of(values: &mut dyn Iterator<Item = f64>) -> Self {
+        Self::but(0.005, values)
+    }
+
+    /// The same for a run that diverged: what it did most of the time, not where it ended.
+    pub(super) fn of_diverged(values: &mut dyn Iterator<Item = f64>) -> Self {
+        Self::but(0.15, values)
+    }
+
+    /// Leaves this fraction of the samples out at either end, if that makes the rest legible.
+    fn but(tail: f64, values: impl Iterator<Item = f64>) -> Self {
         let values = sorted(values);
         let whole = Range { low: quantile(&values, 0.0), high: quantile(&values, 1.0) };
-        let bulk = Range { low: quantile(&values, 0.005), high: quantile(&values, 0.995) };
+        let bulk = Range { low: quantile(&values, tail), high: quantile(&values, 1.0 - tail) };
         if whole.span() <= FLATTENED * bulk.span() || bulk.span() == 0.0 {
             Self { range: whole.padded(0.06), clipped: false }
         } else {
@@ -52,7 +62,7 @@ impl Linear {
     }
 }
 
-/// Exponents of ten for the absolute values: the largest on top, zero crossings cut below the first percentile.
+/// Exponents of ten for the absolute values: the largest on top, the smallest percent cut.
 pub(super) fn decades(values: impl Iterator<Item = f64>) -> Range {
     const MOST: f64 = 40.0;
     let exponents = sorted(values.filter(|&value| value != 0.0).map(|value| value.abs().log10()));
@@ -100,18 +110,18 @@ mod tests {
     #[test]
     fn a_short_spike_is_cut_and_a_sine_is_not() {
         let sine = || (0..10_000).map(|k| (f64::from(k) * 1e-3).sin());
-        let plain = Linear::of(sine());
+        let plain = Linear::of(&mut sine());
         assert!(!plain.clipped && sine().all(|value| plain.range.contains(value)));
-        let spiked = Linear::of(sine().enumerate().map(|(k, value)| if k < 5 { 1e3 } else { value }));
+        let spiked = Linear::of(&mut sine().enumerate().map(|(k, value)| if k < 5 { 1e3 } else { value }));
         assert!(spiked.clipped && spiked.range.high < 2.0);
     }
 
     #[test]
     fn a_constant_and_nothing_still_have_an_axis() {
         for linear in [
-            Linear::of([0.0; 5].into_iter()),
-            Linear::of([3.0; 5].into_iter()),
-            Linear::of(std::iter::empty()),
+            Linear::of(&mut [0.0; 5].into_iter()),
+            Linear::of(&mut [3.0; 5].into_iter()),
+            Linear::of(&mut std::iter::empty()),
         ] {
             assert!(linear.range.span() > 0.0);
         }

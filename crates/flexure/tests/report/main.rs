@@ -83,7 +83,7 @@ fn a_diverged_run_is_drawn_to_its_end_and_says_so() {
     let svg = figure(&fake::diverged(2, 5_000));
     check(&svg);
     assert!(curves(&svg) >= 16);
-    assert_eq!(texts(&svg).iter().filter(|text| text.contains("no finite value after 4.00 s")).count(), 4);
+    assert_eq!(texts(&svg).iter().filter(|text| text.contains("not finite after 4.00 s")).count(), 4);
 }
 
 #[test]
