@@ -28,9 +28,9 @@ pub fn comparison(traces: &[(&str, &Trace)]) -> String {
         .unwrap_or(Range { low: 0.0, high: 1.0 });
     let x = decay(&errors, whole).unwrap_or(whole);
     let shown: Vec<Curve> = errors.iter().map(|curve| curve.within(x)).collect();
-    let y = decades(shown.iter().flat_map(|curve| curve.values.iter().copied()));
     let buckets = buckets(traces.len());
     let curves: Vec<Curve> = shown.iter().map(|curve| curve.exponents(buckets)).collect();
+    let y = decades(&curves);
 
     let subtitle = if x == whole { String::new() } else { left_out(&errors, x, whole) };
     let mut sheet = Sheet::new(WIDTH, 0.0, TITLE, &subtitle);
@@ -61,7 +61,7 @@ fn largest_error(trace: &Trace, stroke: Stroke) -> Curve {
     Curve::new(trace.column("t").unwrap_or_default(), &values, stroke)
 }
 
-/// Twice the time in which every run comes down to three times what it does in its second half, if that is short and
+/// One and a half times the time in which every run comes down to three times what it does in its second half, if that is short and
 /// nothing worth seeing follows.
 fn decay(errors: &[Curve], whole: Range) -> Option<Range> {
     let settled = |curve: &Curve| {
@@ -70,7 +70,7 @@ fn decay(errors: &[Curve], whole: Range) -> Option<Range> {
         last.map_or(whole.low, |sample| curve.t[sample])
     };
     let slowest = errors.iter().map(settled).fold(whole.low, f64::max);
-    let high = whole.low + 2.0 * (slowest - whole.low);
+    let high = whole.low + 1.5 * (slowest - whole.low);
     let nothing_follows =
         after(errors, high) < 1e-2 * errors.iter().map(|curve| largest(&curve.values)).fold(0.0, f64::max);
     (high > whole.low && high < whole.low + 0.5 * whole.span() && nothing_follows)

@@ -136,8 +136,7 @@ mod tests {
 
     #[test]
     fn a_cut_segment_stays_on_its_line() {
-        let ((x0, y0), (x1, y1)) = cut(((0.0, -10.0), (4.0, 10.0)), 5.0).unwrap();
-        assert_eq!([x0, y0, x1, y1], [2.0, 0.0, 3.0, 5.0]);
+        assert_eq!(cut(((0.0, -10.0), (4.0, 10.0)), 5.0), Some(((2.0, 0.0), (3.0, 5.0))));
         assert!(cut(((0.0, 6.0), (1.0, 9.0)), 5.0).is_none());
     }
 

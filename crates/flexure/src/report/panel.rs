@@ -3,7 +3,7 @@
 use super::axes::{Axes, Labels};
 use super::curve::Curve;
 use super::decimate::bucket_size;
-use super::number::{duration, significant};
+use super::number::{duration, short, significant};
 use super::range::{Linear, Range, decades};
 use super::sheet::Sheet;
 use super::style::{INK, MUTED};
@@ -70,9 +70,9 @@ impl Panel {
 
     fn decades(&self, sheet: &mut Sheet, place: [f64; 4], view: &View) -> String {
         let curves: Vec<Curve> = self.curves.iter().map(|curve| curve.exponents(view.buckets)).collect();
-        let range = decades(self.values());
+        let range = decades(&curves);
         let label = self.label();
-        let axes = Axes { y_labels: Labels::Decades, ..self.axes(place, view.t, range, &label) };
+        let axes = Axes { y_labels: Labels::Decades, ..axes(place, view.t, range, &label) };
         axes.draw(sheet, &curves, view.diverged, view.buckets);
         let samples = self.curves.iter().map(|curve| curve.t.len()).max().unwrap_or(0);
         match bucket_size(samples, view.buckets) {
@@ -90,7 +90,7 @@ impl Panel {
         if let Some(window) = excursion.filter(short) {
             return Some(self.split(sheet, place, view, range, window));
         }
-        self.axes(place, view.t, range, &self.label()).draw(sheet, &self.curves, view.diverged, view.buckets);
+        axes(place, view.t, range, &self.label()).draw(sheet, &self.curves, view.diverged, view.buckets);
         clipped.then(|| format!("{} outside the frame", self.peak()))
     }
 
@@ -103,17 +103,13 @@ impl Panel {
         let inside = Linear::whole(zoomed.iter().flat_map(|curve| curve.values.iter().copied()));
         let ticks = Range { low: scale * window.low, high: scale * window.high };
         let (label, time) = (self.label(), format!("time [{unit}]"));
-        let left = Axes { x_label: &time, ..self.axes([x, y, STRIP, height], ticks, inside, &label) };
+        let left = Axes { x_label: &time, ..axes([x, y, STRIP, height], ticks, inside, &label) };
         left.draw(sheet, &zoomed, None, view.buckets / 2);
         let right = [x + STRIP, y, width - STRIP, height];
-        let right = Axes { left: 60.0, ..self.axes(right, view.t, range, "") };
+        let right = Axes { left: 60.0, ..axes(right, view.t, range, "") };
         right.draw(sheet, &self.curves, view.diverged, view.buckets);
-        let [from, to] = [ticks.low, ticks.high].map(|t| significant(t, 3));
+        let [from, to] = [ticks.low, ticks.high].map(|t| short(t, 3));
         format!("left: {from} to {to} {unit}, {}; right: whole run, cut there", self.peak())
-    }
-
-    fn axes<'a>(&self, place: [f64; 4], x: Range, y: Range, y_label: &'a str) -> Axes<'a> {
-        Axes { place, x, y, x_label: "time [s]", y_label, y_labels: Labels::Linear, left: LEFT }
     }
 
     fn label(&self) -> String {
@@ -149,4 +145,8 @@ impl Panel {
         let (t, value) = self.samples().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).unwrap_or_default();
         format!("peak {} {} at {}", significant(value.abs(), 4), self.unit, duration(t))
     }
+}
+
+fn axes(place: [f64; 4], x: Range, y: Range, y_label: &str) -> Axes<'_> {
+    Axes { place, x, y, x_label: "time [s]", y_label, y_labels: Labels::Linear, left: LEFT }
 }

@@ -1,6 +1,8 @@
 //! The summary of several runs for the terminal.
 
-use comfy_table::{Cell, CellAlignment, ContentArrangement, Row, Table, presets::UTF8_HORIZONTAL_ONLY};
+use comfy_table::{
+    Cell, CellAlignment, ContentArrangement, LineStyle, Row, Table, presets::UTF8_HORIZONTAL_ONLY,
+};
 
 use super::number::{NONE, engineering};
 use crate::summary::Summary;
@@ -22,7 +24,7 @@ pub fn summary_table(summaries: &[Summary]) -> String {
     ];
     let mut table = Table::new();
     table
-        .load_style(UTF8_HORIZONTAL_ONLY)
+        .load_style(UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()))
         .set_content_arrangement(ContentArrangement::Dynamic)
         .set_width(WIDTH);
     table.set_header(HEADER.map(|title| Cell::new(title).set_alignment(CellAlignment::Center)));
