@@ -8,7 +8,7 @@ use kuva::render::render::{PathData, Primitive};
 use kuva::render::theme::Theme;
 
 use super::curve::Curve;
-use super::number::{power_of_ten, significant};
+use super::number::{power_of_ten, short};
 use super::range::{Range, decade_step, round_step};
 use super::sheet::Sheet;
 use super::style::{FONT, GRID, INK, MUTED};
@@ -108,7 +108,7 @@ impl Axes<'_> {
             .with_y_axis_max(self.y.high)
             .with_x_tick_step(round_step(self.x, (frame_width / 55.0).clamp(2.0, 10.0)))
             .with_y_tick_step(y_step)
-            .with_x_tick_format(TickFormat::Custom(Arc::new(short)))
+            .with_x_tick_format(TickFormat::Custom(Arc::new(number)))
             .with_y_tick_format(TickFormat::Custom(Arc::new(move |value| label(y_labels, value))))
             .with_x_label(self.x_label)
             .with_y_label(self.y_label)
@@ -124,21 +124,14 @@ impl Axes<'_> {
 #[expect(clippy::cast_possible_truncation, reason = "an exponent of ten of an f64: within ±308")]
 fn label(labels: Labels, value: f64) -> String {
     match labels {
-        Labels::Linear => short(value),
+        Labels::Linear => number(value),
         Labels::Decades => power_of_ten(value.round() as i32),
     }
 }
 
-/// As few digits as tell round steps apart.
-fn short(value: f64) -> String {
-    if value.abs() < 1e-12 {
-        return "0".to_owned();
-    }
-    let text = significant(value, 6);
-    let (digits, power) = text.split_at(text.find('×').unwrap_or(text.len()));
-    let digits =
-        if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits };
-    format!("{digits}{power}")
+/// A step apart, labels differ in fewer than six digits; 0 comes out of the stepping as a rounding error.
+fn number(value: f64) -> String {
+    if value.abs() < 1e-12 { "0".to_owned() } else { short(value, 6) }
 }
 
 fn group(sheet: &mut Sheet, transform: String, extra_attrs: Option<String>) {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::decimate::decimate;
+use super::decimate::{decimate, envelope};
 use super::range::Range;
 use super::style::Stroke;
 
@@ -21,12 +21,12 @@ impl Curve {
         Self { t: t[..finite].to_vec(), values: values[..finite].to_vec(), stroke }
     }
 
-    /// The exponents of ten of the absolute values: what a logarithmic axis shows. Zero lies below every axis.
-    pub(super) fn exponents(mut self) -> Self {
-        for value in &mut self.values {
-            *value = value.abs().max(f64::MIN_POSITIVE).log10();
-        }
-        self
+    /// The exponents of ten of the largest absolute value in each bucket: what a logarithmic axis shows.
+    pub(super) fn exponents(&self, buckets: usize) -> Self {
+        let exponents: Vec<f64> =
+            self.values.iter().map(|value| value.abs().max(f64::MIN_POSITIVE).log10()).collect();
+        let (t, values) = envelope(&self.t, &exponents, buckets).into_iter().unzip();
+        Self { t, values, stroke: self.stroke.clone() }
     }
 
     /// The part within a window of time, with one sample more on either side.
@@ -38,6 +38,12 @@ impl Curve {
             values: self.values[start..end].to_vec(),
             stroke: self.stroke.clone(),
         }
+    }
+
+    /// The curve on another unit of time, `scale` to the second.
+    pub(super) fn stretched(mut self, scale: f64) -> Self {
+        self.t.iter_mut().for_each(|t| *t *= scale);
+        self
     }
 
     /// The `d` of a path in tenths of a pixel, in a frame of `width` by `height` pixels whose axes are `x` and `y`.
@@ -130,8 +136,7 @@ mod tests {
 
     #[test]
     fn a_cut_segment_stays_on_its_line() {
-        let ((x0, y0), (x1, y1)) = cut(((0.0, -10.0), (4.0, 10.0)), 5.0).unwrap();
-        assert_eq!([x0, y0, x1, y1], [2.0, 0.0, 3.0, 5.0]);
+        assert_eq!(cut(((0.0, -10.0), (4.0, 10.0)), 5.0), Some(((2.0, 0.0), (3.0, 5.0))));
         assert!(cut(((0.0, 6.0), (1.0, 9.0)), 5.0).is_none());
     }
 

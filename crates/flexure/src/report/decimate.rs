@@ -27,6 +27,22 @@ pub fn decimate(t: &[f64], values: &[f64], buckets: usize) -> Vec<(f64, f64)> {
     points
 }
 
+/// One point a bucket, its largest value at its own instant: the upper envelope of a signal that dips.
+///
+/// The signal is cut as by [`decimate`], and is whole if it is short enough.
+///
+/// # Panics
+/// If `t` and `values` differ in length: a programming error of the caller.
+pub fn envelope(t: &[f64], values: &[f64], buckets: usize) -> Vec<(f64, f64)> {
+    assert_eq!(t.len(), values.len(), "a signal has one value per instant");
+    let size = bucket_size(values.len(), buckets);
+    let highest = |(t, values): (&[f64], &[f64])| {
+        let (_, high) = extremes(values);
+        (t[high], values[high])
+    };
+    t.chunks(size).zip(values.chunks(size)).map(highest).collect()
+}
+
 /// Samples in each bucket (the last one may hold fewer).
 pub fn bucket_size(samples: usize, buckets: usize) -> usize {
     samples.div_ceil(buckets.max(1)).max(1)

@@ -10,6 +10,7 @@ pub mod figure;
 pub mod html;
 mod markdown;
 pub mod number;
+mod panel;
 mod range;
 pub mod raster;
 mod sheet;

@@ -43,12 +43,21 @@ pub fn superscript(value: i32) -> String {
     value.to_string().chars().map(raise).collect()
 }
 
+/// As few digits as tell the value, at most `digits`: `20`, not `20.0`.
+pub fn short(value: f64, digits: usize) -> String {
+    let text = significant(value, digits);
+    let (digits, power) = text.split_at(text.find('×').unwrap_or(text.len()));
+    let digits =
+        if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits };
+    format!("{digits}{power}")
+}
+
 /// Seconds in the unit that reads best: `3 ms`, `1.25 s`.
 pub fn duration(seconds: f64) -> String {
     if seconds != 0.0 && seconds.abs() < 0.1 {
-        format!("{} ms", significant(seconds * 1e3, 3))
+        format!("{} ms", short(seconds * 1e3, 3))
     } else {
-        format!("{} s", significant(seconds, 3))
+        format!("{} s", short(seconds, 3))
     }
 }
 
@@ -116,7 +125,7 @@ mod tests {
 
     #[test]
     fn durations_and_decades() {
-        assert_eq!(duration(0.003), "3.00 ms");
+        assert_eq!(duration(0.003), "3 ms");
         assert_eq!(duration(1.25), "1.25 s");
         assert_eq!(
             [power_of_ten(-6), power_of_ten(0), power_of_ten(1), power_of_ten(3)],

@@ -1,5 +1,7 @@
 //! What an axis shows: the whole signal where that is legible, else its bulk, saying so.
 
+use super::curve::Curve;
+
 /// Bounds of an axis, `low < high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Range {
@@ -40,22 +42,35 @@ impl Linear {
         Range { low: quantile(&values, 0.0), high: quantile(&values, 1.0) }.padded(0.06)
     }
 
-    pub(super) fn of(values: impl Iterator<Item = f64>) -> Self {
+    pub(super) fn of(values: &mut dyn Iterator<Item = f64>) -> Self {
+        Self::but(0.005, 0.25, values)
+    }
+
+    /// The same for a run that diverged: what it did most of the time, not where it ended.
+    pub(super) fn of_diverged(values: &mut dyn Iterator<Item = f64>) -> Self {
+        Self::but(0.15, 0.5, values)
+    }
+
+    /// Leaves this fraction of the samples out at either end, if that makes the rest legible, and leaves room around it.
+    fn but(tail: f64, room: f64, values: impl Iterator<Item = f64>) -> Self {
         let values = sorted(values);
         let whole = Range { low: quantile(&values, 0.0), high: quantile(&values, 1.0) };
-        let bulk = Range { low: quantile(&values, 0.005), high: quantile(&values, 0.995) };
+        let bulk = Range { low: quantile(&values, tail), high: quantile(&values, 1.0 - tail) };
         if whole.span() <= FLATTENED * bulk.span() || bulk.span() == 0.0 {
             Self { range: whole.padded(0.06), clipped: false }
         } else {
-            Self { range: bulk.padded(0.25), clipped: true }
+            Self { range: bulk.padded(room), clipped: true }
         }
     }
 }
 
-/// Exponents of ten for the absolute values: the largest on top, zero crossings cut below the first percentile.
-pub(super) fn decades(values: impl Iterator<Item = f64>) -> Range {
+/// Exponents of ten for curves that carry exponents: the largest on top, the smallest percent cut.
+pub(super) fn decades(curves: &[Curve]) -> Range {
     const MOST: f64 = 40.0;
-    let exponents = sorted(values.filter(|&value| value != 0.0).map(|value| value.abs().log10()));
+    // Zero has no exponent: `Curve::exponents` gives it that of the smallest f64.
+    let zero = f64::MIN_POSITIVE.log10();
+    let exponents =
+        sorted(curves.iter().flat_map(|curve| curve.values.iter().copied()).filter(|&value| value > zero));
     if exponents.is_empty() {
         return Range { low: -1.0, high: 1.0 };
     }
@@ -96,27 +111,30 @@ fn quantile(sorted: &[f64], fraction: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::{Linear, decade_step, decades, round_step};
+    use crate::report::curve::Curve;
+    use crate::report::style::Stroke;
 
     #[test]
     fn a_short_spike_is_cut_and_a_sine_is_not() {
         let sine = || (0..10_000).map(|k| (f64::from(k) * 1e-3).sin());
-        let plain = Linear::of(sine());
+        let plain = Linear::of(&mut sine());
         assert!(!plain.clipped && sine().all(|value| plain.range.contains(value)));
-        let spiked = Linear::of(sine().enumerate().map(|(k, value)| if k < 5 { 1e3 } else { value }));
+        let spiked = Linear::of(&mut sine().enumerate().map(|(k, value)| if k < 5 { 1e3 } else { value }));
         assert!(spiked.clipped && spiked.range.high < 2.0);
     }
 
     #[test]
     fn a_constant_and_nothing_still_have_an_axis() {
         for linear in [
-            Linear::of([0.0; 5].into_iter()),
-            Linear::of([3.0; 5].into_iter()),
-            Linear::of(std::iter::empty()),
+            Linear::of(&mut [0.0; 5].into_iter()),
+            Linear::of(&mut [3.0; 5].into_iter()),
+            Linear::of(&mut std::iter::empty()),
         ] {
             assert!(linear.range.span() > 0.0);
         }
-        assert!(decades([0.0].into_iter()).span() > 0.0);
-        assert!(decades([1e-9; 3].into_iter()).contains(-9.0));
+        let constant = |value| [Curve::new(&[0.0, 1.0], &[value; 2], Stroke::reference()).exponents(9)];
+        assert!(decades(&[]).span() > 0.0 && decades(&constant(0.0)).span() > 0.0);
+        assert!(decades(&constant(1e-9)).contains(-9.0));
     }
 
     #[test]

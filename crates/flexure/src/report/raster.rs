@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb};
 
-/// Width of every picture [px].
+/// Width of every picture, in px.
 pub const WIDTH: u32 = 1600;
 
 /// Why a picture could not be made.
@@ -16,9 +16,9 @@ pub enum RasterError {
     Svg(resvg::usvg::Error),
     /// The drawing has no area, or too much of it.
     Size {
-        /// Width of the drawing [px].
+        /// Width of the drawing, in px.
         width: f32,
-        /// Height of the drawing [px].
+        /// Height of the drawing, in px.
         height: f32,
     },
     /// The picture could not be written as PNG.
@@ -44,10 +44,11 @@ impl std::error::Error for RasterError {}
 pub fn png(svg: &str) -> Result<Vec<u8>, RasterError> {
     let tree = Tree::from_str(svg, options()).map_err(RasterError::Svg)?;
     let size = tree.size();
+    let no_area = || RasterError::Size { width: size.width(), height: size.height() };
     let scale = WIDTH as f32 / size.width();
-    let height = (scale * size.height()).ceil();
-    let pixmap = if height <= 10.0 * WIDTH as f32 { Pixmap::new(WIDTH, height as u32) } else { None };
-    let mut pixmap = pixmap.ok_or(RasterError::Size { width: size.width(), height: size.height() })?;
+    let target = size.to_int_size().scale_to_width(WIDTH).filter(|target| target.height() <= 10 * WIDTH);
+    let target = target.ok_or_else(no_area)?;
+    let mut pixmap = Pixmap::new(target.width(), target.height()).ok_or_else(no_area)?;
     resvg::render(&tree, Transform::from_scale(scale, scale), &mut pixmap.as_mut());
     pixmap.encode_png().map_err(|error| RasterError::Encode(error.to_string()))
 }

@@ -38,11 +38,11 @@ impl Sheet {
 
     /// A legend in rows from `y` down: each entry a piece of its line and its name. Returns the height of the rows.
     pub(super) fn legend(&mut self, y: f64, entries: &[(String, Stroke)]) -> f64 {
-        const SAMPLE: f64 = 30.0;
+        const SAMPLE: f64 = 26.0;
         const ROW: f64 = 22.0;
         let (mut x, mut row) = (MARGIN, 0.0);
         for (name, stroke) in entries {
-            let advance = SAMPLE + 6.0 + text_width(name, 14) + 22.0;
+            let advance = SAMPLE + 6.0 + text_width(name, 14) + 14.0;
             if x > MARGIN && x + advance > self.scene.width {
                 (x, row) = (MARGIN, row + ROW);
             }
@@ -83,7 +83,7 @@ pub(super) const MARGIN: f64 = 24.0;
 
 /// Room for a text, a little more than DejaVu Sans takes.
 pub(super) fn text_width(content: &str, size: u32) -> f64 {
-    0.62 * f64::from(size) * content.chars().count() as f64
+    0.59 * f64::from(size) * content.chars().count() as f64
 }
 
 /// kuva reads `$…$` as mathematics, and XML has no control characters.

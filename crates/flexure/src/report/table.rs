@@ -1,6 +1,8 @@
 //! The summary of several runs for the terminal.
 
-use comfy_table::{Cell, CellAlignment, ContentArrangement, Row, Table, presets::UTF8_FULL_CONDENSED};
+use comfy_table::{
+    Cell, CellAlignment, ContentArrangement, LineStyle, Row, Table, presets::UTF8_HORIZONTAL_ONLY,
+};
 
 use super::number::{NONE, engineering};
 use crate::summary::Summary;
@@ -10,20 +12,19 @@ const WIDTH: u16 = 100;
 
 /// One row a run, at most 100 columns wide, without colours: the same text on a terminal and in a file.
 pub fn summary_table(summaries: &[Summary]) -> String {
-    const HEADER: [&str; 9] = [
+    const HEADER: [&str; 8] = [
         "run",
         "φ",
-        "max |e_l|\n[rad]",
-        "final |e_l|\n[rad]",
-        "settled\n[s]",
-        "max |u_m|\n[N m]",
-        "saturated\n[%]",
-        "sampled\nrate [1/s]",
-        "proved\nrate [1/s]",
+        "final\n|e_l|\n[rad]",
+        "settled\n\n[s]",
+        "max\n|u_m|\n[N m]",
+        "at limit\n\n[%]",
+        "rate\nsampled\n[1/s]",
+        "rate\nproved\n[1/s]",
     ];
     let mut table = Table::new();
     table
-        .load_style(UTF8_FULL_CONDENSED)
+        .load_style(UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()))
         .set_content_arrangement(ContentArrangement::Dynamic)
         .set_width(WIDTH);
     table.set_header(HEADER.map(|title| Cell::new(title).set_alignment(CellAlignment::Center)));
@@ -36,7 +37,6 @@ pub fn summary_table(summaries: &[Summary]) -> String {
 fn row(summary: &Summary) -> Row {
     let optional = |value: Option<f64>| value.map_or(NONE.to_owned(), engineering);
     let numbers = [
-        engineering(summary.max_abs_e_l),
         engineering(summary.final_abs_e_l),
         optional(summary.settling_time),
         engineering(summary.max_abs_u_m),

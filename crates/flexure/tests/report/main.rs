@@ -2,7 +2,7 @@
 
 mod fake;
 
-use flexure::report::decimate::{bucket_size, decimate};
+use flexure::report::decimate::{bucket_size, decimate, envelope};
 use flexure::report::{
     Assumption, FigureOptions, Report, RunReport, comparison, four_panel, html, png, summary_table,
 };
@@ -79,11 +79,26 @@ fn noise_in_every_signal_stays_small() {
 }
 
 #[test]
+fn logarithmic_panels_keep_every_peak() {
+    let trace = fake::trace(1, 9_973, 6.0);
+    let (t, values) = (trace.column("t").unwrap(), trace.column("e_l1").unwrap());
+    let highest = |values: &mut dyn Iterator<Item = f64>| extremes(values).1;
+    for buckets in [1, 7, 480, 20_000] {
+        let points = envelope(t, values, buckets);
+        let size = bucket_size(values.len(), buckets);
+        assert_eq!(points.len(), values.len().div_ceil(size));
+        for (point, values) in points.iter().zip(values.chunks(size)) {
+            assert_eq!(Some(point.1.to_bits()), highest(&mut values.iter().copied()));
+        }
+    }
+}
+
+#[test]
 fn a_diverged_run_is_drawn_to_its_end_and_says_so() {
     let svg = figure(&fake::diverged(2, 5_000));
     check(&svg);
     assert!(curves(&svg) >= 16);
-    assert_eq!(texts(&svg).iter().filter(|text| text.contains("no finite value after 4.00 s")).count(), 4);
+    assert_eq!(texts(&svg).iter().filter(|text| text.contains("not finite after 4 s")).count(), 4);
 }
 
 #[test]
@@ -110,18 +125,18 @@ fn decimation_keeps_both_extremes_of_every_bucket() {
             assert!(points.is_sorted_by(|a, b| a.0 <= b.0));
             let size = bucket_size(values.len(), buckets);
             for (t, values) in t.chunks(size).zip(values.chunks(size)) {
-                let kept = || points.iter().filter(|point| t.contains(&point.0)).map(|point| point.1);
-                assert_eq!(
-                    kept().fold(f64::INFINITY, f64::min),
-                    values.iter().copied().fold(f64::INFINITY, f64::min)
-                );
-                assert_eq!(
-                    kept().fold(f64::NEG_INFINITY, f64::max),
-                    values.iter().copied().fold(f64::NEG_INFINITY, f64::max)
-                );
+                let kept = points.iter().filter(|point| t.contains(&point.0)).map(|point| point.1);
+                assert_eq!(extremes(kept), extremes(values.iter().copied()));
             }
         }
     }
+}
+
+/// Smallest and largest value, bit by bit: nothing is rounded on the way.
+fn extremes(values: impl Iterator<Item = f64>) -> (Option<u64>, Option<u64>) {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    (values.first().copied().map(f64::to_bits), values.last().copied().map(f64::to_bits))
 }
 
 #[test]
@@ -143,6 +158,17 @@ fn the_comparison_names_each_run_once() {
     for name in ["tanh", "linear", "coupled-tanh"] {
         assert_eq!(texts(&svg).iter().filter(|text| *text == name).count(), 1);
     }
+}
+
+#[test]
+fn a_comparison_that_leaves_time_out_says_so() {
+    let fast = fake::trace(2, 10_000, 30.0);
+    let said = |traces: &[(&str, &Trace)]| {
+        texts(&comparison(traces)).iter().any(|text| text.contains("of 10 s; after that"))
+    };
+    assert!(said(&[("fast", &fast)]));
+    assert!(!said(&[("fast", &fast), ("diverged", &fake::diverged(2, 10_000))]));
+    assert!(!said(&[("slow", &fake::trace(2, 10_000, 0.5))]));
 }
 
 #[test]
