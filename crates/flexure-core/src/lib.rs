@@ -18,4 +18,5 @@
 )]
 
 pub mod linalg;
+pub mod reference;
 pub mod scalar;
