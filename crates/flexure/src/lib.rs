@@ -2,5 +2,6 @@
 
 pub use flexure_core as core;
 
+pub mod reference;
 pub mod summary;
 pub mod trace;
