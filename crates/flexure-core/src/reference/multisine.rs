@@ -9,7 +9,7 @@ use crate::scalar::{Over, Piecewise, Scalar};
 /// The terms are any slice-like collection: an array on a controller, a `Vec` offline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Multisine<C, Terms, const N: usize> {
-    /// Mean position [rad].
+    /// Mean position in rad.
     pub offset: Vector<C, N>,
     /// The sines: an array, a slice or a `Vec` of [`Term`].
     pub terms: Terms,
@@ -18,16 +18,16 @@ pub struct Multisine<C, Terms, const N: usize> {
 /// One sine a joint, without offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Term<C, const N: usize> {
-    /// Amplitude [rad].
+    /// Amplitude in rad.
     pub amplitude: Vector<C, N>,
-    /// Angular frequency [rad/s].
+    /// Angular frequency in rad/s.
     pub frequency: Vector<C, N>,
-    /// Phase at t = 0 [rad].
+    /// Phase at t = 0 in rad.
     pub phase: Vector<C, N>,
 }
 
 impl<C: Scalar, const N: usize> Term<C, N> {
-    /// amplitude_i sin(frequency_i t + phase_i) [rad].
+    /// amplitude_i sin(frequency_i t + phase_i) in rad.
     #[inline]
     pub(super) fn on<T: Over<C>>(&self, t: T) -> Vector<T, N> {
         let angle = |i| t.scale(self.frequency[i]) + T::constant(self.phase[i]);

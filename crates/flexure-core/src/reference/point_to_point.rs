@@ -11,13 +11,13 @@ use crate::scalar::{Over, Piecewise, Scalar};
 /// the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointToPoint<C, const N: usize> {
-    /// Posture before the motion [rad].
+    /// Posture before the motion in rad.
     pub from: Vector<C, N>,
-    /// Posture after the motion [rad].
+    /// Posture after the motion in rad.
     pub to: Vector<C, N>,
-    /// Time of departure [s].
+    /// Time of departure in s.
     pub start: C,
-    /// Time that the motion takes [s]; `duration` > 0 is the caller's duty.
+    /// Time that the motion takes in s; `duration` > 0 is the caller's duty.
     pub duration: C,
     /// How the motion goes in between.
     pub step: Smoothstep,

@@ -7,13 +7,13 @@ use crate::scalar::{Over, Piecewise, Scalar};
 /// offset_i + amplitude_i sin(frequency_i t + phase_i).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sine<C, const N: usize> {
-    /// Mean position [rad].
+    /// Mean position in rad.
     pub offset: Vector<C, N>,
-    /// Amplitude [rad].
+    /// Amplitude in rad.
     pub amplitude: Vector<C, N>,
-    /// Angular frequency [rad/s].
+    /// Angular frequency in rad/s.
     pub frequency: Vector<C, N>,
-    /// Phase at t = 0 [rad].
+    /// Phase at t = 0 in rad.
     pub phase: Vector<C, N>,
 }
 

@@ -17,7 +17,8 @@ use super::septic::{Segment, interpolate};
 /// Before the first and after the last sample it stays where it is. There it is C³: the ends have zero velocity,
 /// acceleration and jerk, and only the fourth derivative jumps (at the end itself it is that of the inside). Samples that
 /// begin or end in full motion get a hard stop inside their first or last interval, and an error that alternates and
-/// falls by the factor 0.54 a sample: join them with a [`SmoothStart`](flexure_core::reference::SmoothStart) or sample the way to rest too.
+/// falls by the factor 0.54 a sample: join them with a [`SmoothStart`](flexure_core::reference::SmoothStart) or sample
+/// the way to rest too.
 ///
 /// Rounding of the samples by δ shows in the fourth derivative as about 100 δ / h⁴. Samples 10 ms apart give 1e-6 rad/s⁴
 /// in full double precision, but 5e3 rad/s⁴ when written with six decimals: sample no finer than the motion asks for,
@@ -55,7 +56,7 @@ pub enum SamplesError {
     TimeNotFinite {
         /// Which sample.
         sample: usize,
-        /// Its time [s].
+        /// Its time in s.
         time: f64,
     },
     /// A position that is not a number, or infinite.
@@ -65,7 +66,7 @@ pub enum SamplesError {
         sample: usize,
         /// Which joint.
         joint: usize,
-        /// Its position [rad].
+        /// Its position in rad.
         position: f64,
     },
     /// Samples out of order, or two at the same time.
@@ -73,9 +74,9 @@ pub enum SamplesError {
     NotIncreasing {
         /// Which sample.
         sample: usize,
-        /// Its time [s].
+        /// Its time in s.
         time: f64,
-        /// The time of the sample before it [s].
+        /// The time of the sample before it in s.
         previous: f64,
     },
     /// Derivatives up to the sixth leave the range of double precision.
@@ -83,13 +84,13 @@ pub enum SamplesError {
     Overflow {
         /// The sample before the shortest interval.
         sample: usize,
-        /// The shortest interval [s].
+        /// The shortest interval in s.
         width: f64,
     },
 }
 
 impl<const N: usize> Samples<N> {
-    /// The trajectory through `samples`, pairs of time [s] and posture [rad]; O(number of samples).
+    /// The trajectory through `samples`, pairs of time in s and posture in rad; O(number of samples).
     ///
     /// # Errors
     /// Fewer than two samples, times that do not increase strictly, anything that is not finite, intervals so
@@ -124,12 +125,12 @@ impl<const N: usize> Samples<N> {
         Ok(Self { end: *end, segments })
     }
 
-    /// Time of the first sample [s].
+    /// Time of the first sample in s.
     pub fn start(&self) -> f64 {
         self.segments.first().map_or(self.end, |segment| segment.start)
     }
 
-    /// Time of the last sample [s].
+    /// Time of the last sample in s.
     pub fn end(&self) -> f64 {
         self.end
     }

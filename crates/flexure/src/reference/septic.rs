@@ -13,16 +13,16 @@ type Knot<T> = [T; 4];
 /// A polynomial of degree 7 in τ = (t − start) / width.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Segment<const N: usize> {
-    /// Its first instant [s].
+    /// Its first instant in s.
     pub(super) start: f64,
-    /// 1 / width [1/s].
+    /// 1 / width in 1/s.
     rate: f64,
-    /// By powers of τ [rad].
+    /// By powers of τ in rad.
     coefficients: [Vector<f64, N>; 8],
 }
 
 impl<const N: usize> Segment<N> {
-    /// Position [rad] at time `t` [s], by Horner's rule.
+    /// Position in rad at time `t` in s, by Horner's rule.
     #[inline]
     pub(super) fn on<T: Over<f64>>(&self, t: T) -> Vector<T, N> {
         let tau = (t - T::constant(self.start)).scale(self.rate);
