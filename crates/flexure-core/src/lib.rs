@@ -22,6 +22,7 @@ pub mod linalg;
 pub mod model;
 pub mod reference;
 pub mod robots;
+pub mod reference;
 pub mod scalar;
 pub mod spatial;
 pub mod virtual_system;

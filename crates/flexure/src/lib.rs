@@ -5,5 +5,6 @@ pub use flexure_core as core;
 pub mod rates;
 pub mod report;
 pub mod sim;
+pub mod reference;
 pub mod summary;
 pub mod trace;

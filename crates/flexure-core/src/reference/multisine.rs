@@ -10,6 +10,7 @@ use crate::scalar::{Over, Piecewise, Scalar};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Multisine<C, Terms, const N: usize> {
     /// Mean position [rad].
+    /// Mean position in rad.
     pub offset: Vector<C, N>,
     /// The sines: an array, a slice or a `Vec` of [`Term`].
     pub terms: Terms,
@@ -23,11 +24,17 @@ pub struct Term<C, const N: usize> {
     /// Angular frequency [rad/s].
     pub frequency: Vector<C, N>,
     /// Phase at t = 0 [rad].
+    /// Amplitude in rad.
+    pub amplitude: Vector<C, N>,
+    /// Angular frequency in rad/s.
+    pub frequency: Vector<C, N>,
+    /// Phase at t = 0 in rad.
     pub phase: Vector<C, N>,
 }
 
 impl<C: Scalar, const N: usize> Term<C, N> {
     /// amplitude_i sin(frequency_i t + phase_i) [rad].
+    /// amplitude_i sin(frequency_i t + phase_i) in rad.
     #[inline]
     pub(super) fn on<T: Over<C>>(&self, t: T) -> Vector<T, N> {
         let angle = |i| t.scale(self.frequency[i]) + T::constant(self.phase[i]);

@@ -18,6 +18,13 @@ pub struct PointToPoint<C, const N: usize> {
     /// Time of departure [s].
     pub start: C,
     /// Time that the motion takes [s]; `duration` > 0 is the caller's duty.
+    /// Posture before the motion in rad.
+    pub from: Vector<C, N>,
+    /// Posture after the motion in rad.
+    pub to: Vector<C, N>,
+    /// Time of departure in s.
+    pub start: C,
+    /// Time that the motion takes in s; `duration` > 0 is the caller's duty.
     pub duration: C,
     /// How the motion goes in between.
     pub step: Smoothstep,

@@ -5,6 +5,7 @@ use crate::linalg::Vector;
 use crate::scalar::{Over, Piecewise, Scalar};
 
 /// The constant posture `self` [rad].
+/// The constant posture `self` in rad.
 impl<C: Scalar, const N: usize> Reference<C, N> for Vector<C, N> {
     #[inline]
     fn on<T: Over<C> + Piecewise>(&self, _t: T) -> Vector<T, N> {

@@ -14,6 +14,13 @@ pub struct Sine<C, const N: usize> {
     /// Angular frequency [rad/s].
     pub frequency: Vector<C, N>,
     /// Phase at t = 0 [rad].
+    /// Mean position in rad.
+    pub offset: Vector<C, N>,
+    /// Amplitude in rad.
+    pub amplitude: Vector<C, N>,
+    /// Angular frequency in rad/s.
+    pub frequency: Vector<C, N>,
+    /// Phase at t = 0 in rad.
     pub phase: Vector<C, N>,
 }
 

@@ -18,6 +18,9 @@ pub struct SmoothStart<C, R, const N: usize> {
     /// Posture at rest up to t = 0 [rad].
     pub from: Vector<C, N>,
     /// Time T that the transition takes [s]; `duration` > 0 is the caller's duty.
+    /// Posture at rest up to t = 0 in rad.
+    pub from: Vector<C, N>,
+    /// Time T that the transition takes in s; `duration` > 0 is the caller's duty.
     pub duration: C,
     /// The reference r to join; it must be finite at every t, before the start too.
     pub then: R,
