@@ -22,7 +22,6 @@ pub mod linalg;
 pub mod model;
 pub mod reference;
 pub mod robots;
-pub mod reference;
 pub mod scalar;
 pub mod spatial;
 pub mod virtual_system;

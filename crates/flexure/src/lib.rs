@@ -3,8 +3,8 @@
 pub use flexure_core as core;
 
 pub mod rates;
+pub mod reference;
 pub mod report;
 pub mod sim;
-pub mod reference;
 pub mod summary;
 pub mod trace;

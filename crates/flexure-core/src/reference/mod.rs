@@ -1,6 +1,5 @@
 //! Reference trajectories: functions of time, written once, whose derivatives come from the number they run on.
 //!
-//! A trajectory is one function t ↦ q_d(t) [rad], written over a number type. On `f64` it is the position; on a
 //! A trajectory is one function t ↦ q_d(t) in rad, written over a number type. On `f64` it is the position; on a
 //! [`Jet`] the position with its exact time derivatives, which is what a control law asks for; on a
 //! [`Dual`](crate::scalar::Dual) a sensitivity; on an interval of time an enclosure of every position taken in it.
@@ -43,14 +42,12 @@ use crate::scalar::{Jet, Over, Piecewise, Scalar};
 /// assert_eq!([0, 1, 2, 3].map(|k| jet.derivative(k)), [0.0, 1.0, 0.0, -1.0]);
 /// ```
 pub trait Reference<C: Scalar, const N: usize> {
-    /// Position [rad] at time `t` [s].
     /// Position in rad at time `t` in s.
     ///
     /// Written over every number that can choose between pieces: where two pieces meet, a derivative that they do not
     /// share is that of one of them, and the documentation of the reference says which.
     fn on<T: Over<C> + Piecewise>(&self, t: T) -> Vector<T, N>;
 
-    /// Position [rad] and its time derivatives [rad/sᵏ] at time `t` [s], as jets of `K` coefficients.
     /// Position in rad and its time derivatives in rad/sᵏ at time `t` in s, as jets of `K` coefficients.
     ///
     /// This is [`on`](Self::on) evaluated at the time variable. Override it only to find the same numbers faster.

@@ -9,7 +9,6 @@ use crate::scalar::{Over, Piecewise, Scalar};
 /// The terms are any slice-like collection: an array on a controller, a `Vec` offline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Multisine<C, Terms, const N: usize> {
-    /// Mean position [rad].
     /// Mean position in rad.
     pub offset: Vector<C, N>,
     /// The sines: an array, a slice or a `Vec` of [`Term`].
@@ -19,11 +18,6 @@ pub struct Multisine<C, Terms, const N: usize> {
 /// One sine a joint, without offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Term<C, const N: usize> {
-    /// Amplitude [rad].
-    pub amplitude: Vector<C, N>,
-    /// Angular frequency [rad/s].
-    pub frequency: Vector<C, N>,
-    /// Phase at t = 0 [rad].
     /// Amplitude in rad.
     pub amplitude: Vector<C, N>,
     /// Angular frequency in rad/s.
@@ -33,7 +27,6 @@ pub struct Term<C, const N: usize> {
 }
 
 impl<C: Scalar, const N: usize> Term<C, N> {
-    /// amplitude_i sin(frequency_i t + phase_i) [rad].
     /// amplitude_i sin(frequency_i t + phase_i) in rad.
     #[inline]
     pub(super) fn on<T: Over<C>>(&self, t: T) -> Vector<T, N> {

@@ -11,13 +11,6 @@ use crate::scalar::{Over, Piecewise, Scalar};
 /// the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointToPoint<C, const N: usize> {
-    /// Posture before the motion [rad].
-    pub from: Vector<C, N>,
-    /// Posture after the motion [rad].
-    pub to: Vector<C, N>,
-    /// Time of departure [s].
-    pub start: C,
-    /// Time that the motion takes [s]; `duration` > 0 is the caller's duty.
     /// Posture before the motion in rad.
     pub from: Vector<C, N>,
     /// Posture after the motion in rad.

@@ -4,7 +4,6 @@ use super::Reference;
 use crate::linalg::Vector;
 use crate::scalar::{Over, Piecewise, Scalar};
 
-/// The constant posture `self` [rad].
 /// The constant posture `self` in rad.
 impl<C: Scalar, const N: usize> Reference<C, N> for Vector<C, N> {
     #[inline]

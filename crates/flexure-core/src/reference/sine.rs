@@ -7,13 +7,6 @@ use crate::scalar::{Over, Piecewise, Scalar};
 /// offset_i + amplitude_i sin(frequency_i t + phase_i).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sine<C, const N: usize> {
-    /// Mean position [rad].
-    pub offset: Vector<C, N>,
-    /// Amplitude [rad].
-    pub amplitude: Vector<C, N>,
-    /// Angular frequency [rad/s].
-    pub frequency: Vector<C, N>,
-    /// Phase at t = 0 [rad].
     /// Mean position in rad.
     pub offset: Vector<C, N>,
     /// Amplitude in rad.

@@ -15,9 +15,6 @@ use crate::scalar::{Over, Piecewise, Scalar};
 /// 15120 (r(T) − q_0) / T⁵; there it is that of the transition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmoothStart<C, R, const N: usize> {
-    /// Posture at rest up to t = 0 [rad].
-    pub from: Vector<C, N>,
-    /// Time T that the transition takes [s]; `duration` > 0 is the caller's duty.
     /// Posture at rest up to t = 0 in rad.
     pub from: Vector<C, N>,
     /// Time T that the transition takes in s; `duration` > 0 is the caller's duty.
