@@ -1,7 +1,15 @@
-//! Where names become types: robots, shaping functions and references. One new file plus one line adds a member.
+//! Where names become types: robots, shaping functions, references and controllers. One new file plus one line adds a
+//! member.
 
+mod controller;
+mod reference;
+mod robot;
 mod shaping;
 
+pub use controller::{CONTROLLERS, Law, law};
+pub use reference::{AnyReference, REFERENCES};
+pub(crate) use robot::vector;
+pub use robot::{MAX_JOINTS, RobotVisitor, TooManyJoints, with_robot};
 pub use shaping::{AnyShaping, SHAPING};
 
 /// A registered name and what it stands for.

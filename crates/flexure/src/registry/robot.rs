@@ -3,7 +3,6 @@
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links};
 use flexure_core::robots::{Body, JointKind, Pendulum, PlanarTwoLink, Tree};
-use thiserror::Error;
 
 use crate::io;
 
@@ -15,29 +14,19 @@ pub trait RobotVisitor {
     fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) -> Self::Output;
 }
 
-/// More joints than this program was built for.
-#[derive(Clone, Debug, Error)]
-#[error("robot {robot} has {joints} moving joints; this program is built for at most {MAX_JOINTS}")]
-pub struct TooManyJoints {
-    /// Name of the robot.
-    pub robot: String,
-    /// Its moving joints.
-    pub joints: usize,
-}
-
 /// Largest joint count of a tree. To raise it, add the numbers to the list in [`with_robot`] and build again.
 pub const MAX_JOINTS: usize = 8;
 
 /// Calls `visitor` with the robot that `data` describes.
 ///
 /// # Errors
-/// [`TooManyJoints`] for a tree with more than [`MAX_JOINTS`] moving joints.
-pub fn with_robot<V: RobotVisitor>(data: &io::Robot, visitor: V) -> Result<V::Output, TooManyJoints> {
+/// For a tree with more than [`MAX_JOINTS`] moving joints.
+pub fn with_robot<V: RobotVisitor>(data: &io::Robot, visitor: V) -> Result<V::Output, io::Problems> {
     macro_rules! tree {
         ($bodies:expr, $($n:literal)*) => {
             match $bodies.len() {
                 $($n => visitor.visit(robot(data, tree::<$n>($bodies, data.gravity))),)*
-                joints => return Err(TooManyJoints { robot: data.name.clone(), joints }),
+                joints => return Err(too_many(data, joints)),
             }
         };
     }
@@ -52,6 +41,13 @@ pub fn with_robot<V: RobotVisitor>(data: &io::Robot, visitor: V) -> Result<V::Ou
         }
         io::Links::Tree(bodies) => tree!(bodies, 1 2 3 4 5 6 7 8),
     })
+}
+
+fn too_many(data: &io::Robot, joints: usize) -> io::Problems {
+    let message =
+        format!("robot {} has {joints} moving joints; this program is built for at most {MAX_JOINTS}", data.name);
+    let help = "lock joints, or add the number to the list in registry/robot.rs and build again";
+    data.places.problem("links", "joints", message, help).into()
 }
 
 fn robot<L, const N: usize>(data: &io::Robot, links: L) -> Fjr<f64, L, N> {

@@ -1,6 +1,5 @@
 //! A scenario as a simulated run: from its file to trace and summary.
 
-mod law;
 mod recorder;
 
 use std::time::Instant as Clock;
@@ -10,14 +9,13 @@ use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion};
 use flexure_core::reference::Reference;
 
-pub use law::{Law, law, reference};
 pub use recorder::SETTLED;
 use recorder::Recorder;
 
-use crate::io::Scenario;
+use crate::io::{self, Problems, Scenario};
 use crate::rates::BlockRates;
-use crate::registry::{RobotVisitor, TooManyJoints, vector, with_robot};
-use crate::sim::{ClosedLoop, Divergence, Instant};
+use crate::registry::{AnyReference, Law, RobotVisitor, law, vector, with_robot};
+use crate::sim::{ClosedLoop, Divergence, Hold, Instant};
 use crate::summary::Summary;
 use crate::trace::Trace;
 
@@ -38,9 +36,9 @@ pub struct Run {
 /// Simulates a scenario. `progress` is told the fraction done, now and then.
 ///
 /// # Errors
-/// [`TooManyJoints`] if the robot has more joints than this program was built for.
-pub fn run(scenario: &Scenario, progress: &(dyn Fn(f64) + Sync)) -> Result<Run, TooManyJoints> {
-    with_robot(&scenario.robot, Simulate { scenario, progress })
+/// If the robot has more joints than this program was built for, or the samples of the reference make no path.
+pub fn run(scenario: &Scenario, progress: &(dyn Fn(f64) + Sync)) -> Result<Run, Problems> {
+    with_robot(&scenario.robot, Simulate { scenario, progress })?
 }
 
 struct Simulate<'a> {
@@ -49,17 +47,21 @@ struct Simulate<'a> {
 }
 
 impl RobotVisitor for Simulate<'_> {
-    type Output = Run;
+    type Output = Result<Run, Problems>;
 
-    fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) -> Run {
+    fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) -> Self::Output {
         let Self { scenario, progress } = self;
+        let io::Controller::Vcbc { phi, .. } = &scenario.controller;
         let started = Clock::now();
         let law: Law<N> = law(&scenario.controller);
-        let reference = reference::<N>(scenario);
+        let reference = AnyReference::<N>::new(scenario)?;
         let settings = ClosedLoop {
             duration: scenario.duration,
             period: scenario.control_period,
-            hold: scenario.hold,
+            hold: match scenario.hold {
+                io::Hold::ZeroOrder => Hold::ZeroOrder,
+                io::Hold::Continuous => Hold::Continuous,
+            },
             tolerance: TOLERANCE,
         };
         let command =
@@ -74,8 +76,8 @@ impl RobotVisitor for Simulate<'_> {
         let (trace, figures) = recorder.finish();
         let summary = Summary {
             name: scenario.name.clone(),
-            controller: "vcbc".to_owned(),
-            phi: scenario.controller.phi.name().to_owned(),
+            controller: scenario.controller.kind().to_owned(),
+            phi: phi.name().to_owned(),
             max_abs_e_l: figures.max_abs_e_l,
             rms_e_l: figures.rms_e_l(),
             final_abs_e_l: figures.final_abs_e_l,
@@ -89,7 +91,7 @@ impl RobotVisitor for Simulate<'_> {
             steps: outcome.steps,
             wall_seconds: started.elapsed().as_secs_f64(),
         };
-        Run { summary, trace, divergence: outcome.divergence }
+        Ok(Run { summary, trace, divergence: outcome.divergence })
     }
 }
 
