@@ -2,5 +2,6 @@
 
 pub use flexure_core as core;
 
+pub mod io;
 pub mod summary;
 pub mod trace;
