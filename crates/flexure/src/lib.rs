@@ -6,5 +6,6 @@ pub mod rates;
 pub mod reference;
 pub mod report;
 pub mod sim;
+pub mod io;
 pub mod summary;
 pub mod trace;
