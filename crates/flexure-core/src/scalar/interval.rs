@@ -258,7 +258,7 @@ impl Scalar for Interval {
     fn tanh(self) -> Self {
         self.increasing(elementary::tanh)
     }
-    /// `ln cosh` is even and increases in `|x|`; 7 ulp wide at worst on a point.
+    /// `ln cosh` is even and increases in `|x|`; at most 16 ulp wide on a point, below 1.
     #[inline]
     fn ln_cosh(self) -> Self {
         Self { lo: self.mignitude(), hi: self.magnitude() }.increasing(elementary::ln_cosh)

@@ -42,21 +42,21 @@ pub(super) fn product(a: f64, b: f64) -> Interval {
     underflow(p).unwrap_or_else(|| around(p, product_error(a, b, p)))
 }
 
-/// Encloses `a / b` for `b ≠ 0`; anything finite over an unbounded end is 0 in the limit.
+/// Encloses `a / b` for `b > 0`; anything finite over an unbounded end is 0 in the limit.
 #[inline]
 pub(super) fn quotient(a: f64, b: f64) -> Interval {
-    if a == 0.0 || (b.is_infinite() && a.is_finite()) {
+    if a == 0.0 || (b == f64::INFINITY && a.is_finite()) {
         return Interval { lo: 0.0, hi: 0.0 };
     }
     let q = a / b;
-    if b.abs() == 1.0 {
+    if b == 1.0 {
         return Interval { lo: q, hi: q };
     }
-    // The residual a − q b has the sign of the error times that of b. With q b = p + e exactly, and p within a few steps
+    // The residual a − q b has the sign of the error. With q b = p + e exactly, and p within a few steps
     // of a, a − p is exact (Sterbenz) and the last rounding keeps the sign.
     let p = q * b;
     let residual = (a - p) - if is_normal(q) { product_error(q, b, p) } else { f64::NAN };
-    underflow(q).unwrap_or_else(|| around(q, residual * b.signum()))
+    underflow(q).unwrap_or_else(|| around(q, residual))
 }
 
 /// Encloses `√a` for `a ≥ 0`: the root is too small exactly where `a − r²` is positive, found as in [`quotient`].
