@@ -49,7 +49,9 @@ fn visit(table: &Table<'_>, prefix: &str, places: &Places, assumed: &mut Vec<Ass
 fn named_by(key: &str, field: &Field<'_>, places: &Places) -> Option<(String, String)> {
     let paths = || {
         let keys = places.keys().filter(|(path, _)| !path.starts_with("sources"));
-        keys.map(|(path, text)| (if key.contains('[') { path.to_owned() } else { without_indices(path) }, text))
+        keys.map(|(path, text)| {
+            (if key.contains('[') { path.to_owned() } else { without_indices(path) }, text)
+        })
     };
     let ending = format!(".{key}");
     let matches: Vec<_> = paths().filter(|(path, _)| path == key || path.ends_with(&ending)).collect();

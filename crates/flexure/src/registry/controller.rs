@@ -7,8 +7,10 @@ use super::{AnyShaping, Entry};
 use crate::io::{Controller, Phi, SideGains};
 
 /// The registered controllers.
-pub const CONTROLLERS: &[Entry] =
-    &[Entry { name: "vcbc", summary: "virtual-contraction law of flexible-joint robots: (φ, Π, K_d) per side" }];
+pub const CONTROLLERS: &[Entry] = &[Entry {
+    name: "vcbc",
+    summary: "virtual-contraction law of flexible-joint robots: (φ, Π, K_d) per side",
+}];
 
 /// A law over the registered shaping functions.
 pub type Law<const N: usize> = Vcbc<f64, AnyShaping<N>, AnyShaping<N>, N>;

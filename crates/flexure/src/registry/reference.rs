@@ -64,7 +64,12 @@ impl<const N: usize> AnyReference<N> {
                 let samples: Vec<_> = t.iter().copied().zip(q.iter().map(|q| vector(q))).collect();
                 Self::Samples(Samples::new(&samples).map_err(|error| {
                     let help = "the path must be a smooth motion: check the numbers of that sample";
-                    io::Problems::from(scenario.places.problem("reference.file", "samples", error.to_string(), help))
+                    io::Problems::from(scenario.places.problem(
+                        "reference.file",
+                        "samples",
+                        error.to_string(),
+                        help,
+                    ))
                 })?)
             }
         };

@@ -37,15 +37,18 @@ pub fn with_robot<V: RobotVisitor>(data: &io::Robot, visitor: V) -> Result<V::Ou
         io::Links::Pendulum { mass, com, inertia } => {
             let [x, y, z] = data.gravity;
             let weight_moment = mass * com * (x * x + y * y + z * z).sqrt();
-            visitor.visit::<_, 1>(robot(data, Pendulum { inertia: inertia + mass * com * com, weight_moment }))
+            visitor
+                .visit::<_, 1>(robot(data, Pendulum { inertia: inertia + mass * com * com, weight_moment }))
         }
         io::Links::Tree(bodies) => tree!(bodies, 1 2 3 4 5 6 7 8),
     })
 }
 
 fn too_many(data: &io::Robot, joints: usize) -> io::Problems {
-    let message =
-        format!("robot {} has {joints} moving joints; this program is built for at most {MAX_JOINTS}", data.name);
+    let message = format!(
+        "robot {} has {joints} moving joints; this program is built for at most {MAX_JOINTS}",
+        data.name
+    );
     let help = "lock joints, or add the number to the list in registry/robot.rs and build again";
     data.places.problem("links", "joints", message, help).into()
 }

@@ -8,9 +8,18 @@ use super::Entry;
 
 /// The registered shaping functions.
 pub const SHAPING: &[Entry] = &[
-    Entry { name: "tanh", summary: "φ_1 = Λ tanh(e): bounded speed, semi-global rate, keeps the variational structure" },
-    Entry { name: "linear", summary: "φ_2 = Λ e: one rate everywhere, keeps the pH-like structure when Π = Λ" },
-    Entry { name: "coupled-tanh", summary: "φ_3 = (1 + κ) e + coupling by tanh: contracts in μ_1 at min κ, whatever Λ" },
+    Entry {
+        name: "tanh",
+        summary: "φ_1 = Λ tanh(e): bounded speed, semi-global rate, keeps the variational structure",
+    },
+    Entry {
+        name: "linear",
+        summary: "φ_2 = Λ e: one rate everywhere, keeps the pH-like structure when Π = Λ",
+    },
+    Entry {
+        name: "coupled-tanh",
+        summary: "φ_3 = (1 + κ) e + coupling by tanh: contracts in μ_1 at min κ, whatever Λ",
+    },
 ];
 
 /// Any registered shaping function for `N` joints.

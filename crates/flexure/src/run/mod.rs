@@ -5,12 +5,11 @@ mod recorder;
 use std::time::Instant as Clock;
 
 use flexure_core::control::Input;
-use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion};
 use flexure_core::reference::Reference;
 
-pub use recorder::SETTLED;
 use recorder::Recorder;
+pub use recorder::SETTLED;
 
 use crate::io::{self, Problems, Scenario};
 use crate::rates::BlockRates;
@@ -64,8 +63,7 @@ impl RobotVisitor for Simulate<'_> {
             },
             tolerance: TOLERANCE,
         };
-        let command =
-            |t: f64, x: &Motion<f64, N>| law.command(&robot, x, &reference.at(t), &Input::ZERO);
+        let command = |t: f64, x: &Motion<f64, N>| law.command(&robot, x, &reference.at(t), &Input::ZERO);
         let mut recorder = Recorder::new(scenario.robot.torque_limit.as_deref().map(vector));
         let mut observe = |instant: &Instant<'_, N>| {
             let rates = BlockRates::at(&robot, &law, &instant.motion.q_l, instant.command);

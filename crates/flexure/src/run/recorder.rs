@@ -64,17 +64,13 @@ const SIGNALS: [(&str, &str); 11] = [
     ("u_l", "N m"),
     ("u_m", "N m"),
 ];
-const SCALARS: [(&str, &str); 5] = [
-    ("hamiltonian", "J"),
-    ("supplied", "J"),
-    ("dissipated", "J"),
-    ("energy_residual", "J"),
-    ("rate", "1/s"),
-];
+const SCALARS: [(&str, &str); 5] =
+    [("hamiltonian", "J"), ("supplied", "J"), ("dissipated", "J"), ("energy_residual", "J"), ("rate", "1/s")];
 
 impl<const N: usize> Recorder<N> {
     pub(super) fn new(torque_limit: Option<Vector<f64, N>>) -> Self {
-        let joints = |(name, unit): (&str, &'static str)| (1..=N).map(move |k| (format!("{name}{k}"), unit)).collect();
+        let joints =
+            |(name, unit): (&str, &'static str)| (1..=N).map(move |k| (format!("{name}{k}"), unit)).collect();
         let vectors: Vec<Vec<(String, &'static str)>> = SIGNALS.into_iter().map(joints).collect();
         let columns = std::iter::once(("t".to_owned(), "s"))
             .chain(vectors.into_iter().flatten())
