@@ -1,2 +1,29 @@
-//! The command line of Flexure.
-fn main() {}
+//! The command `flexure`: arguments, printing, exit codes, progress. Everything else is in the library.
+
+mod args;
+mod commands;
+mod failure;
+mod progress;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Cli, Command};
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let json = cli.json;
+    let done = match cli.command {
+        Command::Reproduce(output) => commands::reproduce(&output.out, json),
+        Command::Run { scenario, output } => commands::run(&scenario, &output.out, json),
+        Command::Eval { scenario, states } => commands::eval(&scenario, &states, json),
+        Command::Model { robot, states } => commands::model(&robot, &states, json),
+        Command::Check { files } => commands::check(&files, json),
+        Command::List { kind } => commands::list(kind, json),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}

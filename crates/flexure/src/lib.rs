@@ -2,6 +2,8 @@
 
 pub use flexure_core as core;
 
+pub mod evaluate;
+pub mod experiment;
 pub mod io;
 pub mod rates;
 pub mod reference;

@@ -62,7 +62,7 @@ pub(super) fn robot(path_or_name: &str, base: &Base) -> Result<Robot, Problems> 
     robot::read(&source::read(&path)?)
 }
 
-fn is_name(text: &str) -> bool {
+pub(super) fn is_name(text: &str) -> bool {
     !text.contains(['/', '\\', '.'])
 }
 

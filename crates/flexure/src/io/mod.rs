@@ -16,6 +16,7 @@
 //! # Ok::<(), flexure::io::Problems>(())
 //! ```
 
+mod any;
 mod atomic;
 mod builtin;
 mod controller;
@@ -24,6 +25,7 @@ mod document;
 mod field;
 mod initial;
 mod links;
+mod outputs;
 mod provenance;
 mod quantity;
 mod reference;
@@ -35,6 +37,7 @@ mod states;
 mod suggest;
 mod table;
 
+pub use any::{Checked, check};
 pub use atomic::{WriteError, write_atomic};
 pub use builtin::{ROBOTS, SCENARIOS, load_robot, load_scenario};
 pub use controller::{Controller, Phi, SideGains};
@@ -42,6 +45,7 @@ pub use diagnostic::{Problem, Problems};
 pub use document::Places;
 pub use initial::Initial;
 pub use links::{Body, JointKind, Links};
+pub use outputs::{write_experiment, write_report, write_trace};
 pub use provenance::Assumption;
 pub use reference::{Profile, Reference, Term};
 pub use robot::{Robot, robot_from_text};

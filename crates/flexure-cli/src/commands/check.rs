@@ -1,0 +1,111 @@
+//! `flexure check`: are these files good?
+
+use flexure::io::{self, Checked, Problem, Problems};
+use miette::Report;
+use serde::Serialize;
+
+use super::print;
+use crate::failure::{Failure, warn};
+
+/// What is said of a file.
+#[derive(Serialize)]
+struct Verdict {
+    file: String,
+    ok: bool,
+    #[serde(skip_serializing_if = "Option::is_none", flatten)]
+    content: Option<Content>,
+    warnings: Vec<Complaint>,
+    errors: Vec<Complaint>,
+}
+
+/// What is in a good file.
+#[derive(Serialize)]
+struct Content {
+    kind: &'static str,
+    name: String,
+    joints: usize,
+    assumptions: usize,
+}
+
+#[derive(Serialize)]
+struct Complaint {
+    message: String,
+    hint: String,
+    file: Option<String>,
+    line: Option<usize>,
+    column: Option<usize>,
+}
+
+pub fn check(files: &[String], json: bool) -> Result<(), Failure> {
+    let verdicts: Vec<_> = files.iter().map(|file| verdict(file, json)).collect();
+    if json {
+        print::json(&verdicts)?;
+    } else {
+        for verdict in &verdicts {
+            if let Some(Content { kind, name, joints, assumptions }) = &verdict.content {
+                print::line(&format!(
+                    "{}: {kind} {name}, {}, {}, {}",
+                    verdict.file,
+                    counted(*joints, "joint"),
+                    counted(*assumptions, "assumption"),
+                    counted(verdict.warnings.len(), "warning"),
+                ))?;
+            }
+        }
+    }
+    match verdicts.iter().filter(|verdict| !verdict.ok).count() {
+        0 => Ok(()),
+        bad => Err(Failure::Bad(format!("{bad} of {} cannot be used", counted(files.len(), "file")))),
+    }
+}
+
+fn counted(n: usize, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
+}
+
+fn verdict(file: &str, json: bool) -> Verdict {
+    let (content, complaints): (_, Vec<Problem>) = match io::check(file) {
+        Ok(Checked::Robot(robot)) => {
+            let (joints, assumptions) = (robot.joints(), robot.assumptions().len());
+            (Some(Content { kind: "robot", name: robot.name, joints, assumptions }), robot.warnings)
+        }
+        Ok(Checked::Scenario(scenario)) => {
+            let (robot, name) = (scenario.robot, scenario.name);
+            let assumptions = robot.assumptions().len() + scenario.assumptions.len();
+            let content = Content { kind: "scenario", name, joints: robot.joints(), assumptions };
+            (Some(content), robot.warnings.into_iter().chain(scenario.warnings).collect())
+        }
+        Err(problems) => return bad(file, &problems, json),
+    };
+    if !json {
+        warn(&complaints);
+    }
+    let warnings = complaints.iter().map(complaint).collect();
+    Verdict { file: file.to_owned(), ok: true, content, warnings, errors: Vec::new() }
+}
+
+fn bad(file: &str, problems: &Problems, json: bool) -> Verdict {
+    if !json {
+        eprintln!("{:?}", Report::new(problems.clone()));
+    }
+    let (warnings, errors): (Vec<_>, Vec<_>) = problems.iter().partition(|problem| problem.is_warning());
+    let complaints = |problems: Vec<&Problem>| problems.into_iter().map(complaint).collect();
+    Verdict {
+        file: file.to_owned(),
+        ok: false,
+        content: None,
+        warnings: complaints(warnings),
+        errors: complaints(errors),
+    }
+}
+
+fn complaint(problem: &Problem) -> Complaint {
+    let (line, column) = problem.line_column().unzip();
+    Complaint {
+        message: problem.to_string(),
+        hint: problem.hint().to_owned(),
+        file: problem.file().map(str::to_owned),
+        line,
+        column,
+    }
+}

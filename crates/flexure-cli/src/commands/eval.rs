@@ -1,0 +1,16 @@
+//! `flexure eval`: the law at given states.
+
+use std::path::Path;
+
+use flexure::evaluate::evaluate_law;
+use flexure::io::load_scenario;
+
+use super::print;
+use crate::failure::{Failure, warn};
+
+pub fn eval(scenario: &str, states: &Path, json: bool) -> Result<(), Failure> {
+    let scenario = load_scenario(scenario)?;
+    warn(scenario.robot.warnings.iter().chain(&scenario.warnings));
+    let states = print::states(states, scenario.robot.joints())?;
+    print::rows(&evaluate_law(&scenario, &states)?, json)
+}

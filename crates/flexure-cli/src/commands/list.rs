@@ -1,0 +1,53 @@
+//! `flexure list`: what is registered.
+
+use std::collections::BTreeMap;
+
+use flexure::io::{ROBOTS, SCENARIOS};
+use flexure::registry::{CONTROLLERS, Entry, REFERENCES, SHAPING};
+
+use super::print;
+use crate::args::Kind;
+use crate::failure::Failure;
+
+pub fn list(kind: Option<Kind>, json: bool) -> Result<(), Failure> {
+    let sections: Vec<(&str, Vec<(&str, String)>)> = [
+        (Kind::Robots, "robots", files(ROBOTS)),
+        (Kind::Scenarios, "scenarios", files(SCENARIOS)),
+        (Kind::Controllers, "controllers", entries(CONTROLLERS)),
+        (Kind::Shaping, "shaping", entries(SHAPING)),
+        (Kind::References, "references", entries(REFERENCES)),
+    ]
+    .into_iter()
+    .filter(|(own, ..)| kind.is_none_or(|kind| kind == *own))
+    .map(|(_, name, members)| (name, members))
+    .collect();
+    if json {
+        let document: BTreeMap<_, BTreeMap<_, _>> =
+            sections.into_iter().map(|(name, members)| (name, members.into_iter().collect())).collect();
+        return print::json(&document);
+    }
+    for (name, members) in sections {
+        print::line(name)?;
+        for (member, summary) in members {
+            print::line(&format!("  {member:<30} {summary}"))?;
+        }
+    }
+    Ok(())
+}
+
+fn entries(registry: &[Entry]) -> Vec<(&'static str, String)> {
+    registry.iter().map(|entry| (entry.name, entry.summary.to_owned())).collect()
+}
+
+/// Built-in files, summarised by the first sentence of their leading comment.
+fn files(registry: &[(&'static str, &'static str)]) -> Vec<(&'static str, String)> {
+    registry
+        .iter()
+        .map(|&(name, text)| {
+            let comment: Vec<_> =
+                text.lines().map_while(|line| line.strip_prefix('#')).map(str::trim).collect();
+            let comment = comment.join(" ");
+            (name, comment.split(". ").next().unwrap_or_default().trim_end_matches('.').to_owned())
+        })
+        .collect()
+}

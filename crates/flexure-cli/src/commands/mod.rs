@@ -1,0 +1,16 @@
+//! The commands, a file each.
+
+mod check;
+mod eval;
+mod list;
+mod model;
+mod print;
+mod reproduce;
+mod run;
+
+pub use check::check;
+pub use eval::eval;
+pub use list::list;
+pub use model::model;
+pub use reproduce::reproduce;
+pub use run::run;

@@ -1,0 +1,63 @@
+//! `flexure run`: one closed loop.
+
+use std::path::{Path, PathBuf};
+
+use flexure::experiment::Experiment;
+use flexure::io::{load_scenario, write_experiment};
+use flexure::report::summary_table;
+use flexure::summary::Summary;
+use serde::Serialize;
+
+use super::print;
+use crate::failure::{Failure, warn};
+use crate::progress::Progress;
+
+/// A summary and where the files are.
+#[derive(Serialize)]
+pub struct Outcome<'a> {
+    #[serde(flatten)]
+    pub summary: &'a Summary,
+    /// Time of divergence [s]; none if the loop ran to the end.
+    pub diverged_at: Option<f64>,
+    pub files: Vec<PathBuf>,
+}
+
+impl<'a> Outcome<'a> {
+    pub fn new(experiment: &'a Experiment, files: Vec<PathBuf>) -> Self {
+        let diverged_at = experiment.run.divergence.map(|divergence| divergence.time);
+        Self { summary: &experiment.run.summary, diverged_at, files }
+    }
+}
+
+pub fn run(scenario: &str, out: &Path, json: bool) -> Result<(), Failure> {
+    let scenario = load_scenario(scenario)?;
+    warn(scenario.robot.warnings.iter().chain(&scenario.warnings));
+    let experiment = {
+        let progress = Progress::new();
+        let bar = progress.bar(&scenario.name);
+        Experiment::new(scenario, &|fraction| bar.set(fraction))?
+    };
+    let files = write_experiment(out, &experiment)?;
+    if json {
+        print::json(&Outcome::new(&experiment, files))?;
+    } else {
+        print::line(&summary_table(std::slice::from_ref(&experiment.run.summary)))?;
+        for file in &files {
+            print::line(&format!("wrote {}", file.display()))?;
+        }
+    }
+    diverged(&experiment).map_or(Ok(()), |text| Err(Failure::No(text)))
+}
+
+/// What to say of a loop that diverged.
+pub fn diverged(experiment: &Experiment) -> Option<String> {
+    experiment.run.divergence.map(|divergence| {
+        let scenario = &experiment.scenario;
+        format!(
+            "{}: the loop diverged at t = {:.4} s (positions or speeds up to {:.3e} rad, rad/s at the last control \
+             instant)\n  hint: shorten control_period ({} s), lower the gains, or join the reference smoothly with \
+             [reference.smooth_start]",
+            scenario.name, divergence.time, divergence.magnitude, scenario.control_period
+        )
+    })
+}

@@ -1,0 +1,119 @@
+//! A scenario with everything that comes out of it, and the experiments of the paper.
+
+use rayon::prelude::*;
+
+use crate::io::{Controller, Hold, Problems, Scenario, load_scenario};
+use crate::report::{Assumption, FigureOptions, Report, RunReport, comparison, four_panel};
+use crate::run::{Run, run};
+
+/// The experiments of the paper: each shaping function from rest off the reference, and from a smooth start.
+pub const REPRODUCED: [&str; 6] = [
+    "two-link-tanh",
+    "two-link-linear",
+    "two-link-coupled-tanh",
+    "two-link-tanh-smooth",
+    "two-link-linear-smooth",
+    "two-link-coupled-tanh-smooth",
+];
+
+/// A scenario that was run.
+#[derive(Clone, Debug)]
+pub struct Experiment {
+    /// What was run.
+    pub scenario: Scenario,
+    /// What came of it.
+    pub run: Run,
+    /// The four-panel figure, as SVG.
+    pub figure: String,
+}
+
+impl Experiment {
+    /// Runs `scenario`; `progress` is told the fraction done.
+    ///
+    /// # Errors
+    /// If the robot has too many joints or the reference is no path.
+    pub fn new(scenario: Scenario, progress: &(dyn Fn(f64) + Sync)) -> Result<Self, Problems> {
+        let run = run(&scenario, progress)?;
+        let options = FigureOptions { title: scenario.name.clone(), subtitle: describe(&scenario) };
+        let figure = four_panel(&run.trace, &options);
+        Ok(Self { scenario, run, figure })
+    }
+}
+
+/// One line about a scenario.
+fn describe(scenario: &Scenario) -> String {
+    let Controller::Vcbc { phi, .. } = &scenario.controller;
+    let start = match scenario.smooth_start {
+        Some(duration) => format!("smooth start over {duration} s"),
+        None => "no smooth start".to_owned(),
+    };
+    let hold = match scenario.hold {
+        Hold::ZeroOrder => format!("torque held for {} ms", 1e3 * scenario.control_period),
+        Hold::Continuous => "continuous control".to_owned(),
+    };
+    format!("{} under v-CBC with φ = {}; {start}; {hold}", scenario.robot.name, phi.name())
+}
+
+/// Runs the experiments of the paper, on all cores. `progress` is told the number of the experiment and the fraction of
+/// it that is done.
+///
+/// # Errors
+/// Only if a built-in file is broken.
+pub fn reproduce(progress: &(dyn Fn(usize, f64) + Sync)) -> Result<Vec<Experiment>, Problems> {
+    REPRODUCED
+        .par_iter()
+        .enumerate()
+        .map(|(i, name)| Experiment::new(load_scenario(name)?, &|fraction| progress(i, fraction)))
+        .collect()
+}
+
+/// The report of some experiments.
+pub fn report(experiments: &[Experiment]) -> Report {
+    let traces: Vec<_> = experiments.iter().map(|e| (e.scenario.name.as_str(), &e.run.trace)).collect();
+    Report {
+        title: "Virtual-contraction control of a flexible-joint robot".to_owned(),
+        introduction: INTRODUCTION.to_owned(),
+        runs: experiments.iter().map(run_report).collect(),
+        comparison_svg: Some(comparison(&traces)),
+        assumptions: assumptions(experiments),
+        provenance: vec![
+            format!("flexure {}", env!("CARGO_PKG_VERSION")),
+            "No random numbers: the same build writes the same page, byte for byte, on any number of threads."
+                .to_owned(),
+        ],
+    }
+}
+
+const INTRODUCTION: &str = "The experiments of Reyes-Báez, van der Schaft, Jayawardhana and Pan, “A family of virtual \
+    contraction based controllers for tracking of flexible-joints port-Hamiltonian robots: theory and experiments”, \
+    in simulation: a planar two-link arm with elastic joints follows sin t on both joints under the three shaping \
+    functions of the paper. Each runs twice: from rest at zero, where the reference already moves at 1 rad/s, and \
+    with a reference that joins the sine smoothly from rest.";
+
+fn run_report(experiment: &Experiment) -> RunReport {
+    RunReport {
+        summary: experiment.run.summary.clone(),
+        figure_svg: experiment.figure.clone(),
+        description: describe(&experiment.scenario),
+    }
+}
+
+/// Every assumption of every file, once.
+fn assumptions(experiments: &[Experiment]) -> Vec<Assumption> {
+    let mut all: Vec<Assumption> = Vec::new();
+    for experiment in experiments {
+        let robot = experiment.scenario.robot.assumptions();
+        for assumed in robot.iter().chain(&experiment.scenario.assumptions) {
+            let seen = all.iter().any(|a| a.file == assumed.file && a.key == assumed.key);
+            if !seen {
+                all.push(Assumption {
+                    file: assumed.file.clone(),
+                    key: assumed.key.clone(),
+                    value: assumed.value.clone(),
+                    note: assumed.note.clone(),
+                });
+            }
+        }
+    }
+    all
+}

@@ -1,0 +1,60 @@
+//! What a run leaves behind: traces, figures and the report.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::atomic::{WriteError, write_atomic};
+use crate::experiment::{Experiment, report};
+use crate::report::{html, png};
+use crate::trace::Trace;
+
+/// Writes trace and figure of an experiment into `folder`, which is created if missing; returns the paths.
+///
+/// # Errors
+/// If a file cannot be written; none is ever half written.
+pub fn write_experiment(folder: &Path, experiment: &Experiment) -> Result<Vec<PathBuf>, WriteError> {
+    create(folder)?;
+    let path = |ending: &str| folder.join(format!("{}.{ending}", experiment.scenario.name));
+    let (trace, svg, picture) = (path("csv"), path("svg"), path("png"));
+    write_trace(&trace, &experiment.run.trace)?;
+    write_atomic(&svg, |out| out.write_all(experiment.figure.as_bytes()))?;
+    write_atomic(&picture, |out| out.write_all(&png(&experiment.figure).map_err(io::Error::other)?))?;
+    Ok(vec![trace, svg, picture])
+}
+
+/// Writes `report.html` into `folder`, which is created if missing; returns its path.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn write_report(folder: &Path, experiments: &[Experiment]) -> Result<PathBuf, WriteError> {
+    create(folder)?;
+    let path = folder.join("report.html");
+    let page = html(&report(experiments));
+    write_atomic(&path, |out| out.write_all(page.as_bytes()))?;
+    Ok(path)
+}
+
+/// Writes a trace as CSV: a header of column names, then a row an instant, numbers with the fewest digits that restore
+/// them exactly. Units are those of docs/notation.md.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn write_trace(path: &Path, trace: &Trace) -> Result<(), WriteError> {
+    write_atomic(path, |out| {
+        let mut csv = csv::Writer::from_writer(out);
+        csv.write_record(trace.columns().iter().map(|column| &column.name))?;
+        let mut digits = ryu::Buffer::new();
+        for i in 0..trace.len() {
+            for column in trace.columns() {
+                csv.write_field(digits.format(column.values[i]))?;
+            }
+            csv.write_record(None::<&[u8]>)?;
+        }
+        csv.flush()
+    })
+}
+
+fn create(folder: &Path) -> Result<(), WriteError> {
+    fs::create_dir_all(folder).map_err(|cause| WriteError::Folder { folder: folder.into(), cause })
+}
