@@ -1,6 +1,6 @@
 //! Output files that appear whole or not at all.
 
-use std::fs::{self, Permissions};
+use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -43,33 +43,27 @@ pub enum WriteError {
 ///
 /// # Errors
 /// If the folder is not writable, the target is not a regular file, or `write` or the system fails.
-pub fn write_atomic(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), WriteError> {
+pub fn write_atomic(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), WriteError> {
     if fs::metadata(path).is_ok_and(|existing| !existing.is_file()) {
         return Err(WriteError::NotAFile { path: path.into() });
     }
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let failed = |cause| WriteError::Content { path: path.into(), cause };
     let mut builder = Builder::new();
-    if let Some(permissions) = readable() {
-        builder.permissions(permissions);
-    }
-    let file = builder.tempfile_in(folder).map_err(|cause| WriteError::Folder { folder: folder.into(), cause })?;
+    // As for any new file, before the umask: temporary files are private otherwise.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let file =
+        builder.tempfile_in(folder).map_err(|cause| WriteError::Folder { folder: folder.into(), cause })?;
     let mut buffered = BufWriter::new(file);
     write(&mut buffered).map_err(failed)?;
     let file = buffered.into_inner().map_err(|error| failed(error.into_error()))?;
     file.as_file().sync_all().map_err(failed)?;
     file.persist(path).map_err(|error| failed(error.error))?;
     Ok(())
-}
-
-/// As for any new file, before the umask: temporary files are private otherwise.
-#[cfg(unix)]
-fn readable() -> Option<Permissions> {
-    Some(std::os::unix::fs::PermissionsExt::from_mode(0o666))
-}
-#[cfg(not(unix))]
-fn readable() -> Option<Permissions> {
-    None
 }
 
 #[cfg(test)]

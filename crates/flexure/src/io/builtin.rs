@@ -5,7 +5,7 @@ use std::path::Path;
 use super::diagnostic::{Problem, Problems};
 use super::robot::{self, Robot};
 use super::scenario::{self, Base, Scenario};
-use super::source;
+use super::source::{self, Source};
 use super::suggest;
 
 macro_rules! data {
@@ -42,7 +42,7 @@ pub fn load_robot(path_or_name: &str) -> Result<Robot, Problems> {
 pub fn load_scenario(path_or_name: &str) -> Result<Scenario, Problems> {
     if is_name(path_or_name) {
         let text = find(path_or_name, SCENARIOS, "scenario")?;
-        return scenario::read(&source::named(path_or_name, text), &Base(None));
+        return scenario::read(&Source::new(path_or_name, text), &Base(None));
     }
     let path = Path::new(path_or_name);
     scenario::read(&source::read(path)?, &Base(Some(path.parent().unwrap_or(Path::new("")).to_owned())))
@@ -52,10 +52,11 @@ pub fn load_scenario(path_or_name: &str) -> Result<Scenario, Problems> {
 pub(super) fn robot(path_or_name: &str, base: &Base) -> Result<Robot, Problems> {
     if is_name(path_or_name) {
         let text = find(path_or_name, ROBOTS, "robot")?;
-        return robot::read(&source::named(path_or_name, text));
+        return robot::read(&Source::new(path_or_name, text));
     }
     let path = base.resolve(path_or_name).ok_or_else(|| {
-        let message = format!("{} is a relative path in a file that is in no folder", suggest::quoted(path_or_name));
+        let message =
+            format!("{} is a relative path in a file that is in no folder", suggest::quoted(path_or_name));
         Problem::new("unreadable", message, "give the whole path or the name of a built-in robot")
     })?;
     robot::read(&source::read(&path)?)

@@ -37,7 +37,8 @@ pub enum Phi {
     CoupledTanh,
 }
 
-const PHIS: &[(&str, Phi)] = &[("tanh", Phi::Tanh), ("linear", Phi::Linear), ("coupled-tanh", Phi::CoupledTanh)];
+const PHIS: &[(&str, Phi)] =
+    &[("tanh", Phi::Tanh), ("linear", Phi::Linear), ("coupled-tanh", Phi::CoupledTanh)];
 
 impl Phi {
     /// The name in files.
@@ -79,7 +80,8 @@ fn side(field: &Field<'_>, phi: Option<Phi>, joints: &Joints) -> Option<SideGain
     let metric = table.per_joint("metric", joints, &quantity::GAIN_METRIC);
     let shaping = table.optional("shaping", |field| field.per_joint(joints, &quantity::GAIN_SHAPING));
     let damping = table.per_joint("damping", joints, &quantity::GAIN_DAMPING);
-    let hardening = table.optional("metric_hardening", |field| field.per_joint(joints, &quantity::GAIN_HARDENING));
+    let hardening =
+        table.optional("metric_hardening", |field| field.per_joint(joints, &quantity::GAIN_HARDENING));
     let kappa = match (phi, table.get("kappa")) {
         (Some(Phi::CoupledTanh), _) => table.per_joint("kappa", joints, &quantity::GAIN_KAPPA).map(Some),
         (Some(phi), Some(field)) => {

@@ -15,7 +15,7 @@ pub struct Problem {
     code: &'static str,
     help: String,
     severity: Severity,
-    place: Option<(Source, Range<usize>)>,
+    place: Option<Box<(Source, Range<usize>)>>,
 }
 
 impl Problem {
@@ -26,7 +26,7 @@ impl Problem {
 
     /// The same problem, at the bytes `span` of `source`.
     pub(super) fn at(self, source: &Source, span: Range<usize>) -> Self {
-        Self { place: Some((source.clone(), span)), ..self }
+        Self { place: Some(Box::new((source.clone(), span))), ..self }
     }
 
     /// The same problem, at `span` of `source` if it has no place yet.
@@ -46,16 +46,13 @@ impl Problem {
 
     /// Name of the file that the problem is in.
     pub fn file(&self) -> Option<&str> {
-        self.place.as_ref().map(|(source, _)| source.name())
+        self.place.as_deref().map(|(source, _)| &*source.name)
     }
 
     /// Line and column, counted from 1; the column in characters.
     pub fn line_column(&self) -> Option<(usize, usize)> {
-        let (source, span) = self.place.as_ref()?;
-        let before = source.inner().get(..span.start)?;
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        let column = before.get(line_start..)?.chars().count() + 1;
-        Some((before.bytes().filter(|&byte| byte == b'\n').count() + 1, column))
+        let (source, span) = self.place.as_deref()?;
+        source.line_column(span.start)
     }
 
     /// What to do about it.
@@ -75,10 +72,10 @@ impl Diagnostic for Problem {
         Some(Box::new(&self.help))
     }
     fn source_code(&self) -> Option<&dyn SourceCode> {
-        self.place.as_ref().map(|(source, _)| source as &dyn SourceCode)
+        self.place.as_deref().map(|(source, _)| source as &dyn SourceCode)
     }
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let (_, span) = self.place.as_ref()?;
+        let (_, span) = self.place.as_deref()?;
         Some(Box::new(std::iter::once(LabeledSpan::underline(span.clone()))))
     }
 }

@@ -36,7 +36,13 @@ impl Log {
     }
 
     /// Notes an error at `span`.
-    pub fn error(&self, span: Range<usize>, code: &'static str, message: impl Into<String>, help: impl Into<String>) {
+    pub fn error(
+        &self,
+        span: Range<usize>,
+        code: &'static str,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) {
         self.push(Problem::new(code, message, help).at(&self.source, span));
     }
 
@@ -54,9 +60,13 @@ impl Log {
         let warnings = Problems::or_warnings(self.problems.into_inner())?;
         match value {
             Some(value) => Ok((value, warnings)),
-            None => Err(Problem::new("invalid", "the file cannot be used", "this is a bug of the reader: report it")
-                .at(&source, 0..0)
-                .into()),
+            None => Err(Problem::new(
+                "invalid",
+                "the file cannot be used",
+                "this is a bug of the reader: report it",
+            )
+            .at(&source, 0..0)
+            .into()),
         }
     }
 }
@@ -68,9 +78,10 @@ pub(super) fn parse<T>(
     read: impl FnOnce(&Table<'_>, &Places) -> Option<T>,
 ) -> Result<(T, Vec<Problem>), Problems> {
     let log = Log::new(source);
-    let (root, errors) = DeTable::parse_recoverable(source.inner());
+    let (root, errors) = DeTable::parse_recoverable(&source.text);
     for error in &errors {
-        let help = "not valid TOML: text stands in quotes, numbers like 0.5, arrays like [1.0, 2.0], one key a line";
+        let help =
+            "not valid TOML: text stands in quotes, numbers like 0.5, arrays like [1.0, 2.0], one key a line";
         log.error(error.span().unwrap_or(0..0), "syntax", error.message(), help);
     }
     if !errors.is_empty() {
@@ -119,17 +130,23 @@ impl Places {
 
     /// Name of the file.
     pub fn file(&self) -> &str {
-        self.source.name()
+        &self.source.name
     }
 
     /// A problem at `key` (dotted, like `reference.amplitude` or `links.joint[2].mass`), or at the start of the file if
     /// there is no such key. `code` is one word; `help` says what to do.
-    pub fn problem(&self, key: &str, code: &'static str, message: impl Into<String>, help: impl Into<String>) -> Problem {
+    pub fn problem(
+        &self,
+        key: &str,
+        code: &'static str,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Problem {
         Problem::new(code, message, help).at(&self.source, self.spans.get(key).cloned().unwrap_or(0..0))
     }
 
     /// Dotted keys with their text, those inside `[sources]` apart.
     pub(super) fn keys(&self) -> impl Iterator<Item = (&str, &str)> {
-        self.spans.iter().filter_map(|(key, span)| Some((key.as_str(), self.source.inner().get(span.clone())?)))
+        self.spans.iter().filter_map(|(key, span)| Some((key.as_str(), self.source.text.get(span.clone())?)))
     }
 }

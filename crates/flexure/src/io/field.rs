@@ -103,7 +103,11 @@ impl<'a> Field<'a> {
         };
         if joints.count.is_some_and(|n| n != array.len()) {
             let message = format!("{}: {}; got {}", self.path, joints.expected(), array.len());
-            self.error("length", message, format!("{}; a single number stands for all joints", quantity.described()));
+            self.error(
+                "length",
+                message,
+                format!("{}; a single number stands for all joints", quantity.described()),
+            );
             return None;
         }
         self.checked(array, quantity)
@@ -112,7 +116,10 @@ impl<'a> Field<'a> {
     /// Exactly `N` numbers, called `entries` in messages.
     pub fn array<const N: usize>(&self, quantity: &Quantity, entries: &str) -> Option<[f64; N]> {
         let DeValue::Array(array) = self.value else {
-            self.wrong_type(&format!("an array of {N} numbers"), format!("[{entries}], {}", quantity.described()));
+            self.wrong_type(
+                &format!("an array of {N} numbers"),
+                format!("[{entries}], {}", quantity.described()),
+            );
             return None;
         };
         if array.len() != N {

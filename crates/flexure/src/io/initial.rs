@@ -42,8 +42,13 @@ pub(super) fn read(
     let (dq_l, dq_m) = (read("dq_l", &quantity::VELOCITY), read("dq_m", &quantity::VELOCITY));
     let initial = Initial { q_l: q_l?, q_m: q_m?, dq_l: dq_l?, dq_m: dq_m? };
     if table.get("q_m").is_none() && initial.q_l.iter().any(|&q| q != 0.0) {
-        let message = format!("initial.q_l is {:?} rad and initial.q_m is not given, is taken as 0", initial.q_l);
-        field.warn("preload", message, format!("the springs start loaded; for relaxed ones add q_m = {:?}", initial.q_l));
+        let message =
+            format!("initial.q_l is {:?} rad and initial.q_m is not given, is taken as 0", initial.q_l);
+        field.warn(
+            "preload",
+            message,
+            format!("the springs start loaded; for relaxed ones add q_m = {:?}", initial.q_l),
+        );
     }
     Some(initial)
 }

@@ -49,10 +49,15 @@ fn visit(table: &Table<'_>, prefix: &str, places: &Places, assumed: &mut Vec<Ass
 fn named_by(key: &str, field: &Field<'_>, places: &Places) -> Option<(String, String)> {
     let paths = || {
         let keys = places.keys().filter(|(path, _)| !path.starts_with("sources"));
-        keys.map(|(path, text)| (if key.contains('[') { path.to_owned() } else { without_indices(path) }, text))
+        keys.map(|(path, text)| {
+            (if key.contains('[') { path.to_owned() } else { without_indices(path) }, text)
+        })
     };
     let ending = format!(".{key}");
-    let matches: Vec<_> = paths().filter(|(path, _)| path == key || path.ends_with(&ending)).collect();
+    let mut matches: Vec<_> = paths().filter(|(path, _)| path == key).collect();
+    if matches.is_empty() {
+        matches = paths().filter(|(path, _)| path.ends_with(&ending)).collect();
+    }
     let Some((first, text)) = matches.first().cloned() else {
         let known: BTreeSet<String> = paths().map(|(path, _)| path).collect();
         let message = format!("{} names no key of this file", suggest::quoted(key));

@@ -65,7 +65,8 @@ impl Reference {
     pub fn initial(&self) -> Vec<f64> {
         match self {
             Self::Sines { offset, terms } => {
-                let sine = |i| terms.iter().map(|term| term.amplitude[i] * term.phase[i].sin()).sum::<f64>();
+                let sine =
+                    |i: usize| terms.iter().map(|term| term.amplitude[i] * term.phase[i].sin()).sum::<f64>();
                 offset.iter().enumerate().map(|(i, offset)| offset + sine(i)).collect()
             }
             Self::PointToPoint { from, .. } => from.clone(),
@@ -89,10 +90,16 @@ const KINDS: &[(&str, Reader)] = &[
     ("quintic", (POINT_TO_POINT, |table, joints, _, _| point_to_point(table, joints, Profile::Quintic))),
     ("septic", (POINT_TO_POINT, |table, joints, _, _| point_to_point(table, joints, Profile::Septic))),
     ("nonic", (POINT_TO_POINT, |table, joints, _, _| point_to_point(table, joints, Profile::Nonic))),
-    ("samples", (&["kind", "smooth_start", "file"], |table, joints, base, end| samples::read(table, joints, base, end))),
+    (
+        "samples",
+        (&["kind", "smooth_start", "file"], |table, joints, base, end| {
+            samples::read(table, joints, base, end)
+        }),
+    ),
 ];
 
 /// Reads `[reference]` for a run of `end` seconds (NaN if that is not known), and the time of its smooth start [s].
+#[expect(clippy::option_option, reason = "bad, absent and good are three cases")]
 pub(super) fn read(
     field: &Field<'_>,
     joints: &Joints,
@@ -134,7 +141,13 @@ fn point_to_point(table: &Table<'_>, joints: &Joints, profile: Profile) -> Optio
     let to = table.per_joint("to", joints, &quantity::ANGLE);
     let start = table.optional("start", |field| field.number(&quantity::START));
     let duration = table.number("duration", &quantity::DURATION);
-    Some(Reference::PointToPoint { profile, from: from?, to: to?, start: start?.unwrap_or(0.0), duration: duration? })
+    Some(Reference::PointToPoint {
+        profile,
+        from: from?,
+        to: to?,
+        start: start?.unwrap_or(0.0),
+        duration: duration?,
+    })
 }
 
 #[cfg(test)]
@@ -143,7 +156,8 @@ mod tests {
 
     #[test]
     fn position_at_the_start() {
-        let term = |amplitude, phase| Term { amplitude: vec![amplitude], frequency: vec![3.0], phase: vec![phase] };
+        let term =
+            |amplitude, phase| Term { amplitude: vec![amplitude], frequency: vec![3.0], phase: vec![phase] };
         let sines = Reference::Sines { offset: vec![0.5], terms: vec![term(2.0, 0.0), term(1.0, 1.0)] };
         assert_eq!(sines.initial(), [0.5 + 1.0_f64.sin()]);
         let t: Vec<f64> = (0..8).map(|i| f64::from(i) - 2.5).collect();

@@ -5,7 +5,7 @@ use super::document::{self, Places};
 use super::links::{self, Links};
 use super::provenance::{self, Assumption};
 use super::quantity::{self, Quantity};
-use super::source::{self, Source};
+use super::source::Source;
 use super::table::Table;
 
 /// A flexible-joint robot as data: links, and per moving joint (in the order of the links) motor and spring.
@@ -56,7 +56,7 @@ impl Robot {
 /// # Errors
 /// With everything that is wrong.
 pub fn robot_from_text(name: &str, text: &str) -> Result<Robot, Problems> {
-    read(&source::named(name, text))
+    read(&Source::new(name, text))
 }
 
 pub(super) fn read(source: &Source) -> Result<Robot, Problems> {
@@ -69,7 +69,8 @@ pub(super) fn read(source: &Source) -> Result<Robot, Problems> {
 fn robot(root: &Table<'_>, places: &Places) -> Option<Robot> {
     let name = root.required("name", "what the robot is called").and_then(|field| field.text());
     let gravity = root.optional("gravity", |field| field.array(&quantity::GRAVITY, "x, y, z"));
-    let (links, count) = root.required("links", "a table with the kind").map_or((None, None), |field| links::read(&field));
+    let (links, count) =
+        root.required("links", "a table with the kind").map_or((None, None), |field| links::read(&field));
     if let (Some(links), Some(Some(gravity))) = (&links, &gravity) {
         links::check_gravity(links, gravity, root.get("gravity"));
     }
@@ -77,7 +78,8 @@ fn robot(root: &Table<'_>, places: &Places) -> Option<Robot> {
     let table = root.required("joints", "a table with stiffness, motor_inertia, link_damping, motor_damping");
     let table = table.and_then(|field| field.table(KEYS));
     let read = |key, quantity: &Quantity| table.as_ref()?.per_joint(key, &joints, quantity);
-    let limit = |key, quantity: &Quantity| table.as_ref()?.optional(key, |field| field.per_joint(&joints, quantity));
+    let limit =
+        |key, quantity: &Quantity| table.as_ref()?.optional(key, |field| field.per_joint(&joints, quantity));
     let stiffness = read("stiffness", &quantity::STIFFNESS);
     let motor_inertia = read("motor_inertia", &quantity::MOTOR_INERTIA);
     let link_damping = read("link_damping", &quantity::DAMPING);

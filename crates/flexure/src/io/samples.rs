@@ -16,7 +16,8 @@ use super::table::Table;
 const FEWEST: usize = 8;
 
 pub(super) fn read(table: &Table<'_>, joints: &Joints, base: &Base, end: f64) -> Option<Reference> {
-    let field = table.required("file", "path of a CSV file, relative to the scenario, with the header t,q1,q2,…")?;
+    let field =
+        table.required("file", "path of a CSV file, relative to the scenario, with the header t,q1,q2,…")?;
     let path = field.text()?;
     let source = match base.resolve(path).map_or_else(|| Err(no_folder(path)), |path| source::read(&path)) {
         Ok(source) => source,
@@ -30,18 +31,23 @@ pub(super) fn read(table: &Table<'_>, joints: &Joints, base: &Base, end: f64) ->
     let (rows, warnings) = match log.finish(rows) {
         Ok(found) => found,
         Err(problems) => {
-            problems.into_iter().for_each(|problem| field.log.push(problem));
+            for problem in problems {
+                field.log.push(problem);
+            }
             return None;
         }
     };
-    warnings.into_iter().for_each(|warning| field.log.push(warning));
+    for warning in warnings {
+        field.log.push(warning);
+    }
     check_span(&field, &rows, end)?;
     let (t, q) = rows.into_iter().unzip();
     Some(Reference::Samples { t, q })
 }
 
 fn no_folder(path: &str) -> Problem {
-    let message = format!("{} is a relative path in a scenario that is not in a folder", suggest::quoted(path));
+    let message =
+        format!("{} is a relative path in a scenario that is not in a folder", suggest::quoted(path));
     Problem::new("unreadable", message, "give the whole path, or save the scenario to a file")
 }
 
@@ -66,12 +72,17 @@ fn parse(log: &Log, joints: &Joints) -> Option<Vec<Row>> {
     let mut lines = lines(&log.source).filter(|(_, line)| !line.trim().is_empty());
     let (start, header) = lines.next().unwrap_or((0, ""));
     let columns = header.split(',').count();
-    let expected: Vec<String> = match joints.count.unwrap_or(columns.saturating_sub(1)) {
-        n => std::iter::once("t".into()).chain((1..=n.min(columns + 64)).map(|i| format!("q{i}"))).collect(),
-    };
+    let joint_columns = 1..=joints.count.unwrap_or(columns.saturating_sub(1));
+    let expected: Vec<String> =
+        std::iter::once("t".into()).chain(joint_columns.map(|i| format!("q{i}"))).collect();
     if !header.split(',').map(str::trim).eq(expected.iter().map(String::as_str)) {
         let message = format!("the header is {}, must be {}", suggest::quoted(header), expected.join(","));
-        log.error(start..start + header.len(), "header", message, format!("t in s, then positions in rad: {}", joints.expected()));
+        log.error(
+            start..start + header.len(),
+            "header",
+            message,
+            format!("t in s, then positions in rad: {}", joints.expected()),
+        );
         return None;
     }
     let mut rows: Vec<Row> = Vec::new();
@@ -102,7 +113,8 @@ fn row(log: &Log, start: usize, line: &str, columns: usize) -> Option<Vec<f64>> 
         return None;
     }
     let number = |(i, (offset, cell)): (usize, (usize, &str))| {
-        let (name, quantity) = if i == 0 { ("t".into(), &quantity::TIME) } else { (format!("q{i}"), &quantity::ANGLE) };
+        let (name, quantity) =
+            if i == 0 { ("t".into(), &quantity::TIME) } else { (format!("q{i}"), &quantity::ANGLE) };
         let blank = cell.len() - cell.trim_start().len();
         let from = start + offset + blank;
         checked(log, from..from + cell.trim().len(), &name, cell.trim(), quantity)
@@ -113,7 +125,12 @@ fn row(log: &Log, start: usize, line: &str, columns: usize) -> Option<Vec<f64>> 
 fn checked(log: &Log, span: Range<usize>, name: &str, cell: &str, quantity: &Quantity) -> Option<f64> {
     let Ok(x) = cell.parse::<f64>() else {
         let message = format!("{name} is {}, must be a number", suggest::quoted(cell));
-        log.error(span, "number", message, format!("{}; numbers like 0.5 or 1e-3, with a point", quantity.described()));
+        log.error(
+            span,
+            "number",
+            message,
+            format!("{}; numbers like 0.5 or 1e-3, with a point", quantity.described()),
+        );
         return None;
     };
     log.accept(name, x, quantity, span)
@@ -121,7 +138,7 @@ fn checked(log: &Log, span: Range<usize>, name: &str, cell: &str, quantity: &Qua
 
 /// The lines with the byte that each begins at.
 fn lines(source: &Source) -> impl Iterator<Item = (usize, &str)> {
-    let text: &str = source.inner();
+    let text: &str = &source.text;
     let text_start = text.as_ptr().addr();
     text.lines().map(move |line| (line.as_ptr().addr() - text_start, line))
 }

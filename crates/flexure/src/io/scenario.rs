@@ -13,7 +13,7 @@ use super::provenance::{self, Assumption};
 use super::quantity;
 use super::reference::{self, Reference};
 use super::robot::Robot;
-use super::source::{self, Source};
+use super::source::Source;
 use super::table::Table;
 
 /// Farthest that a reference without smooth start may be from the robot at t = 0 [rad].
@@ -79,14 +79,24 @@ impl Base {
 /// # Errors
 /// With everything that is wrong, in the robot's file as well.
 pub fn scenario_from_text(name: &str, text: &str, folder: &Path) -> Result<Scenario, Problems> {
-    read(&source::named(name, text), &Base(Some(folder.to_owned())))
+    read(&Source::new(name, text), &Base(Some(folder.to_owned())))
 }
 
-const KEYS: &[&str] =
-    &["robot", "duration", "control_period", "hold", "initial", "reference", "controller", "sources", "imperfection"];
+const KEYS: &[&str] = &[
+    "robot",
+    "duration",
+    "control_period",
+    "hold",
+    "initial",
+    "reference",
+    "controller",
+    "sources",
+    "imperfection",
+];
 
 pub(super) fn read(source: &Source, base: &Base) -> Result<Scenario, Problems> {
-    let (mut scenario, warnings) = document::parse(source, KEYS, |root, places| scenario(root, places, base))?;
+    let (mut scenario, warnings) =
+        document::parse(source, KEYS, |root, places| scenario(root, places, base))?;
     scenario.warnings.extend(warnings);
     Ok(scenario)
 }
@@ -94,7 +104,10 @@ pub(super) fn read(source: &Source, base: &Base) -> Result<Scenario, Problems> {
 fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> {
     let robot = root.required("robot", "path of a robot file or name of a built-in robot");
     let robot = robot.and_then(|field| read_robot(&field, base));
-    let joints = links::per_joint(robot.as_ref().map_or("the robot", |robot| &robot.name), robot.as_ref().map(Robot::joints));
+    let joints = links::per_joint(
+        robot.as_ref().map_or("the robot", |robot| &robot.name),
+        robot.as_ref().map(Robot::joints),
+    );
     let times = times(root);
     let hold = root.optional("hold", |field| {
         field.choice(&[("zero-order", Hold::ZeroOrder), ("continuous", Hold::Continuous)])
@@ -109,7 +122,9 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> 
     let controller = controller.and_then(|field| controller::read(&field, &joints));
     refuse_imperfections(root);
     let own = provenance::assumptions(root, places);
-    if let (Some(field), Some(reference), Some(None), Some(initial)) = (reference_field, &reference, smooth_start, &initial) {
+    if let (Some(field), Some(reference), Some(None), Some(initial)) =
+        (reference_field, &reference, smooth_start, &initial)
+    {
         check_start(&field, reference, initial);
     }
     assumed.extend(own?);
@@ -146,7 +161,8 @@ fn times(root: &Table<'_>) -> Option<(f64, f64)> {
         return None;
     }
     if duration / period > MOST_PERIODS {
-        let message = format!("{:e} control periods in {duration} s, must be <= {MOST_PERIODS:e}", duration / period);
+        let message =
+            format!("{:e} control periods in {duration} s, must be <= {MOST_PERIODS:e}", duration / period);
         field.error("range", message, "a shorter run or a longer period");
         return None;
     }
@@ -170,7 +186,11 @@ fn read_robot(field: &Field<'_>, base: &Base) -> Option<Robot> {
 fn refuse_imperfections(root: &Table<'_>) {
     if let Some(field) = root.get("imperfection") {
         let message = "imperfection: imperfections of sensing and actuation are not in this version";
-        field.error("unsupported", message, "remove [[imperfection]]; the run is then ideal but for the control period");
+        field.error(
+            "unsupported",
+            message,
+            "remove [[imperfection]]; the run is then ideal but for the control period",
+        );
     }
 }
 
@@ -183,6 +203,10 @@ fn check_start(field: &Field<'_>, reference: &Reference, initial: &Initial) {
         let message = format!(
             "the reference of joint {i} starts at {q_d} rad and the robot at {q} rad: {distance:.3} rad apart, must be <= {FAR} rad"
         );
-        field.error("far", message, "add [reference.smooth_start] with duration = 2.0, or set [initial] q_l and q_m");
+        field.error(
+            "far",
+            message,
+            "add [reference.smooth_start] with duration = 2.0, or set [initial] q_l and q_m",
+        );
     }
 }

@@ -5,19 +5,59 @@ use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
-use miette::NamedSource;
+use miette::{MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 
 use super::diagnostic::Problem;
 
 /// Largest file that is read [bytes].
 const LIMIT: u64 = 16 << 20;
 
-/// A file's name and text; cheap to clone.
-pub(super) type Source = NamedSource<Arc<str>>;
+/// A file's name and text, or a part of it from some line on; cheap to clone.
+#[derive(Clone, Debug)]
+pub(super) struct Source {
+    pub name: Arc<str>,
+    pub text: Arc<str>,
+    /// Lines of the file before `text`.
+    lines_before: usize,
+}
 
-/// A source from text that is at hand.
-pub(super) fn named(name: &str, text: &str) -> Source {
-    NamedSource::new(name, Arc::from(text))
+impl Source {
+    /// From text that is at hand.
+    pub fn new(name: &str, text: &str) -> Self {
+        Self::part(name, text, 0)
+    }
+
+    /// From the text after `lines_before` lines.
+    pub fn part(name: &str, text: &str, lines_before: usize) -> Self {
+        Self { name: name.into(), text: text.into(), lines_before }
+    }
+
+    /// Line and column of the byte at `offset`, counted from 1; the column in characters.
+    pub fn line_column(&self, offset: usize) -> Option<(usize, usize)> {
+        let before = self.text.get(..offset)?;
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        let column = before.get(line_start..)?.chars().count() + 1;
+        Some((self.lines_before + before.matches('\n').count() + 1, column))
+    }
+}
+
+impl SourceCode for Source {
+    fn read_span<'a>(
+        &'a self,
+        span: &SourceSpan,
+        lines_before: usize,
+        lines_after: usize,
+    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
+        let found = self.text.read_span(span, lines_before, lines_after)?;
+        Ok(Box::new(MietteSpanContents::new_named(
+            self.name.to_string(),
+            found.data(),
+            *found.span(),
+            found.line() + self.lines_before,
+            found.column(),
+            found.line_count(),
+        )))
+    }
 }
 
 /// Reads the text file at `path`.
@@ -44,14 +84,14 @@ pub(super) fn read(path: &Path) -> Result<Source, Problem> {
     let text = String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let before = error.as_bytes().get(..valid).unwrap_or_default();
-        let line = before.iter().filter(|&&byte| byte == b'\n').count() + 1;
+        let line = before.split(|&byte| byte == b'\n').count();
         let clean = String::from_utf8_lossy(error.as_bytes());
         Problem::new(
             "encoding",
             format!("{name} is not UTF-8: invalid byte {valid} in line {line}"),
             "save the file as UTF-8 text",
         )
-        .at(&named(&name.to_string(), &clean), valid..valid)
+        .at(&Source::new(&name.to_string(), &clean), valid..valid)
     })?;
-    Ok(named(&name.to_string(), &text))
+    Ok(Source::new(&name.to_string(), &text))
 }

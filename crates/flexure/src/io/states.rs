@@ -6,7 +6,7 @@ use std::io::BufRead;
 use serde::de::{self, DeserializeSeed, MapAccess, Visitor};
 
 use super::diagnostic::Problem;
-use super::source;
+use super::source::Source;
 use super::suggest;
 
 /// Longest line that is read [bytes].
@@ -69,14 +69,13 @@ impl<R: BufRead> States<R> {
 
     /// A problem at the byte `column` (from 0) of the current `line`.
     fn problem(&self, code: &'static str, line: &str, column: usize, what: &str) -> Problem {
-        let message = format!("{}, line {}, column {}: {what}", self.name, self.line, column + 1);
         let n = self.joints;
         let numbers = if n == 1 { "[one number]".into() } else { format!("[{n} numbers]") };
         let help = format!(
             "one JSON object a line with q_l, q_m, dq_l, dq_m = {numbers}, optional t (a number) and u_m = {numbers}"
         );
         let start = (0..=column.min(line.len())).rev().find(|&i| line.is_char_boundary(i)).unwrap_or(0);
-        Problem::new(code, message, help).at(&source::named(&self.name, line), start..start)
+        Problem::new(code, what, help).at(&Source::part(&self.name, line, self.line - 1), start..start)
     }
 }
 
@@ -141,7 +140,9 @@ impl<'de> Visitor<'de> for Row {
                     let numbers: Vec<f64> = map.next_value().map_err(named)?;
                     let (n, got) = (self.joints, numbers.len());
                     if got != n {
-                        return Err(de::Error::custom(format!("{key}: {n} numbers expected, one per joint; got {got}")));
+                        return Err(de::Error::custom(format!(
+                            "{key}: {n} numbers expected, one per joint; got {got}"
+                        )));
                     }
                     *slot = Some(numbers);
                 }
@@ -162,15 +163,18 @@ impl<'de> Visitor<'de> for Row {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Problems;
     use super::{StateRow, States};
 
     fn read(text: &str) -> Vec<Result<StateRow, String>> {
-        States::new(text.as_bytes(), 2, "s.jsonl").map(|row| row.map_err(|problem| problem.to_string())).collect()
+        let states = States::new(text.as_bytes(), 2, "s.jsonl");
+        states.map(|row| row.map_err(|problem| Problems::from(problem).to_string())).collect()
     }
 
     #[test]
     fn good_lines_and_blank_ones() {
-        let line = r#"{"q_l": [1, 2], "q_m": [3, 4], "dq_l": [5, 6], "dq_m": [7, 8.5], "u_m": [0, -1e3], "t": 0.5}"#;
+        let line =
+            r#"{"q_l": [1, 2], "q_m": [3, 4], "dq_l": [5, 6], "dq_m": [7, 8.5], "u_m": [0, -1e3], "t": 0.5}"#;
         let rows = read(&format!("\n{line}\r\n   \n{line}"));
         assert_eq!(rows.len(), 2);
         let expected = StateRow {
@@ -188,7 +192,7 @@ mod tests {
     fn bad_lines_name_line_column_and_key() {
         let rest = r#""q_m": [3, 4], "dq_l": [5, 6], "dq_m": [7, 8]}"#;
         for (line, expected) in [
-            (format!(r#"{{"q_l": [1, "x"], {rest}"#), "s.jsonl, line 3, column 15: q_l: invalid type: string"),
+            (format!(r#"{{"q_l": [1, "x"], {rest}"#), "s.jsonl:3:15: q_l: invalid type: string"),
             (format!(r#"{{"q_l": [1], {rest}"#), "q_l: 2 numbers expected, one per joint; got 1"),
             (format!(r#"{{"q_l": [1, 1e999], {rest}"#), "q_l: number out of range"),
             (format!(r#"{{"q_l": [1, NaN], {rest}"#), "q_l: expected value"),
@@ -204,7 +208,7 @@ mod tests {
             let rows = read(&format!("\n\n{line}\n"));
             let error = rows[0].as_ref().unwrap_err();
             assert!(error.contains(expected), "{line}: {error}");
-            assert!(error.starts_with("s.jsonl, line 3, column "), "{error}");
+            assert!(error.starts_with("s.jsonl:3:"), "{error}");
         }
     }
 

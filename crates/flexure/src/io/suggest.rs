@@ -44,7 +44,10 @@ mod tests {
     #[test]
     fn names_the_near_and_only_the_near() {
         let known = ["stiffness", "motor_inertia"];
-        assert_eq!(hint("stifness", known.into_iter()), "did you mean 'stiffness'? known: stiffness, motor_inertia");
+        assert_eq!(
+            hint("stifness", known.into_iter()),
+            "did you mean 'stiffness'? known: stiffness, motor_inertia"
+        );
         assert!(hint("Motor-Inertia", known.into_iter()).starts_with("did you mean 'motor_inertia'"));
         assert!(hint("colour", known.into_iter()).starts_with("known:"));
     }

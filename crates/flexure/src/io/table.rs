@@ -32,7 +32,12 @@ impl<'a> Table<'a> {
                 "" => format!("unknown key {}", suggest::quoted(key.get_ref())),
                 path => format!("unknown key {} in [{path}]", suggest::quoted(key.get_ref())),
             };
-            self.log.error(key.span(), "unknown-key", message, suggest::hint(key.get_ref(), known.iter().copied()));
+            self.log.error(
+                key.span(),
+                "unknown-key",
+                message,
+                suggest::hint(key.get_ref(), known.iter().copied()),
+            );
         }
     }
 
@@ -60,6 +65,7 @@ impl<'a> Table<'a> {
     }
 
     /// `Some(None)` without the key; `None` if its value is bad.
+    #[expect(clippy::option_option, reason = "bad, absent and good are three cases")]
     pub fn optional<T>(&self, key: &str, read: impl FnOnce(&Field<'a>) -> Option<T>) -> Option<Option<T>> {
         match self.get(key) {
             None => Some(None),
@@ -72,7 +78,11 @@ impl<'a> Table<'a> {
         let field = self.get(key);
         if field.is_none() {
             let place = if self.path.is_empty() { "the file".into() } else { format!("[{}]", self.path) };
-            self.error("missing-key", format!("missing key {}", self.key(key)), format!("add {key} to {place}: {what}"));
+            self.error(
+                "missing-key",
+                format!("missing key {}", self.key(key)),
+                format!("add {key} to {place}: {what}"),
+            );
         }
         field
     }
@@ -86,7 +96,12 @@ impl<'a> Table<'a> {
         self.required(key, &what)?.array(quantity, entries)
     }
 
-    pub fn array_or<const N: usize>(&self, key: &str, quantity: &Quantity, entries: &str) -> Option<[f64; N]> {
+    pub fn array_or<const N: usize>(
+        &self,
+        key: &str,
+        quantity: &Quantity,
+        entries: &str,
+    ) -> Option<[f64; N]> {
         Some(self.optional(key, |field| field.array(quantity, entries))?.unwrap_or([0.0; N]))
     }
 

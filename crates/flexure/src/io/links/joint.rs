@@ -26,8 +26,10 @@ pub(super) struct Joint<'a> {
 const KINDS: &[(&str, Option<JointKind>)] =
     &[("revolute", Some(JointKind::Revolute)), ("prismatic", Some(JointKind::Prismatic)), ("fixed", None)];
 
-const FIXED_KEYS: &[&str] = &["name", "parent", "kind", "xyz", "rpy", "mass", "com", "inertia", "inertia_rpy"];
-const MOVING_KEYS: &[&str] = &["name", "parent", "kind", "xyz", "rpy", "mass", "com", "inertia", "inertia_rpy", "axis"];
+const FIXED_KEYS: &[&str] =
+    &["name", "parent", "kind", "xyz", "rpy", "mass", "com", "inertia", "inertia_rpy"];
+const MOVING_KEYS: &[&str] =
+    &["name", "parent", "kind", "xyz", "rpy", "mass", "com", "inertia", "inertia_rpy", "axis"];
 
 pub(super) fn read<'a>(field: &Field<'a>) -> Option<Joint<'a>> {
     let table = field.any_table()?;
@@ -43,7 +45,14 @@ pub(super) fn read<'a>(field: &Field<'a>) -> Option<Joint<'a>> {
         None => None,
         Some(kind) => Some((kind, axis?)),
     };
-    Some(Joint { field: field.clone(), name: name?, parent: parent?, motion, pose: Pose::new(xyz?, rpy?), body: body? })
+    Some(Joint {
+        field: field.clone(),
+        name: name?,
+        parent: parent?,
+        motion,
+        pose: Pose::new(xyz?, rpy?),
+        body: body?,
+    })
 }
 
 /// The unit vector along `axis`; z without the key.
@@ -52,7 +61,11 @@ fn axis(table: &Table<'_>) -> Option<[f64; 3]> {
     let axis: [f64; 3] = field.array(&quantity::AXIS, "x, y, z")?;
     let norm = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
     if norm == 0.0 {
-        field.error("axis", format!("{} is zero, must be a direction", field.path), "the z axis is [0, 0, 1]");
+        field.error(
+            "axis",
+            format!("{} is zero, must be a direction", field.path),
+            "the z axis is [0, 0, 1]",
+        );
         return None;
     }
     if (norm - 1.0).abs() > 1e-9 {

@@ -117,7 +117,8 @@ fn pendulum(table: &Table<'_>) -> Option<Links> {
 }
 
 fn urdf(table: &Table<'_>) -> Option<Links> {
-    let help = "write the links as kind = \"tree\"; robots/panda.toml was made from a URDF by tools/urdf_to_tree.py";
+    let help =
+        "write the links as kind = \"tree\"; robots/panda.toml was made from a URDF by tools/urdf_to_tree.py";
     table.get("kind")?.error("unsupported", "links.kind is 'urdf': URDF import is not in this version", help);
     None
 }
@@ -127,7 +128,9 @@ pub(super) fn check_gravity(links: &Links, gravity: &[f64; 3], field: Option<Fie
     if let (Links::PlanarTwoLink { .. }, [x, y, _], Some(field)) = (links, gravity, field)
         && (*x != 0.0 || *y != 0.0)
     {
-        let message = format!("gravity has a horizontal part ({x}, {y}) m/s^2, must be (0, 0): planar-two-link moves in the horizontal plane");
+        let message = format!(
+            "gravity has a horizontal part ({x}, {y}) m/s^2, must be (0, 0): planar-two-link moves in the horizontal plane"
+        );
         field.error("gravity", message, "for an arm in a vertical plane write the links as kind = \"tree\"");
     }
 }

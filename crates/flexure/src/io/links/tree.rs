@@ -32,7 +32,11 @@ pub(super) fn read(table: &Table<'_>) -> Option<Links> {
         assembly.add(joint)?;
     }
     if assembly.bodies.is_empty() {
-        table.error("immovable", "links.joint: no joint moves", "at least one joint must be revolute or prismatic");
+        table.error(
+            "immovable",
+            "links.joint: no joint moves",
+            "at least one joint must be revolute or prismatic",
+        );
         return None;
     }
     assembly.check()?;
@@ -45,7 +49,8 @@ impl<'a> Assembly<'a> {
             None => (None, Pose::identity()),
             Some((name, field)) => {
                 let Some(placed) = self.placed.get(name) else {
-                    let message = format!("{} is {}, which is no joint above", field.path, suggest::quoted(name));
+                    let message =
+                        format!("{} is {}, which is no joint above", field.path, suggest::quoted(name));
                     let mut known: Vec<_> = self.placed.keys().copied().collect();
                     known.sort_unstable();
                     let help = suggest::hint(name, known.into_iter());
@@ -56,21 +61,19 @@ impl<'a> Assembly<'a> {
             }
         };
         let pose = outer.then(&joint.pose);
-        let placed = match joint.motion {
-            Some((kind, axis)) => {
-                let body = Body::new(joint.name, parent, kind, axis, &pose);
-                self.bodies.push((body, joint.body, pose));
-                Placed { body: Some(self.bodies.len() - 1), pose: Pose::identity() }
+        let placed = if let Some((kind, axis)) = joint.motion {
+            self.bodies.push((Body::new(joint.name, parent, kind, axis, &pose), joint.body, pose));
+            Placed { body: Some(self.bodies.len() - 1), pose: Pose::identity() }
+        } else {
+            // What is fixed in the base never moves: only what is fixed in a body counts.
+            if let Some((_, rigid, _)) = parent.and_then(|index| self.bodies.get_mut(index)) {
+                *rigid = rigid.joined(&joint.body.seen_from(&pose));
             }
-            None => {
-                if let Some((_, rigid, _)) = parent.and_then(|index| self.bodies.get_mut(index)) {
-                    *rigid = rigid.joined(&joint.body.seen_from(&pose));
-                }
-                Placed { body: parent, pose }
-            }
+            Placed { body: parent, pose }
         };
         if self.placed.insert(joint.name, placed).is_some() {
-            let message = format!("{}: a second joint is called {}", joint.field.path, suggest::quoted(joint.name));
+            let message =
+                format!("{}: a second joint is called {}", joint.field.path, suggest::quoted(joint.name));
             joint.field.error("duplicate", message, "every joint has a name of its own");
             return None;
         }
@@ -92,8 +95,13 @@ impl<'a> Assembly<'a> {
                 JointKind::Prismatic => (outer.mass, "kg"),
             };
             if moved <= 1e-15 {
-                let message = format!("{} ({}) moves {moved:e} {unit}, must be > 0", joint.field.path, joint.name);
-                joint.field.error("massless", message, "give it, or what it carries, mass away from its axis or inertia");
+                let message =
+                    format!("{} ({}) moves {moved:e} {unit}, must be > 0", joint.field.path, joint.name);
+                joint.field.error(
+                    "massless",
+                    message,
+                    "give it, or what it carries, mass away from its axis or inertia",
+                );
                 sound = None;
             }
             if let Some(parent) = body.parent.and_then(|index| composites.get_mut(index)) {
@@ -107,7 +115,17 @@ impl<'a> Assembly<'a> {
 impl Body {
     fn new(name: &str, parent: Option<usize>, kind: JointKind, axis: [f64; 3], pose: &Pose) -> Self {
         let (rotation, translation) = (pose.rotation.0, pose.translation.0);
-        Self { name: name.to_owned(), parent, kind, axis, rotation, translation, mass: 0.0, com: [0.0; 3], inertia: [[0.0; 3]; 3] }
+        Self {
+            name: name.to_owned(),
+            parent,
+            kind,
+            axis,
+            rotation,
+            translation,
+            mass: 0.0,
+            com: [0.0; 3],
+            inertia: [[0.0; 3]; 3],
+        }
     }
 
     fn carrying(self, rigid: &Rigid) -> Self {
