@@ -9,17 +9,17 @@ use super::diagnostic::Problem;
 use super::source::Source;
 use super::suggest;
 
-/// Longest line that is read [bytes].
+/// Longest line that is read \[bytes\].
 const LONGEST: usize = 1 << 20;
 
 /// A time, a state and perhaps a torque; one number per joint.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StateRow {
-    /// Time [s]; 0 if not given.
+    /// Time \[s\]; 0 if not given.
     pub t: f64,
-    /// Link positions [rad].
+    /// Link positions \[rad\].
     pub q_l: Vec<f64>,
-    /// Motor positions [rad].
+    /// Motor positions \[rad\].
     pub q_m: Vec<f64>,
     /// Link velocities [rad/s].
     pub dq_l: Vec<f64>,
