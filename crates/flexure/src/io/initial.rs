@@ -9,9 +9,9 @@ use super::table::Table;
 /// Positions and velocities at t = 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Initial {
-    /// Link positions [rad].
+    /// Link positions \[rad\].
     pub q_l: Vec<f64>,
-    /// Motor positions, link side of the gear [rad].
+    /// Motor positions, link side of the gear \[rad\].
     pub q_m: Vec<f64>,
     /// Link velocities [rad/s].
     pub dq_l: Vec<f64>,

@@ -54,7 +54,10 @@ fn named_by(key: &str, field: &Field<'_>, places: &Places) -> Option<(String, St
         })
     };
     let ending = format!(".{key}");
-    let matches: Vec<_> = paths().filter(|(path, _)| path == key || path.ends_with(&ending)).collect();
+    let mut matches: Vec<_> = paths().filter(|(path, _)| path == key).collect();
+    if matches.is_empty() {
+        matches = paths().filter(|(path, _)| path.ends_with(&ending)).collect();
+    }
     let Some((first, text)) = matches.first().cloned() else {
         let known: BTreeSet<String> = paths().map(|(path, _)| path).collect();
         let message = format!("{} names no key of this file", suggest::quoted(key));

@@ -11,7 +11,7 @@ use super::table::Table;
 pub enum Reference {
     /// offset_i + Σ_j amplitude_ij sin(frequency_ij t + phase_ij): kinds `sine` (one term) and `multisine`.
     Sines {
-        /// Mean position [rad].
+        /// Mean position \[rad\].
         offset: Vec<f64>,
         /// At least one.
         terms: Vec<Term>,
@@ -20,20 +20,20 @@ pub enum Reference {
     PointToPoint {
         /// Degree of the polynomial in time.
         profile: Profile,
-        /// Position before the motion [rad].
+        /// Position before the motion \[rad\].
         from: Vec<f64>,
-        /// Position after the motion [rad].
+        /// Position after the motion \[rad\].
         to: Vec<f64>,
-        /// Time of departure, ≥ 0 [s].
+        /// Time of departure, ≥ 0 \[s\].
         start: f64,
-        /// Time that the motion takes [s].
+        /// Time that the motion takes \[s\].
         duration: f64,
     },
     /// Positions at given times: kind `samples`.
     Samples {
-        /// Strictly increasing, 0 and the end of the run among or between them; at least 8 [s].
+        /// Strictly increasing, 0 and the end of the run among or between them; at least 8 \[s\].
         t: Vec<f64>,
-        /// The positions of all joints at each time [rad].
+        /// The positions of all joints at each time \[rad\].
         q: Vec<Vec<f64>>,
     },
 }
@@ -41,11 +41,11 @@ pub enum Reference {
 /// One sine a joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Term {
-    /// Amplitude [rad].
+    /// Amplitude \[rad\].
     pub amplitude: Vec<f64>,
     /// Angular frequency [rad/s].
     pub frequency: Vec<f64>,
-    /// Phase at t = 0 [rad].
+    /// Phase at t = 0 \[rad\].
     pub phase: Vec<f64>,
 }
 
@@ -61,7 +61,7 @@ pub enum Profile {
 }
 
 impl Reference {
-    /// Position at t = 0 [rad], before any smooth start; straight between samples.
+    /// Position at t = 0 \[rad\], before any smooth start; straight between samples.
     pub fn initial(&self) -> Vec<f64> {
         match self {
             Self::Sines { offset, terms } => {
@@ -98,7 +98,7 @@ const KINDS: &[(&str, Reader)] = &[
     ),
 ];
 
-/// Reads `[reference]` for a run of `end` seconds (NaN if that is not known), and the time of its smooth start [s].
+/// Reads `[reference]` for a run of `end` seconds (NaN if that is not known), and the time of its smooth start \[s\].
 #[expect(clippy::option_option, reason = "bad, absent and good are three cases")]
 pub(super) fn read(
     field: &Field<'_>,

@@ -29,7 +29,7 @@ pub struct Robot {
     pub torque_limit: Option<Vec<f64>>,
     /// Largest joint velocity [rad/s].
     pub velocity_limit: Option<Vec<f64>>,
-    /// Largest deflection |ζ| of the springs [rad].
+    /// Largest deflection |ζ| of the springs \[rad\].
     pub deflection_limit: Option<Vec<f64>>,
     /// Numbers that no source vouches for.
     pub assumed: Vec<Assumption>,

@@ -16,7 +16,7 @@ use super::robot::Robot;
 use super::source::Source;
 use super::table::Table;
 
-/// Farthest that a reference without smooth start may be from the robot at t = 0 [rad].
+/// Farthest that a reference without smooth start may be from the robot at t = 0 \[rad\].
 const FAR: f64 = 0.5;
 
 /// Most control periods in a run: more would fill any disk.
@@ -29,9 +29,9 @@ pub struct Scenario {
     pub name: String,
     /// The robot.
     pub robot: Robot,
-    /// Length of the run [s].
+    /// Length of the run \[s\].
     pub duration: f64,
-    /// Time between two evaluations of the law [s].
+    /// Time between two evaluations of the law \[s\].
     pub control_period: f64,
     /// What the torque does between them.
     pub hold: Hold,
@@ -39,7 +39,7 @@ pub struct Scenario {
     pub initial: Initial,
     /// Where the links shall be.
     pub reference: Reference,
-    /// Time in which the robot joins the reference from where it is at t = 0, if it does [s].
+    /// Time in which the robot joins the reference from where it is at t = 0, if it does \[s\].
     pub smooth_start: Option<f64>,
     /// The law.
     pub controller: Controller,

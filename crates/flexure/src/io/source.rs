@@ -9,7 +9,7 @@ use miette::{MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanConten
 
 use super::diagnostic::Problem;
 
-/// Largest file that is read [bytes].
+/// Largest file that is read \[bytes\].
 const LIMIT: u64 = 16 << 20;
 
 /// A file's name and text, or a part of it from some line on; cheap to clone.

@@ -9,17 +9,17 @@ use super::diagnostic::Problem;
 use super::source::Source;
 use super::suggest;
 
-/// Longest line that is read [bytes].
+/// Longest line that is read \[bytes\].
 const LONGEST: usize = 1 << 20;
 
 /// A time, a state and perhaps a torque; one number per joint.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StateRow {
-    /// Time [s]; 0 if not given.
+    /// Time \[s\]; 0 if not given.
     pub t: f64,
-    /// Link positions [rad].
+    /// Link positions \[rad\].
     pub q_l: Vec<f64>,
-    /// Motor positions [rad].
+    /// Motor positions \[rad\].
     pub q_m: Vec<f64>,
     /// Link velocities [rad/s].
     pub dq_l: Vec<f64>,
@@ -192,7 +192,7 @@ mod tests {
     fn bad_lines_name_line_column_and_key() {
         let rest = r#""q_m": [3, 4], "dq_l": [5, 6], "dq_m": [7, 8]}"#;
         for (line, expected) in [
-            (format!(r#"{{"q_l": [1, "x"], {rest}"#), "s.jsonl:3:16: q_l: invalid type: string"),
+            (format!(r#"{{"q_l": [1, "x"], {rest}"#), "s.jsonl:3:15: q_l: invalid type: string"),
             (format!(r#"{{"q_l": [1], {rest}"#), "q_l: 2 numbers expected, one per joint; got 1"),
             (format!(r#"{{"q_l": [1, 1e999], {rest}"#), "q_l: number out of range"),
             (format!(r#"{{"q_l": [1, NaN], {rest}"#), "q_l: expected value"),

@@ -14,20 +14,20 @@ use super::table::Table;
 pub enum Links {
     /// Two links in a horizontal plane, in closed form; gravity does not act on them.
     PlanarTwoLink {
-        /// Masses [kg].
+        /// Masses \[kg\].
         mass: [f64; 2],
-        /// Lengths [m]; the second plays no part in the dynamics.
+        /// Lengths \[m\]; the second plays no part in the dynamics.
         length: [f64; 2],
-        /// Distances of the centres of mass from the joints [m].
+        /// Distances of the centres of mass from the joints \[m\].
         com: [f64; 2],
         /// Rotational inertias about the centres of mass [kg m²].
         inertia: [f64; 2],
     },
     /// One link on a horizontal axis; q = 0 hangs along gravity.
     Pendulum {
-        /// Mass [kg].
+        /// Mass \[kg\].
         mass: f64,
-        /// Distance of the centre of mass from the joint [m].
+        /// Distance of the centre of mass from the joint \[m\].
         com: f64,
         /// Rotational inertia about the centre of mass [kg m²]; about the joint it is `inertia` + `mass` `com`².
         inertia: f64,
@@ -49,11 +49,11 @@ pub struct Body {
     pub axis: [f64; 3],
     /// Takes joint-frame coordinates at q = 0 to those of the parent's frame; rows first.
     pub rotation: [[f64; 3]; 3],
-    /// Origin of the joint frame in the parent's frame [m].
+    /// Origin of the joint frame in the parent's frame \[m\].
     pub translation: [f64; 3],
-    /// Mass [kg].
+    /// Mass \[kg\].
     pub mass: f64,
-    /// Centre of mass in the joint frame [m].
+    /// Centre of mass in the joint frame \[m\].
     pub com: [f64; 3],
     /// Rotational inertia about the centre of mass, in the axes of the joint frame [kg m²].
     pub inertia: [[f64; 3]; 3],
@@ -62,9 +62,9 @@ pub struct Body {
 /// How a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
-    /// Turns about its axis [rad].
+    /// Turns about its axis \[rad\].
     Revolute,
-    /// Slides along its axis [m].
+    /// Slides along its axis \[m\].
     Prismatic,
 }
 

@@ -2,7 +2,7 @@
 
 use flexure_core::linalg::{Matrix, Vector};
 
-/// A frame in another: turned by `rotation`, then shifted by `translation` [m].
+/// A frame in another: turned by `rotation`, then shifted by `translation` \[m\].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pose {
     pub rotation: Matrix<f64, 3, 3>,
@@ -14,7 +14,7 @@ impl Pose {
         Self { rotation: Matrix::identity(), translation: Vector::ZERO }
     }
 
-    /// From `xyz` [m] and `rpy` [rad]: roll about x, then pitch about y, then yaw about z, all of the outer frame, as
+    /// From `xyz` \[m\] and `rpy` [rad]: roll about x, then pitch about y, then yaw about z, all of the outer frame, as
     /// in URDF.
     pub fn new(xyz: [f64; 3], rpy: [f64; 3]) -> Self {
         let [(sr, cr), (sp, cp), (sy, cy)] = rpy.map(f64::sin_cos);
@@ -38,9 +38,9 @@ impl Pose {
 /// A rigid body in some frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rigid {
-    /// Mass [kg].
+    /// Mass \[kg\].
     pub mass: f64,
-    /// Centre of mass [m].
+    /// Centre of mass \[m\].
     pub com: Vector<f64, 3>,
     /// Rotational inertia about the centre of mass, in the axes of the frame [kg m²].
     pub inertia: Matrix<f64, 3, 3>,

@@ -61,18 +61,15 @@ impl<'a> Assembly<'a> {
             }
         };
         let pose = outer.then(&joint.pose);
-        let placed = match joint.motion {
-            Some((kind, axis)) => {
-                let body = Body::new(joint.name, parent, kind, axis, &pose);
-                self.bodies.push((body, joint.body, pose));
-                Placed { body: Some(self.bodies.len() - 1), pose: Pose::identity() }
+        let placed = if let Some((kind, axis)) = joint.motion {
+            self.bodies.push((Body::new(joint.name, parent, kind, axis, &pose), joint.body, pose));
+            Placed { body: Some(self.bodies.len() - 1), pose: Pose::identity() }
+        } else {
+            // What is fixed in the base never moves: only what is fixed in a body counts.
+            if let Some((_, rigid, _)) = parent.and_then(|index| self.bodies.get_mut(index)) {
+                *rigid = rigid.joined(&joint.body.seen_from(&pose));
             }
-            None => {
-                if let Some((_, rigid, _)) = parent.and_then(|index| self.bodies.get_mut(index)) {
-                    *rigid = rigid.joined(&joint.body.seen_from(&pose));
-                }
-                Placed { body: parent, pose }
-            }
+            Placed { body: parent, pose }
         };
         if self.placed.insert(joint.name, placed).is_some() {
             let message =

@@ -1,0 +1,57 @@
+//! Robot and scenario files with cuts, flipped bits and stray tokens: accepted or refused at a place, never a panic.
+
+use std::path::Path;
+
+use flexure::io::{ROBOTS, SCENARIOS, robot_from_text, scenario_from_text};
+
+/// Splitmix64: the same mutations on every run.
+struct Noise(u64);
+
+impl Noise {
+    fn below(&mut self, bound: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        usize::try_from((z ^ (z >> 31)) % bound.max(1) as u64).unwrap()
+    }
+
+    /// `text` after a few cuts, flipped bits and stray tokens.
+    fn mangled(&mut self, text: &str) -> String {
+        const TOKENS: [&str; 12] =
+            ["-", "nan", "[", "]", "=", "\"", "\n", "1e308", "é", "[[links.joint]]\n", "'''", "."];
+        let mut bytes = text.as_bytes().to_vec();
+        for _ in 0..=self.below(3) {
+            let at = self.below(bytes.len());
+            match self.below(10) {
+                0 => bytes.truncate(at),
+                1..=5 if !bytes.is_empty() => bytes[at] ^= 1 << self.below(7),
+                6 | 7 => drop(bytes.splice(at..at, TOKENS[self.below(TOKENS.len())].bytes())),
+                _ => drop(bytes.drain(at..(at + 1 + self.below(40)).min(bytes.len()))),
+            }
+        }
+        String::from_utf8_lossy(&bytes).into_owned()
+    }
+}
+
+#[test]
+fn mangled_files_never_panic() {
+    let mut noise = Noise(7);
+    let (mut accepted, mut refused) = (0, 0);
+    for (_, text) in ROBOTS.iter().chain(SCENARIOS) {
+        for _ in 0..150 {
+            let mangled = noise.mangled(text);
+            let robot = robot_from_text("m.toml", &mangled).map(drop);
+            for result in [robot, scenario_from_text("m.toml", &mangled, Path::new("")).map(drop)] {
+                let Err(problems) = result else {
+                    accepted += 1;
+                    continue;
+                };
+                refused += 1;
+                assert!(!problems.to_string().is_empty());
+                assert!(problems.iter().all(|problem| problem.line_column().is_some()), "{problems}");
+            }
+        }
+    }
+    assert!(accepted > 100 && refused > 1000, "{accepted} accepted, {refused} refused");
+}
