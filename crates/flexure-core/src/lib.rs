@@ -20,6 +20,7 @@
 pub mod control;
 pub mod linalg;
 pub mod model;
+pub mod reference;
 pub mod robots;
 pub mod scalar;
 pub mod spatial;

@@ -2,5 +2,12 @@
 
 pub use flexure_core as core;
 
+pub mod io;
+pub mod rates;
+pub mod reference;
+pub mod registry;
+pub mod report;
+pub mod run;
+pub mod sim;
 pub mod summary;
 pub mod trace;

@@ -3,7 +3,7 @@
 use super::{Piecewise, Scalar, leaf};
 
 macro_rules! float {
-    ($t:ident, $from:expr, $sqrt:ident, $exp:ident, $ln:ident, $sincos:ident, $tanh:ident, $log1p:ident, $fabs:ident, $atan:ident) => {
+    ($t:ident, $from:expr, $sqrt:ident, $exp:ident, $ln:ident, $sincos:ident, $tanh:ident, $sinh:ident, $log1p:ident, $fabs:ident, $atan:ident) => {
         impl Scalar for $t {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -32,19 +32,16 @@ macro_rules! float {
             fn tanh(self) -> Self {
                 libm::$tanh(self)
             }
-            /// `|x| + ln((1 + e^(−2|x|)) / 2)`, which neither overflows nor cancels for large `|x|`; near 0, where it
-            /// would cancel, `½ ln(1 + sinh² x)`.
+            /// `ln(1 + 2 sinh² (x/2))` where `|x| < 1`, `|x| − ln 2 + ln(1 + e^(−2|x|))` beyond, which cannot overflow:
+            /// neither cancels in its domain.
             #[inline]
             fn ln_cosh(self) -> Self {
                 let a = libm::$fabs(self);
-                if a < 0.5 {
-                    let e = libm::$exp(a);
-                    let sinh = 0.5 * (e - 1.0 / e);
-                    // sinh loses relative accuracy below 1e-2; its series does not.
-                    let sinh = if a < 0.03125 { a * (1.0 + a * a / 6.0 * (1.0 + a * a / 20.0 * (1.0 + a * a / 42.0))) } else { sinh };
-                    0.5 * libm::$log1p(sinh * sinh)
+                if a < 1.0 {
+                    let sinh = libm::$sinh(0.5 * a);
+                    libm::$log1p(2.0 * sinh * sinh)
                 } else {
-                    a - core::$t::consts::LN_2 + libm::$log1p(libm::$exp(-2.0 * a))
+                    (a - core::$t::consts::LN_2) + libm::$log1p(libm::$exp(-2.0 * a))
                 }
             }
             #[inline]
@@ -64,6 +61,15 @@ macro_rules! float {
                     self // NaN
                 }
             }
+            // Comparing, not subtracting: ∞ − ∞ is not a number, yet equals itself.
+            #[inline]
+            fn min(self, other: Self) -> Self {
+                if self <= other { self } else if other < self { other } else { self + other }
+            }
+            #[inline]
+            fn max(self, other: Self) -> Self {
+                if self >= other { self } else if other > self { other } else { self + other }
+            }
         }
 
         leaf!([] $t);
@@ -79,5 +85,5 @@ fn narrow(x: f64) -> f32 {
     x as f32
 }
 
-float!(f64, core::convert::identity, sqrt, exp, log, sincos, tanh, log1p, fabs, atan);
-float!(f32, narrow, sqrtf, expf, logf, sincosf, tanhf, log1pf, fabsf, atanf);
+float!(f64, core::convert::identity, sqrt, exp, log, sincos, tanh, sinh, log1p, fabs, atan);
+float!(f32, narrow, sqrtf, expf, logf, sincosf, tanhf, sinhf, log1pf, fabsf, atanf);

@@ -1,0 +1,32 @@
+//! Rest to rest.
+
+use super::{Reference, Smoothstep};
+use crate::linalg::Vector;
+use crate::scalar::{Over, Piecewise, Scalar};
+
+/// A straight line in joint space, from rest to rest: from + s((t − start) / duration) (to − from).
+///
+/// At rest before `start` and after `start + duration`; continuous up to derivative m of the [`Smoothstep`], with
+/// q_d = `from` and q_d = `to` exactly outside. The derivative of order m + 1 jumps at both ends; there it is that of
+/// the motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointToPoint<C, const N: usize> {
+    /// Posture before the motion in rad.
+    pub from: Vector<C, N>,
+    /// Posture after the motion in rad.
+    pub to: Vector<C, N>,
+    /// Time of departure in s.
+    pub start: C,
+    /// Time that the motion takes in s; `duration` > 0 is the caller's duty.
+    pub duration: C,
+    /// How the motion goes in between.
+    pub step: Smoothstep,
+}
+
+impl<C: Scalar, const N: usize> Reference<C, N> for PointToPoint<C, N> {
+    #[inline]
+    fn on<T: Over<C> + Piecewise>(&self, t: T) -> Vector<T, N> {
+        let tau = (t - T::constant(self.start)).scale(self.duration.recip());
+        Vector::from_fn(|i| self.step.blend(T::constant(self.from[i]), T::constant(self.to[i]), tau))
+    }
+}

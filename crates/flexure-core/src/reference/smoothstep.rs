@@ -1,0 +1,102 @@
+//! The polynomials that go from 0 to 1 and are at rest at both ends.
+
+use crate::scalar::{Piecewise, Scalar};
+
+/// The polynomial s of degree 2m + 1 with s(0) = 0, s(1) = 1 and m zero derivatives at both ends.
+///
+/// s(τ) = τᵐ⁺¹ Σ_k C(m+k, k) C(2m+1, m−k) (−τ)ᵏ, held at 0 before τ = 0 and at 1 after τ = 1, where it is Cᵐ.
+/// It obeys s(τ) + s(1 − τ) = 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Smoothstep {
+    /// Degree 5, m = 2: continuous acceleration, the minimum-jerk motion. Not smooth enough for the laws on flexible
+    /// joints, whose torque has the fourth derivative in it.
+    Quintic,
+    /// Degree 7, m = 3: continuous jerk, so a bounded motor torque with steps at both ends.
+    Septic,
+    /// Degree 9, m = 4: continuous fourth derivative, so a continuous motor torque.
+    Nonic,
+}
+
+impl Smoothstep {
+    /// m, the number of derivatives that are zero at both ends, and up to which the step is continuous.
+    #[inline]
+    pub const fn smoothness(self) -> usize {
+        match self {
+            Self::Quintic => 2,
+            Self::Septic => 3,
+            Self::Nonic => 4,
+        }
+    }
+
+    /// s(τ), for any τ.
+    #[inline]
+    pub fn eval<T: Piecewise>(self, tau: T) -> T {
+        self.blend(T::ZERO, T::ONE, tau)
+    }
+
+    /// from + s(τ) (to − from), for any τ: exactly `from` up to τ = 0 and exactly `to` from τ = 1 on, with all
+    /// derivatives up to order m.
+    ///
+    /// Beyond τ = ½ it counts from the other end: there the polynomial would cancel, its last derivative by five
+    /// digits.
+    #[inline]
+    pub fn blend<T: Piecewise>(self, from: T, to: T, tau: T) -> T {
+        let tau = tau.clamp(T::ZERO, T::ONE);
+        let remaining = T::ONE - tau;
+        // 1 − 2τ: not negative in the first half.
+        let early = remaining - tau;
+        let part = (to - from) * self.polynomial(early.select(tau, remaining));
+        early.select(from + part, to - part)
+    }
+
+    /// The polynomial itself.
+    #[inline]
+    fn polynomial<T: Scalar>(self, tau: T) -> T {
+        match self {
+            Self::Quintic => horner(const { &coefficients::<3>() }, tau),
+            Self::Septic => horner(const { &coefficients::<4>() }, tau),
+            Self::Nonic => horner(const { &coefficients::<5>() }, tau),
+        }
+    }
+}
+
+/// τᴹ Σ_k c_k (−τ)ᵏ.
+#[inline]
+fn horner<T: Scalar, const M: usize>(coefficients: &[f64; M], tau: T) -> T {
+    let mut sum = T::ZERO;
+    for &c in coefficients.iter().rev() {
+        sum = T::from_f64(c) - sum * tau;
+    }
+    for _ in 0..M {
+        sum *= tau;
+    }
+    sum
+}
+
+/// C(m+k, k) C(2m+1, m−k) for k = 0 … m, where M = m + 1.
+#[expect(
+    clippy::indexing_slicing,
+    reason = "evaluated by the compiler, where a wrong index is a build error"
+)]
+const fn coefficients<const M: usize>() -> [f64; M] {
+    let m = M - 1;
+    let mut c = [0.0; M];
+    let mut k = 0;
+    while k < M {
+        c[k] = (binomial(m + k, k) * binomial(2 * m + 1, m - k)) as f64;
+        k += 1;
+    }
+    c
+}
+
+/// C(n, k).
+const fn binomial(n: usize, k: usize) -> usize {
+    let mut product = 1;
+    let mut i = 0;
+    while i < k {
+        // C(n, i + 1) = C(n, i) (n − i) / (i + 1), an integer.
+        product = product * (n - i) / (i + 1);
+        i += 1;
+    }
+    product
+}

@@ -1,0 +1,423 @@
+//! Laws that every reference obeys, and what each promises besides.
+#![expect(clippy::float_cmp, reason = "exactness at the ends is the promise under test")]
+
+use flexure_core::linalg::Vector;
+use flexure_core::reference::{Multisine, PointToPoint, Reference, Sine, SmoothStart, Smoothstep, Term};
+use flexure_core::scalar::{Dual, Jet};
+
+const STEPS: [Smoothstep; 3] = [Smoothstep::Quintic, Smoothstep::Septic, Smoothstep::Nonic];
+
+const SINE: Sine<f64, 2> = Sine {
+    offset: Vector([0.3, -1.2]),
+    amplitude: Vector([1.0, 0.4]),
+    frequency: Vector([1.7, 3.1]),
+    phase: Vector([0.2, -0.9]),
+};
+
+const TERMS: [Term<f64, 2>; 2] = [
+    Term { amplitude: Vector([0.7, 0.2]), frequency: Vector([0.9, 2.0]), phase: Vector([0.0, 1.0]) },
+    Term { amplitude: Vector([-0.3, 0.5]), frequency: Vector([2.3, 1.1]), phase: Vector([-2.0, 0.4]) },
+];
+
+const MULTISINE: Multisine<f64, [Term<f64, 2>; 2], 2> =
+    Multisine { offset: Vector([0.1, 0.9]), terms: TERMS };
+
+/// Departure and duration are dyadic, so that instants on either side of its ends are too.
+const fn point_to_point(step: Smoothstep) -> PointToPoint<f64, 2> {
+    PointToPoint { from: Vector([0.3, -0.8]), to: Vector([-1.1, 0.7]), start: 0.5, duration: 2.0, step }
+}
+
+const SMOOTH_START: SmoothStart<f64, Sine<f64, 2>, 2> =
+    SmoothStart { from: Vector([-0.4, 0.6]), duration: 2.0, then: SINE };
+
+/// Where two pieces meet: the time [s] and the last derivative that they share.
+type Joint = (f64, usize);
+
+/// A statement about every reference. Methods of `Reference` are generic, so the sweep is a visitor.
+trait Law {
+    fn check<R: Reference<f64, 2>>(&self, name: &str, q_d: &R, joints: &[Joint]);
+}
+
+/// Every reference of the library: one line each.
+fn sweep(law: &impl Law) {
+    law.check("set point", &Vector([0.3, -0.7]), &[]);
+    law.check("sine", &SINE, &[]);
+    law.check("multisine", &MULTISINE, &[]);
+    law.check("borrowed", &&SINE, &[]);
+    for step in STEPS {
+        let m = step.smoothness();
+        law.check(&format!("point to point, {step:?}"), &point_to_point(step), &[(0.5, m), (2.5, m)]);
+    }
+    law.check("smooth start", &SMOOTH_START, &[(0.0, 4), (2.0, 4)]);
+}
+
+/// On either side of all joints and in between, never within 0.03 s of one.
+fn instants() -> impl Iterator<Item = f64> {
+    (-9..40)
+        .map(|i| 0.1 * f64::from(i) + 0.04)
+        .filter(|t| [0.0, 0.5, 2.0, 2.5].iter().all(|j| (t - j).abs() > 0.03))
+}
+
+fn assert_close(a: f64, b: f64, tolerance: f64, what: &str) {
+    assert!((a - b).abs() <= tolerance, "{what}: {a:e} and {b:e} differ by {:e}", (a - b).abs());
+}
+
+struct PositionIsTheHeadOfTheJet;
+
+impl Law for PositionIsTheHeadOfTheJet {
+    fn check<R: Reference<f64, 2>>(&self, name: &str, q_d: &R, _: &[Joint]) {
+        for t in instants() {
+            let (jet, longer, position) = (q_d.at::<5>(t), q_d.at::<9>(t), q_d.on(t));
+            for i in 0..2 {
+                // The same operations in the same order: equal to the bit.
+                assert_eq!(jet[i].coefficient(0).to_bits(), position[i].to_bits(), "{name} at {t} s");
+                assert_eq!(
+                    jet[i],
+                    longer[i].truncate(),
+                    "{name} at {t} s: more coefficients change the first"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn position_is_the_head_of_the_jet() {
+    sweep(&PositionIsTheHeadOfTheJet);
+}
+
+/// The jet predicts positions nearby, computed without any derivative.
+struct JetIsTheTaylorSeries;
+
+impl Law for JetIsTheTaylorSeries {
+    fn check<R: Reference<f64, 2>>(&self, name: &str, q_d: &R, joints: &[Joint]) {
+        for t in instants() {
+            for h in [-0.02, 0.015, 0.03] {
+                assert!(joints.iter().all(|(joint, _)| (t - joint) * (t + h - joint) > 0.0));
+                let (jet, position) = (q_d.at::<16>(t), q_d.on(t + h));
+                for i in 0..2 {
+                    let series = (0..16).rev().fold(0.0, |sum, k| sum * h + jet[i].coefficient(k));
+                    // Polynomials end before order 16; for sines the remainder is (3.1 h)¹⁶ / 16! < 1e-28. Left is
+                    // rounding of t + h and of some 30 operations on numbers below 4: 100 ε.
+                    assert_close(series, position[i], 2.5e-14, &format!("{name} at {t} + {h} s, joint {i}"));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn jet_is_the_taylor_series() {
+    sweep(&JetIsTheTaylorSeries);
+}
+
+/// d/dt by dual time, whose rules share nothing with those of jets, is the shifted jet.
+struct DualTimeDifferentiatesJets;
+
+impl Law for DualTimeDifferentiatesJets {
+    fn check<R: Reference<f64, 2>>(&self, name: &str, q_d: &R, joints: &[Joint]) {
+        for t in instants().chain(joints.iter().map(|joint| joint.0)) {
+            let dual = q_d.on(Dual::<Jet<f64, 6>, 1>::variable(Jet::variable(t), 0));
+            for i in 0..2 {
+                let [velocity] = dual[i].gradient;
+                for k in 0..5 {
+                    let derivative = dual[i].value.derivative(k + 1);
+                    // Derivatives of smooth steps reach 3e4 from summands some ten times larger: 100 ε of that.
+                    let tolerance = 100.0 * f64::EPSILON * derivative.abs().max(100.0);
+                    let what = format!("{name} at {t} s, joint {i}, derivative {}", k + 1);
+                    assert_close(velocity.derivative(k), derivative, tolerance, &what);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn dual_time_differentiates_jets() {
+    sweep(&DualTimeDifferentiatesJets);
+}
+
+/// Left and right limits agree up to the promised derivative, and no further.
+struct PiecesMeetAsPromised;
+
+impl Law for PiecesMeetAsPromised {
+    fn check<R: Reference<f64, 2>>(&self, name: &str, q_d: &R, joints: &[Joint]) {
+        for &(t, smoothness) in joints {
+            // Two ulps at 2.5 s, exact at every joint.
+            let step = 2.0f64.powi(-50);
+            let (left, right) = (q_d.at::<9>(t - step), q_d.at::<9>(t + step));
+            for i in 0..2 {
+                for k in 0..=smoothness {
+                    let what = format!("{name} at {t} s, joint {i}, derivative {k}");
+                    // The next derivative is at most 1e3 here: it changes this one by 2e-12.
+                    assert_close(left[i].derivative(k), right[i].derivative(k), 1e-11, &what);
+                }
+                let jump = left[i].derivative(smoothness + 1) - right[i].derivative(smoothness + 1);
+                assert!(jump.abs() > 1.0, "{name} at {t} s is smoother than promised");
+            }
+        }
+    }
+}
+
+#[test]
+fn pieces_meet_as_promised() {
+    sweep(&PiecesMeetAsPromised);
+}
+
+struct NotANumberStaysOne;
+
+impl Law for NotANumberStaysOne {
+    fn check<R: Reference<f64, 2>>(&self, name: &str, q_d: &R, _: &[Joint]) {
+        let moves = q_d.on(0.0) != q_d.on(1.0);
+        assert_eq!(q_d.on(f64::NAN).iter().all(f64::is_nan), moves, "{name}: a time that is not a number");
+    }
+}
+
+#[test]
+fn not_a_number_stays_one() {
+    sweep(&NotANumberStaysOne);
+}
+
+#[test]
+fn sine_has_its_closed_form() {
+    for t in instants() {
+        let jet = SINE.at::<8>(t);
+        for i in 0..2 {
+            let (amplitude, omega) = (SINE.amplitude[i], SINE.frequency[i]);
+            for k in 0..8 {
+                let quarter_turns = f64::from(k) * core::f64::consts::FRAC_PI_2;
+                let wave = amplitude * omega.powi(k) * f64::sin(omega * t + SINE.phase[i] + quarter_turns);
+                let expected = if k == 0 { SINE.offset[i] + wave } else { wave };
+                let k = usize::try_from(k).unwrap();
+                // The oracle rounds its angle, below 25 rad, by 4e-15; the jet a few times an order.
+                let tolerance = 2e-14 * omega.powf(k as f64).max(1.0);
+                assert_close(jet[i].derivative(k), expected, tolerance, &format!("derivative {k} at {t} s"));
+            }
+        }
+    }
+}
+
+#[test]
+fn multisine_is_the_sum_of_its_sines() {
+    let sines = TERMS.map(|term| Sine {
+        offset: Vector::ZERO,
+        amplitude: term.amplitude,
+        frequency: term.frequency,
+        phase: term.phase,
+    });
+    let owned = Multisine { offset: MULTISINE.offset, terms: TERMS.to_vec() };
+    let borrowed = Multisine { offset: MULTISINE.offset, terms: &TERMS[..] };
+    let none = Multisine { offset: MULTISINE.offset, terms: &TERMS[..0] };
+    for t in instants() {
+        let expected = MULTISINE.offset.lift() + sines[0].at::<6>(t) + sines[1].at::<6>(t);
+        // The same additions in the same order.
+        assert_eq!(MULTISINE.at(t), expected);
+        assert_eq!(owned.at(t), expected);
+        assert_eq!(borrowed.at(t), expected);
+        assert_eq!(none.at::<6>(t), MULTISINE.offset.lift());
+    }
+}
+
+#[test]
+fn smoothstep_slope_is_the_bell() {
+    // s' = (2m + 1)! / m!² τᵐ (1 − τ)ᵐ: an independent characterisation, with s(0) = 0.
+    for (step, scale) in STEPS.into_iter().zip([30.0, 140.0, 630.0]) {
+        let m = i32::try_from(step.smoothness()).unwrap();
+        for i in 0..=1000 {
+            let tau = f64::from(i) / 1000.0;
+            let s = step.eval(Jet::<f64, 2>::variable(tau));
+            let bell = scale * (tau * (1.0 - tau)).powi(m);
+            // Ten operations on intermediate sums up to 30 times the slope: 100 ε × 2.5, the largest slope.
+            assert_close(s.derivative(1), bell, 6e-14, &format!("{step:?} at {tau}"));
+        }
+        assert_eq!(step.eval(0.0), 0.0);
+        assert_eq!(step.eval(0.5), 0.5);
+    }
+}
+
+#[test]
+fn smoothstep_is_its_published_polynomial() {
+    let published: [&[f64]; 3] =
+        [&[10.0, -15.0, 6.0], &[35.0, -84.0, 70.0, -20.0], &[126.0, -420.0, 540.0, -315.0, 70.0]];
+    for (step, coefficients) in STEPS.into_iter().zip(published) {
+        let jet = step.eval(Jet::<f64, 10>::variable(0.0));
+        for k in 0..10 {
+            let expected = usize::checked_sub(k, step.smoothness() + 1).and_then(|j| coefficients.get(j));
+            // Integers: no rounding.
+            assert_eq!(jet.coefficient(k), expected.copied().unwrap_or(0.0), "{step:?}, power {k}");
+        }
+    }
+}
+
+#[test]
+fn smoothstep_is_exact_at_its_ends() {
+    for step in STEPS {
+        let m = step.smoothness();
+        for (tau, s) in [(0.0, 0.0), (1.0, 1.0)] {
+            let jet = step.eval(Jet::<f64, 6>::variable(tau));
+            assert_eq!(jet.derivative(0), s);
+            for k in 1..=m {
+                assert_eq!(jet.derivative(k), 0.0, "{step:?} at {tau}, derivative {k}");
+            }
+            assert!(jet.derivative(m + 1).abs() >= 60.0, "{step:?} is smoother than promised");
+        }
+        for tau in [-3.0, -1e-300, 1.0 + f64::EPSILON, 7.0] {
+            let held = if tau < 0.0 { 0.0 } else { 1.0 };
+            assert_eq!(step.eval(Jet::<f64, 6>::variable(tau)), Jet::value(held), "{step:?} at {tau}");
+        }
+    }
+}
+
+#[test]
+fn smoothstep_is_antisymmetric_and_increasing() {
+    for step in STEPS {
+        let mut before = 0.0;
+        for i in 0..=4096 {
+            // Dyadic, so that 1 − τ is exact, and with it the law.
+            let tau = f64::from(i) / 4096.0;
+            let s = step.eval(tau);
+            assert_eq!(s + step.eval(1.0 - tau), 1.0, "{step:?} at {tau}");
+            assert!(s >= before, "{step:?} falls at {tau}");
+            before = s;
+        }
+    }
+}
+
+#[test]
+fn smoothstep_meets_itself_in_the_middle() {
+    for step in STEPS {
+        let (left, right) = (0.5f64.next_down(), 0.5f64.next_up());
+        let (left, right) =
+            (step.eval(Jet::<f64, 10>::variable(left)), step.eval(Jet::<f64, 10>::variable(right)));
+        for k in 0..10 {
+            // Coefficients up to 9e3 at the middle from binomial sums: 100 ε of that.
+            assert_close(left.coefficient(k), right.coefficient(k), 2e-10, &format!("{step:?}, power {k}"));
+        }
+    }
+}
+
+#[test]
+fn point_to_point_rests_exactly_at_both_postures() {
+    for step in STEPS {
+        // 0.1 and 0.7 are not dyadic, the postures far apart in size: rounding would show.
+        let q_d = PointToPoint {
+            from: Vector([1e-3, 0.1]),
+            to: Vector([1e3, 0.1]),
+            start: 0.1,
+            duration: 0.7,
+            step,
+        };
+        for t in [-5.0, 0.0, 0.1] {
+            assert_eq!(q_d.at::<3>(t), q_d.from.lift(), "{step:?} at {t} s");
+        }
+        for t in [0.8 + 1e-15, 1.0, 50.0] {
+            assert_eq!(q_d.at::<3>(t), q_d.to.lift(), "{step:?} at {t} s");
+        }
+        // A joint that has nowhere to go does not move at all.
+        for t in instants() {
+            assert_eq!(q_d.at::<6>(t)[1], Jet::value(0.1), "{step:?} at {t} s");
+        }
+        let halfway = q_d.on(0.1 + 0.7 / 2.0)[0];
+        // Slope 2.5 × 1e3 / 0.7 times a few ulp of time.
+        assert_close(halfway, 500.0005, 1e-11, "halfway");
+    }
+}
+
+#[test]
+fn smooth_start_leaves_from_rest() {
+    for t in [-1e3, -0.1, 0.0] {
+        // Exact: the step is τ⁵ times a polynomial.
+        assert_eq!(SMOOTH_START.at::<5>(t), SMOOTH_START.from.lift(), "at {t} s");
+    }
+}
+
+#[test]
+fn smooth_start_arrives_at_the_reference() {
+    for t in [2.0, 2.0f64.next_up(), 3.7, 100.0] {
+        // Exact: what is left to go is (1 − τ)⁵ times a polynomial, and 0 after the end.
+        assert_eq!(SMOOTH_START.at::<5>(t), SINE.at(t), "at {t} s");
+    }
+    assert_eq!(SMOOTH_START.at::<9>(2.5), SINE.at(2.5));
+}
+
+#[test]
+fn smooth_start_jumps_in_the_fifth_derivative_as_documented() {
+    for t in [0.0, 2.0] {
+        let (inside, outside) = (SMOOTH_START.at::<6>(t), SINE.at::<6>(t));
+        for i in 0..2 {
+            let outside = if t > 0.0 { outside[i].derivative(5) } else { 0.0 };
+            let jump = 15120.0 * (SINE.on(t)[i] - SMOOTH_START.from[i]) / 2.0f64.powi(5);
+            // 50 operations on numbers below 1e3.
+            assert_close(inside[i].derivative(5) - outside, jump, 1e-11, &format!("at {t} s, joint {i}"));
+        }
+    }
+}
+
+#[test]
+fn smooth_start_obeys_leibniz() {
+    for t in instants().filter(|t| (0.0..2.0).contains(t)) {
+        let s = Smoothstep::Nonic.eval(Jet::<f64, 5>::variable(t).scaled_time(2.0));
+        let (q_d, r) = (SMOOTH_START.at::<5>(t), SINE.at::<5>(t));
+        for i in 0..2 {
+            let expected = Jet::value(SMOOTH_START.from[i]) + s * (r[i] - Jet::value(SMOOTH_START.from[i]));
+            for k in 0..5 {
+                let tolerance = 100.0 * f64::EPSILON * expected.derivative(k).abs().max(100.0);
+                let what = format!("at {t} s, joint {i}, derivative {k}");
+                // Counting from the far end rounds otherwise than the formula, by ε of summands below 1e2.
+                assert_close(q_d[i].derivative(k), expected.derivative(k), tolerance, &what);
+            }
+        }
+    }
+}
+
+/// t ↦ t / duration on a jet.
+trait ScaledTime {
+    fn scaled_time(self, duration: f64) -> Self;
+}
+
+impl<const K: usize> ScaledTime for Jet<f64, K> {
+    fn scaled_time(self, duration: f64) -> Self {
+        self / Jet::value(duration)
+    }
+}
+
+#[test]
+fn smooth_start_to_a_set_point_is_the_nonic_motion() {
+    let (from, to) = (Vector([0.3, -0.8]), Vector([-1.1, 0.7]));
+    let start = SmoothStart { from, duration: 1.7, then: to };
+    let motion = PointToPoint { from, to, start: 0.0, duration: 1.7, step: Smoothstep::Nonic };
+    for t in instants() {
+        assert_eq!(start.at::<6>(t), motion.at(t), "at {t} s");
+    }
+}
+
+#[test]
+fn single_precision_follows() {
+    let narrow = Sine::<f32, 1> {
+        offset: Vector([0.25]),
+        amplitude: Vector([0.5]),
+        frequency: Vector([2.0]),
+        phase: Vector([0.5]),
+    };
+    let wide = Sine::<f64, 1> {
+        offset: Vector([0.25]),
+        amplitude: Vector([0.5]),
+        frequency: Vector([2.0]),
+        phase: Vector([0.5]),
+    };
+    let narrow = SmoothStart { from: Vector([0.0]), duration: 4.0, then: narrow };
+    let wide = SmoothStart { from: Vector([0.0]), duration: 4.0, then: wide };
+    for i in 0..48 {
+        let (f32_jet, f64_jet) = (narrow.at::<5>(i as f32 / 8.0), wide.at::<5>(f64::from(i) / 8.0));
+        for k in 0..5 {
+            // 100 ε of f32 on derivatives below 10, whose summands are.
+            let (a, b) = (f64::from(f32_jet[0].derivative(k)), f64_jet[0].derivative(k));
+            assert_close(
+                a,
+                b,
+                100.0 * f64::from(f32::EPSILON) * b.abs().max(10.0),
+                &format!("derivative {k}"),
+            );
+        }
+    }
+}

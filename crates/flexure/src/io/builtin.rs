@@ -1,0 +1,92 @@
+//! Robots and scenarios that need no files, and loading by name or path. One line adds one.
+
+use std::path::Path;
+
+use super::diagnostic::{Problem, Problems};
+use super::robot::{self, Robot};
+use super::scenario::{self, Base, Scenario};
+use super::source::{self, Source};
+use super::suggest;
+
+macro_rules! data {
+    ($folder:literal: $($name:literal)*) => {
+        &[$(($name, include_str!(concat!("../../../../", $folder, "/", $name, ".toml")))),*]
+    };
+}
+
+/// Built-in robots: name and text of the file.
+pub const ROBOTS: &[(&str, &str)] = data!("robots": "quanser-2dof" "pendulum-1dof" "panda");
+
+/// Built-in scenarios: name and text of the file.
+pub const SCENARIOS: &[(&str, &str)] = data!("scenarios":
+    "two-link-tanh" "two-link-linear" "two-link-coupled-tanh"
+    "two-link-tanh-smooth" "two-link-linear-smooth" "two-link-coupled-tanh-smooth"
+    "pendulum-tanh" "panda-tanh-smooth");
+
+/// Loads the robot file at a path, or the built-in robot of that name.
+///
+/// A bare word without ending or folder is a name; anything else is a path.
+///
+/// # Errors
+/// With everything that is wrong.
+pub fn load_robot(path_or_name: &str) -> Result<Robot, Problems> {
+    robot(path_or_name, &Base(Some("".into())))
+}
+
+/// Loads the scenario file at a path, or the built-in scenario of that name.
+///
+/// A bare word without ending or folder is a name; anything else is a path.
+///
+/// # Errors
+/// With everything that is wrong, in the robot's file as well.
+pub fn load_scenario(path_or_name: &str) -> Result<Scenario, Problems> {
+    if is_name(path_or_name) {
+        let text = find(path_or_name, SCENARIOS, "scenario")?;
+        return scenario::read(&Source::new(path_or_name, text), &Base(None));
+    }
+    let path = Path::new(path_or_name);
+    scenario::read(&source::read(path)?, &Base(Some(path.parent().unwrap_or(Path::new("")).to_owned())))
+}
+
+/// The robot at `path_or_name`, relative to `base`.
+pub(super) fn robot(path_or_name: &str, base: &Base) -> Result<Robot, Problems> {
+    if is_name(path_or_name) {
+        let text = find(path_or_name, ROBOTS, "robot")?;
+        return robot::read(&Source::new(path_or_name, text));
+    }
+    let path = base.resolve(path_or_name).ok_or_else(|| {
+        let message =
+            format!("{} is a relative path in a file that is in no folder", suggest::quoted(path_or_name));
+        Problem::new("unreadable", message, "give the whole path or the name of a built-in robot")
+    })?;
+    robot::read(&source::read(&path)?)
+}
+
+fn is_name(text: &str) -> bool {
+    !text.contains(['/', '\\', '.'])
+}
+
+fn find(name: &str, registry: &[(&str, &'static str)], what: &str) -> Result<&'static str, Problem> {
+    registry.iter().find(|(known, _)| *known == name).map(|&(_, text)| text).ok_or_else(|| {
+        let message = format!("no built-in {what} is called {}", suggest::quoted(name));
+        let help = suggest::hint(name, registry.iter().map(|&(known, _)| known));
+        Problem::new("unknown-name", message, format!("{help}; a path ends in .toml"))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{ROBOTS, SCENARIOS, load_robot, load_scenario};
+
+    #[test]
+    fn every_member_loads() {
+        for (name, _) in ROBOTS {
+            let robot = load_robot(name).unwrap_or_else(|problems| panic!("{problems}"));
+            assert_eq!(robot.name, *name);
+        }
+        for (name, _) in SCENARIOS {
+            let scenario = load_scenario(name).unwrap_or_else(|problems| panic!("{problems}"));
+            assert_eq!(scenario.name, *name);
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! A TOML document while it is read: its text, the problems found so far, and where every key stands.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::diagnostic::{Problem, Problems};
+use super::quantity::Quantity;
+use super::source::Source;
+use super::table::Table;
+
+/// Problems beyond these are not reported: nobody reads them.
+const MOST_PROBLEMS: usize = 64;
+
+/// Where problems are noted while a file is read.
+#[derive(Debug)]
+pub(super) struct Log {
+    pub source: Source,
+    problems: RefCell<Vec<Problem>>,
+}
+
+impl Log {
+    pub fn new(source: &Source) -> Self {
+        Self { source: source.clone(), problems: RefCell::default() }
+    }
+
+    /// Notes `problem` as it is.
+    pub fn push(&self, problem: Problem) {
+        let mut problems = self.problems.borrow_mut();
+        if problems.len() < MOST_PROBLEMS {
+            problems.push(problem);
+        }
+    }
+
+    /// Notes an error at `span`.
+    pub fn error(
+        &self,
+        span: Range<usize>,
+        code: &'static str,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) {
+        self.push(Problem::new(code, message, help).at(&self.source, span));
+    }
+
+    /// The number `x` called `name`, unless something worse than doubt speaks against it.
+    pub fn accept(&self, name: &str, x: f64, quantity: &Quantity, span: Range<usize>) -> Option<f64> {
+        let Some(problem) = quantity.objection(name, x) else { return Some(x) };
+        let usable = problem.is_warning();
+        self.push(problem.at(&self.source, span));
+        usable.then_some(x)
+    }
+
+    /// The value if there was no error, with the warnings.
+    pub fn finish<T>(self, value: Option<T>) -> Result<(T, Vec<Problem>), Problems> {
+        let source = self.source;
+        let warnings = Problems::or_warnings(self.problems.into_inner())?;
+        match value {
+            Some(value) => Ok((value, warnings)),
+            None => Err(Problem::new(
+                "invalid",
+                "the file cannot be used",
+                "this is a bug of the reader: report it",
+            )
+            .at(&source, 0..0)
+            .into()),
+        }
+    }
+}
+
+/// Reads `source` as TOML and hands the root table to `read`.
+pub(super) fn parse<T>(
+    source: &Source,
+    known: &[&str],
+    read: impl FnOnce(&Table<'_>, &Places) -> Option<T>,
+) -> Result<(T, Vec<Problem>), Problems> {
+    let log = Log::new(source);
+    let (root, errors) = DeTable::parse_recoverable(&source.text);
+    for error in &errors {
+        let help =
+            "not valid TOML: text stands in quotes, numbers like 0.5, arrays like [1.0, 2.0], one key a line";
+        log.error(error.span().unwrap_or(0..0), "syntax", error.message(), help);
+    }
+    if !errors.is_empty() {
+        return log.finish(None);
+    }
+    let places = Places::of(source, root.get_ref());
+    let table = Table::new(root.get_ref(), String::new(), 0..0, &log);
+    table.refuse_unknown(known);
+    let value = read(&table, &places);
+    log.finish(value)
+}
+
+/// Where the keys of a file stand: to report what only shows once the file is used.
+#[derive(Clone, Debug)]
+pub struct Places {
+    source: Source,
+    spans: BTreeMap<String, Range<usize>>,
+}
+
+impl Places {
+    fn of(source: &Source, root: &DeTable<'_>) -> Self {
+        let mut places = Self { source: source.clone(), spans: BTreeMap::new() };
+        places.visit("", root);
+        places
+    }
+
+    fn visit(&mut self, path: &str, table: &DeTable<'_>) {
+        for (key, value) in table {
+            let key = key.get_ref();
+            self.enter(if path.is_empty() { key.to_string() } else { format!("{path}.{key}") }, value);
+        }
+    }
+
+    fn enter(&mut self, path: String, value: &Spanned<DeValue<'_>>) {
+        match value.get_ref() {
+            DeValue::Table(table) => self.visit(&path, table),
+            DeValue::Array(array) if array.iter().any(|entry| entry.get_ref().is_table()) => {
+                for (i, entry) in array.iter().enumerate() {
+                    self.enter(format!("{path}[{i}]"), entry);
+                }
+            }
+            _ => {}
+        }
+        self.spans.insert(path, value.span());
+    }
+
+    /// Name of the file.
+    pub fn file(&self) -> &str {
+        &self.source.name
+    }
+
+    /// A problem at `key` (dotted, like `reference.amplitude` or `links.joint[2].mass`), or at the start of the file if
+    /// there is no such key. `code` is one word; `help` says what to do.
+    pub fn problem(
+        &self,
+        key: &str,
+        code: &'static str,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Problem {
+        Problem::new(code, message, help).at(&self.source, self.spans.get(key).cloned().unwrap_or(0..0))
+    }
+
+    /// Dotted keys with their text, those inside `[sources]` apart.
+    pub(super) fn keys(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.spans.iter().filter_map(|(key, span)| Some((key.as_str(), self.source.text.get(span.clone())?)))
+    }
+}

@@ -1,0 +1,49 @@
+//! Robot, scenario and states files: the only code that touches files.
+//!
+//! Text becomes plain, validated data ([`Robot`], [`Scenario`], [`StateRow`]) or a list of [`Problems`], each with the
+//! number, its unit, the allowed range, the line and a hint. Nothing is defaulted in silence that changes physics:
+//! what was assumed is in [`Robot::assumptions`] and [`Scenario::assumptions`].
+//!
+//! Angles rad, torques N m, inertias kg m², time s, everything on the link side of the gear.
+//!
+//! ```
+//! let scenario = flexure::io::load_scenario("two-link-tanh")?;
+//! assert_eq!(scenario.robot.joints(), 2);
+//! assert!(scenario.assumptions.iter().any(|assumed| assumed.key == "joints.stiffness"));
+//!
+//! let problems = flexure::io::robot_from_text("arm.toml", "nam = 'arm'").unwrap_err();
+//! assert!(problems.to_string().contains("nam"));
+//! # Ok::<(), flexure::io::Problems>(())
+//! ```
+
+mod atomic;
+mod builtin;
+mod controller;
+mod diagnostic;
+mod document;
+mod field;
+mod initial;
+mod links;
+mod provenance;
+mod quantity;
+mod reference;
+mod robot;
+mod samples;
+mod scenario;
+mod source;
+mod states;
+mod suggest;
+mod table;
+
+pub use atomic::{WriteError, write_atomic};
+pub use builtin::{ROBOTS, SCENARIOS, load_robot, load_scenario};
+pub use controller::{Controller, Phi, SideGains};
+pub use diagnostic::{Problem, Problems};
+pub use document::Places;
+pub use initial::Initial;
+pub use links::{Body, JointKind, Links};
+pub use provenance::Assumption;
+pub use reference::{Profile, Reference, Term};
+pub use robot::{Robot, robot_from_text};
+pub use scenario::{Hold, Scenario, scenario_from_text};
+pub use states::{StateRow, States};

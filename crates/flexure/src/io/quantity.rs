@@ -1,0 +1,144 @@
+//! What a number in a file stands for: its unit, its allowed range, and what would be plausible.
+
+use super::diagnostic::Problem;
+
+/// Largest magnitude of any number; together with its reciprocal it keeps every product of a few numbers finite.
+const LARGEST: f64 = 1e30;
+
+/// Its reciprocal.
+const TINY: f64 = 1e-30;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Sign {
+    Any,
+    Positive,
+    NonNegative,
+}
+
+/// A kind of number in a file.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Quantity {
+    /// In words, for hints.
+    pub what: &'static str,
+    /// Unit; empty for none.
+    pub unit: &'static str,
+    sign: Sign,
+    /// Magnitudes of nonzero numbers that raise no doubt, and the doubt.
+    plausible: (f64, f64, &'static str),
+}
+
+impl Quantity {
+    const fn any(what: &'static str, unit: &'static str) -> Self {
+        Self { what, unit, sign: Sign::Any, plausible: (TINY, LARGEST, "") }
+    }
+    const fn positive(what: &'static str, unit: &'static str) -> Self {
+        Self { sign: Sign::Positive, ..Self::any(what, unit) }
+    }
+    const fn non_negative(what: &'static str, unit: &'static str) -> Self {
+        Self { sign: Sign::NonNegative, ..Self::any(what, unit) }
+    }
+    const fn plausible(self, low: f64, high: f64, doubt: &'static str) -> Self {
+        Self { plausible: (low, high, doubt), ..self }
+    }
+
+    /// What and in which unit, for hints.
+    pub fn described(&self) -> String {
+        if self.unit.is_empty() { self.what.to_owned() } else { format!("{} in {}", self.what, self.unit) }
+    }
+
+    /// What speaks against the number `x` called `name`, if anything; a warning if it can be used all the same.
+    pub fn objection(&self, name: &str, x: f64) -> Option<Problem> {
+        let (low, high, doubt) = self.plausible;
+        let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
+        let problem = |code, objection: &str, hint: String| {
+            Problem::new(code, format!("{name} is {}{unit}, {objection}", shortest(x)), hint)
+        };
+        let size = x.abs();
+        let required = if !x.is_finite() {
+            return Some(problem("not-finite", "must be a finite number", self.described()));
+        } else if self.sign == Sign::Positive && x <= 0.0 {
+            "must be > 0"
+        } else if self.sign == Sign::NonNegative && x < 0.0 {
+            "must be >= 0"
+        } else if x == 0.0 || (low..=high).contains(&size) {
+            return None;
+        } else if !(TINY..=LARGEST).contains(&size) {
+            "must be of a magnitude between 1e-30 and 1e30"
+        } else {
+            return Some(
+                problem("suspicious", "is suspicious", format!("{}: {doubt}", self.described())).warning(),
+            );
+        };
+        Some(problem("range", required, self.described()))
+    }
+}
+
+/// `x` in the shorter of its two notations.
+fn shortest(x: f64) -> String {
+    let (plain, scientific) = (format!("{x}"), format!("{x:e}"));
+    if plain.len() <= scientific.len() + 2 { plain } else { scientific }
+}
+
+/// Four turns: nobody writes larger joint angles in radians.
+const FOUR_TURNS: f64 = 8.0 * std::f64::consts::PI;
+const DEGREES: &str = "it looks like degrees";
+const MILLIMETRES: &str = "is it in millimetres?";
+
+pub(super) const GRAVITY: Quantity =
+    Quantity::any("acceleration of gravity", "m/s^2").plausible(1e-6, 100.0, "9.81 on Earth");
+pub(super) const MASS: Quantity = Quantity::positive("mass", "kg").plausible(1e-7, 1e5, "is it in grams?");
+pub(super) const BODY_MASS: Quantity =
+    Quantity::non_negative("mass of the body", "kg").plausible(1e-7, 1e5, "is it in grams?");
+pub(super) const LENGTH: Quantity = Quantity::positive("length", "m").plausible(1e-5, 50.0, MILLIMETRES);
+pub(super) const POSITION: Quantity = Quantity::any("position", "m").plausible(TINY, 50.0, MILLIMETRES);
+pub(super) const INERTIA: Quantity =
+    Quantity::positive("inertia", "kg m^2").plausible(1e-12, 1e5, "is it in kg mm^2 or kg cm^2?");
+pub(super) const BODY_INERTIA: Quantity = Quantity::any("inertia about the centre of mass", "kg m^2")
+    .plausible(TINY, 1e5, "is it in kg mm^2 or kg cm^2?");
+pub(super) const AXIS: Quantity = Quantity::any("component of the joint axis", "");
+pub(super) const ORIENTATION: Quantity =
+    Quantity::any("roll, pitch or yaw", "rad").plausible(TINY, 6.4, DEGREES);
+pub(super) const STIFFNESS: Quantity = Quantity::positive(
+    "joint stiffness K, link side of the gear",
+    "N m/rad",
+)
+.plausible(1e-3, 1e7, "joints lie between 1 and 1e6 N m/rad; is it in N m/degree or on the motor side?");
+pub(super) const MOTOR_INERTIA: Quantity = Quantity::positive(
+    "motor inertia, link side of the gear",
+    "kg m^2",
+)
+.plausible(1e-9, 1e5, "multiply the rotor's by the square of the gear ratio");
+pub(super) const DAMPING: Quantity = Quantity::non_negative(
+    "viscous damping, link side of the gear",
+    "N m s/rad",
+)
+.plausible(TINY, 1e7, "is it on the motor side, or per rev/min?");
+pub(super) const TORQUE_LIMIT: Quantity =
+    Quantity::positive("largest motor torque, link side of the gear", "N m");
+pub(super) const VELOCITY_LIMIT: Quantity = Quantity::positive("largest joint velocity", "rad/s");
+pub(super) const DEFLECTION_LIMIT: Quantity =
+    Quantity::positive("largest deflection of the joint's spring", "rad")
+        .plausible(TINY, FOUR_TURNS, DEGREES);
+pub(super) const DURATION: Quantity =
+    Quantity::positive("duration", "s").plausible(1e-6, 1e6, "is it in milliseconds?");
+pub(super) const PERIOD: Quantity = Quantity::positive("control period", "s").plausible(
+    1e-7,
+    0.1,
+    "is it in milliseconds, or the rate in Hz?",
+);
+pub(super) const TIME: Quantity = Quantity::any("time", "s");
+pub(super) const START: Quantity = Quantity::non_negative("time of departure", "s");
+pub(super) const ANGLE: Quantity =
+    Quantity::any("joint position", "rad").plausible(TINY, FOUR_TURNS, DEGREES);
+pub(super) const AMPLITUDE: Quantity = Quantity::any("amplitude", "rad").plausible(TINY, FOUR_TURNS, DEGREES);
+pub(super) const PHASE: Quantity = Quantity::any("phase", "rad").plausible(TINY, FOUR_TURNS, DEGREES);
+pub(super) const FREQUENCY: Quantity = Quantity::any("angular frequency, 2π times the one in Hz", "rad/s")
+    .plausible(TINY, 1e4, "that is beyond any joint");
+pub(super) const VELOCITY: Quantity =
+    Quantity::any("joint velocity", "rad/s").plausible(TINY, 1e3, "is it in degrees/s or rev/min?");
+pub(super) const GAIN_METRIC: Quantity = Quantity::positive("metric Π, diagonal", "N m/rad");
+pub(super) const GAIN_HARDENING: Quantity =
+    Quantity::non_negative("growth of Π_l with the error squared", "N m/rad^3");
+pub(super) const GAIN_SHAPING: Quantity = Quantity::positive("gain Λ inside φ", "1/s");
+pub(super) const GAIN_DAMPING: Quantity = Quantity::positive("injected damping K_d", "N m s/rad");
+pub(super) const GAIN_KAPPA: Quantity = Quantity::positive("rate κ of coupled-tanh", "1/s");

@@ -1,0 +1,212 @@
+//! Scenario files.
+
+use std::path::{Path, PathBuf};
+
+use super::builtin;
+use super::controller::{self, Controller};
+use super::diagnostic::{Problem, Problems};
+use super::document::{self, Places};
+use super::field::Field;
+use super::initial::{self, Initial};
+use super::links;
+use super::provenance::{self, Assumption};
+use super::quantity;
+use super::reference::{self, Reference};
+use super::robot::Robot;
+use super::source::Source;
+use super::table::Table;
+
+/// Farthest that a reference without smooth start may be from the robot at t = 0 [rad].
+const FAR: f64 = 0.5;
+
+/// Most control periods in a run: more would fill any disk.
+const MOST_PERIODS: f64 = 1e9;
+
+/// One closed loop, as data.
+#[derive(Clone, Debug)]
+pub struct Scenario {
+    /// The file's name without folder and ending.
+    pub name: String,
+    /// The robot.
+    pub robot: Robot,
+    /// Length of the run [s].
+    pub duration: f64,
+    /// Time between two evaluations of the law [s].
+    pub control_period: f64,
+    /// What the torque does between them.
+    pub hold: Hold,
+    /// State at t = 0.
+    pub initial: Initial,
+    /// Where the links shall be.
+    pub reference: Reference,
+    /// Time in which the robot joins the reference from where it is at t = 0, if it does [s].
+    pub smooth_start: Option<f64>,
+    /// The law.
+    pub controller: Controller,
+    /// Numbers that no source vouches for: the robot's, then those of the scenario.
+    pub assumptions: Vec<Assumption>,
+    /// What is suspicious in the robot's file and in this one.
+    pub warnings: Vec<Problem>,
+    /// Where the keys stand in the file.
+    pub places: Places,
+}
+
+/// What the torque does between two evaluations of the law.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Hold {
+    /// It keeps its value, as on a digital controller.
+    #[default]
+    ZeroOrder,
+    /// The law is evaluated at every stage of the integration: continuous time, as in the theory.
+    Continuous,
+}
+
+/// The folder that relative paths start from; none for text that is in no file.
+#[derive(Clone, Debug)]
+pub(super) struct Base(pub Option<PathBuf>);
+
+impl Base {
+    pub fn resolve(&self, path: &str) -> Option<PathBuf> {
+        match &self.0 {
+            Some(folder) => Some(folder.join(path)),
+            None => Path::new(path).is_absolute().then(|| path.into()),
+        }
+    }
+}
+
+/// Reads a scenario from `text`; `name` stands for the file in messages, relative paths in it start from `folder`.
+///
+/// # Errors
+/// With everything that is wrong, in the robot's file as well.
+pub fn scenario_from_text(name: &str, text: &str, folder: &Path) -> Result<Scenario, Problems> {
+    read(&Source::new(name, text), &Base(Some(folder.to_owned())))
+}
+
+const KEYS: &[&str] = &[
+    "robot",
+    "duration",
+    "control_period",
+    "hold",
+    "initial",
+    "reference",
+    "controller",
+    "sources",
+    "imperfection",
+];
+
+pub(super) fn read(source: &Source, base: &Base) -> Result<Scenario, Problems> {
+    let (mut scenario, warnings) =
+        document::parse(source, KEYS, |root, places| scenario(root, places, base))?;
+    scenario.warnings.extend(warnings);
+    Ok(scenario)
+}
+
+fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> {
+    let robot = root.required("robot", "path of a robot file or name of a built-in robot");
+    let robot = robot.and_then(|field| read_robot(&field, base));
+    let joints = links::per_joint(
+        robot.as_ref().map_or("the robot", |robot| &robot.name),
+        robot.as_ref().map(Robot::joints),
+    );
+    let times = times(root);
+    let hold = root.optional("hold", |field| {
+        field.choice(&[("zero-order", Hold::ZeroOrder), ("continuous", Hold::Continuous)])
+    });
+    let mut assumed = robot.as_ref().map(Robot::assumptions).unwrap_or_default();
+    let initial = initial::read(root, &joints, places, &mut assumed);
+    let reference_field = root.required("reference", "a table with the kind");
+    let end = times.map_or(f64::NAN, |(duration, _)| duration);
+    let (reference, smooth_start) =
+        reference_field.as_ref().map_or((None, None), |field| reference::read(field, &joints, base, end));
+    let controller = root.required("controller", "a table with the kind");
+    let controller = controller.and_then(|field| controller::read(&field, &joints));
+    refuse_imperfections(root);
+    let own = provenance::assumptions(root, places);
+    if let (Some(field), Some(reference), Some(None), Some(initial)) =
+        (reference_field, &reference, smooth_start, &initial)
+    {
+        check_start(&field, reference, initial);
+    }
+    assumed.extend(own?);
+    let ((duration, control_period), robot) = (times?, robot?);
+    Some(Scenario {
+        name: stem(places.file()),
+        warnings: robot.warnings.clone(),
+        robot,
+        duration,
+        control_period,
+        hold: hold?.unwrap_or_default(),
+        initial: initial?,
+        reference: reference?,
+        smooth_start: smooth_start?,
+        controller: controller?,
+        assumptions: assumed,
+        places: places.clone(),
+    })
+}
+
+fn stem(file: &str) -> String {
+    Path::new(file).file_stem().map_or_else(|| file.to_owned(), |stem| stem.to_string_lossy().into_owned())
+}
+
+/// Duration and control period.
+fn times(root: &Table<'_>) -> Option<(f64, f64)> {
+    let duration = root.number("duration", &quantity::DURATION);
+    let period = root.number("control_period", &quantity::PERIOD);
+    let (duration, period) = (duration?, period?);
+    let field = root.get("control_period")?;
+    if period > duration {
+        let message = format!("control_period is {period} s, must be <= duration, {duration} s");
+        field.error("range", message, "a usual one is 0.001 s");
+        return None;
+    }
+    if duration / period > MOST_PERIODS {
+        let message =
+            format!("{:e} control periods in {duration} s, must be <= {MOST_PERIODS:e}", duration / period);
+        field.error("range", message, "a shorter run or a longer period");
+        return None;
+    }
+    Some((duration, period))
+}
+
+/// The robot named or pointed at; problems with its file go to the scenario's log.
+fn read_robot(field: &Field<'_>, base: &Base) -> Option<Robot> {
+    let name = field.text()?;
+    match builtin::robot(name, base) {
+        Ok(robot) => Some(robot),
+        Err(problems) => {
+            for problem in problems {
+                field.log.push(problem.or_at(&field.log.source, field.span.clone()));
+            }
+            None
+        }
+    }
+}
+
+fn refuse_imperfections(root: &Table<'_>) {
+    if let Some(field) = root.get("imperfection") {
+        let message = "imperfection: imperfections of sensing and actuation are not in this version";
+        field.error(
+            "unsupported",
+            message,
+            "remove [[imperfection]]; the run is then ideal but for the control period",
+        );
+    }
+}
+
+/// Notes an error if the reference starts far from the robot.
+fn check_start(field: &Field<'_>, reference: &Reference, initial: &Initial) {
+    let start = reference.initial();
+    let far = start.iter().zip(&initial.q_l).enumerate().find(|(_, (q_d, q))| (*q_d - *q).abs() > FAR);
+    if let Some((i, (q_d, q))) = far {
+        let distance = (q_d - q).abs();
+        let message = format!(
+            "the reference of joint {i} starts at {q_d} rad and the robot at {q} rad: {distance:.3} rad apart, must be <= {FAR} rad"
+        );
+        field.error(
+            "far",
+            message,
+            "add [reference.smooth_start] with duration = 2.0, or set [initial] q_l and q_m",
+        );
+    }
+}

@@ -1,0 +1,54 @@
+//! "Did you mean": the nearest of the names that would have been right.
+
+/// Names listed in a hint.
+const MOST: usize = 24;
+
+/// `did you mean 'x'? known: x, y, z`, as far as it applies.
+pub(super) fn hint<'a>(given: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
+    let mut list = known.clone().take(MOST).collect::<Vec<_>>().join(", ");
+    if known.clone().nth(MOST).is_some() {
+        list.push_str(", …");
+    }
+    match nearest(given, known) {
+        Some(name) => format!("did you mean '{name}'? known: {list}"),
+        None => format!("known: {list}"),
+    }
+}
+
+/// The name at the smallest edit distance, if it is near at all.
+fn nearest<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    let length = given.chars().count();
+    if length > 64 {
+        return None;
+    }
+    let plain = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
+    let (distance, name) = known
+        .map(|name| (strsim::osa_distance(&plain(given), &plain(name)), name))
+        .min_by_key(|&(distance, _)| distance)?;
+    (distance <= (length / 3).max(1)).then_some(name)
+}
+
+/// User text as it may stand in a message: in quotes, one line, of bounded length.
+pub(super) fn quoted(text: &str) -> String {
+    let mut shown: String = text.chars().take(60).flat_map(char::escape_debug).collect();
+    if text.chars().nth(60).is_some() {
+        shown.push('…');
+    }
+    format!("'{shown}'")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::hint;
+
+    #[test]
+    fn names_the_near_and_only_the_near() {
+        let known = ["stiffness", "motor_inertia"];
+        assert_eq!(
+            hint("stifness", known.into_iter()),
+            "did you mean 'stiffness'? known: stiffness, motor_inertia"
+        );
+        assert!(hint("Motor-Inertia", known.into_iter()).starts_with("did you mean 'motor_inertia'"));
+        assert!(hint("colour", known.into_iter()).starts_with("known:"));
+    }
+}

@@ -1,0 +1,8 @@
+//! Reference trajectories that need memory: what an array on a controller cannot hold.
+//!
+//! The others are in [`flexure_core::reference`], with the trait.
+
+mod samples;
+mod septic;
+
+pub use samples::{Samples, SamplesError};

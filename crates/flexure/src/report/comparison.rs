@@ -1,0 +1,99 @@
+//! Several runs in one axis: how fast each error decays.
+
+use super::axes::{Axes, Labels};
+use super::curve::Curve;
+use super::number::{duration, significant};
+use super::panel::{buckets, span};
+use super::range::{Range, decades};
+use super::sheet::{MARGIN, Sheet};
+use super::style::Stroke;
+use crate::trace::Trace;
+
+const WIDTH: f64 = 1200.0;
+const HEIGHT: f64 = 400.0;
+const TITLE: &str = "Largest link position error of each run";
+
+/// The largest |e_l| over the joints, on a logarithmic axis over time, one line per `(name, trace)`, as SVG.
+///
+/// Where every run reaches its floor early, the axis shows the decay alone, and says what was left out.
+pub fn comparison(traces: &[(&str, &Trace)]) -> String {
+    let errors: Vec<Curve> =
+        traces.iter().enumerate().map(|(run, (_, trace))| largest_error(trace, Stroke::run(run))).collect();
+    let legend: Vec<(String, Stroke)> =
+        traces.iter().enumerate().map(|(run, (name, _))| ((*name).to_owned(), Stroke::run(run))).collect();
+    let whole = traces
+        .iter()
+        .map(|(_, trace)| span(trace.column("t").unwrap_or_default()))
+        .reduce(|a, b| Range { low: a.low.min(b.low), high: a.high.max(b.high) })
+        .unwrap_or(Range { low: 0.0, high: 1.0 });
+    let x = decay(&errors, whole).unwrap_or(whole);
+    let shown: Vec<Curve> = errors.iter().map(|curve| curve.within(x)).collect();
+    let buckets = buckets(traces.len());
+    let curves: Vec<Curve> = shown.iter().map(|curve| curve.exponents(buckets)).collect();
+    let y = decades(&curves);
+
+    let subtitle = if x == whole { String::new() } else { left_out(&errors, x, whole) };
+    let mut sheet = Sheet::new(WIDTH, 0.0, TITLE, &subtitle);
+    let top = if subtitle.is_empty() { 62.0 } else { 82.0 };
+    let top = top + sheet.legend(top, &legend) - 6.0;
+    sheet.scene.height = top + HEIGHT + 6.0;
+    let axes = Axes {
+        place: [MARGIN / 2.0, top, WIDTH - MARGIN, HEIGHT],
+        x,
+        y,
+        x_label: "time [s]",
+        y_label: "max |e_l| [rad]",
+        y_labels: Labels::Decades,
+        left: 76.0,
+    };
+    axes.draw(&mut sheet, &curves, None, buckets);
+    sheet.finish()
+}
+
+/// The largest absolute link error over the joints; not a number from where a joint has none.
+fn largest_error(trace: &Trace, stroke: Stroke) -> Curve {
+    let joints = trace.joints("e_l");
+    let largest = |sample: usize| {
+        let errors = joints.iter().map(|values| values[sample].abs());
+        errors.fold(0.0, |a, b| if b.is_nan() || b > a { b } else { a })
+    };
+    let values: Vec<f64> = (0..trace.len()).map(largest).collect();
+    Curve::new(trace.column("t").unwrap_or_default(), &values, stroke)
+}
+
+/// One and a half times the time in which every run comes down to three times what it does in its second half, if that is short and
+/// nothing worth seeing follows.
+fn decay(errors: &[Curve], whole: Range) -> Option<Range> {
+    let settled = |curve: &Curve| {
+        let floor = largest(&curve.values[curve.values.len() / 2..]);
+        let last = curve.values.iter().rposition(|&value| value > 3.0 * floor);
+        last.map_or(whole.low, |sample| curve.t[sample])
+    };
+    let slowest = errors.iter().map(settled).fold(whole.low, f64::max);
+    let high = whole.low + 1.5 * (slowest - whole.low);
+    let nothing_follows =
+        after(errors, high) < 1e-2 * errors.iter().map(|curve| largest(&curve.values)).fold(0.0, f64::max);
+    (high > whole.low && high < whole.low + 0.5 * whole.span() && nothing_follows)
+        .then_some(Range { high, ..whole })
+}
+
+fn left_out(errors: &[Curve], x: Range, whole: Range) -> String {
+    let rest = significant(after(errors, x.high), 2);
+    format!(
+        "first {} of {}; after that every error stays within {rest} rad",
+        duration(x.span()),
+        duration(whole.span())
+    )
+}
+
+/// The largest value of any curve later than `t`.
+fn after(errors: &[Curve], t: f64) -> f64 {
+    errors
+        .iter()
+        .map(|curve| largest(&curve.values[curve.t.partition_point(|&at| at <= t)..]))
+        .fold(0.0, f64::max)
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().copied().fold(0.0, f64::max)
+}

@@ -1,0 +1,115 @@
+//! The paper's four-panel figure of one closed-loop run.
+//!
+//! Positions and torques are on linear axes. Where a short excursion would flatten the rest (the first torque peak is
+//! a hundred times what follows), the axis shows the bulk and a narrow frame beside it shows the excursion whole.
+//! Errors and momentum errors are absolute values on a logarithmic axis: an exponential decay is a straight line.
+
+use super::curve::Curve;
+use super::panel::{HEIGHT, Panel, Scale, View, buckets, span};
+use super::sheet::{MARGIN, Sheet};
+use super::style::{INK, Stroke};
+use crate::trace::Trace;
+
+/// What is written above the panels.
+#[derive(Clone, Debug, Default)]
+pub struct FigureOptions {
+    /// First line, bold.
+    pub title: String,
+    /// Second line; may be empty.
+    pub subtitle: String,
+}
+
+const WIDTH: f64 = 1200.0;
+
+/// Positions, errors, momentum errors and torques of `trace` over time, as SVG.
+///
+/// A run that diverged is drawn up to its last finite sample, which is marked. Columns that are missing leave their
+/// panel empty.
+pub fn four_panel(trace: &Trace, options: &FigureOptions) -> String {
+    let t = trace.column("t").unwrap_or_default();
+    let joints = trace.joints("q_l").len().max(trace.joints("u_m").len());
+    let dotted = |prefix| curves(trace, prefix, |_, _| Stroke::reference());
+    let link = |prefix| curves(trace, prefix, Stroke::link);
+    let motor = |prefix| curves(trace, prefix, Stroke::motor);
+
+    let positions = over(over(motor("q_m"), link("q_l")), dotted("q_ld"));
+    let panels = [
+        Panel {
+            title: "(a)  positions q_l, q_m and reference q_ld",
+            quantity: "position",
+            unit: "rad",
+            scale: Scale::Linear,
+            curves: positions,
+        },
+        Panel {
+            title: "(b)  position errors e_l, e_m",
+            quantity: "|error|",
+            unit: "rad",
+            scale: Scale::Decades,
+            curves: over(motor("e_m"), link("e_l")),
+        },
+        Panel {
+            title: "(c)  momentum errors σ_l, σ_m",
+            quantity: "|momentum error|",
+            unit: "kg m²/s",
+            scale: Scale::Decades,
+            curves: over(motor("sigma_m"), link("sigma_l")),
+        },
+        Panel {
+            title: "(d)  motor torques u_m",
+            quantity: "torque",
+            unit: "N m",
+            scale: Scale::Linear,
+            curves: link("u_m"),
+        },
+    ];
+    let signals: usize = panels.iter().map(|panel| panel.curves.len()).sum();
+
+    let top = if options.subtitle.is_empty() { 62.0 } else { 82.0 };
+    let mut sheet = Sheet::new(WIDTH, 0.0, &options.title, &options.subtitle);
+    let top = top + sheet.legend(top, &legend(joints));
+    sheet.scene.height = top + 2.0 * HEIGHT + 8.0;
+    let view = View { t: span(t), diverged: divergence(t, &panels), buckets: buckets(signals) };
+    let width = (WIDTH - MARGIN) / 2.0;
+    for (index, panel) in panels.iter().enumerate() {
+        let (row, column) = (index / 2, index % 2);
+        let corner = (MARGIN / 2.0 + column as f64 * width, top + row as f64 * HEIGHT);
+        panel.draw(&mut sheet, corner, width, &view);
+    }
+    sheet.finish()
+}
+
+fn curves(trace: &Trace, prefix: &str, stroke: impl Fn(usize, usize) -> Stroke) -> Vec<Curve> {
+    let t = trace.column("t").unwrap_or_default();
+    let signals = trace.joints(prefix);
+    signals
+        .iter()
+        .enumerate()
+        .map(|(joint, values)| Curve::new(t, values, stroke(joint, signals.len())))
+        .collect()
+}
+
+fn over(mut below: Vec<Curve>, above: Vec<Curve>) -> Vec<Curve> {
+    below.extend(above);
+    below
+}
+
+/// The last instant of the curve that ends first, if one ends before the recording does.
+fn divergence(t: &[f64], panels: &[Panel]) -> Option<f64> {
+    let curves = || panels.iter().flat_map(|panel| &panel.curves);
+    let shortest = curves().min_by_key(|curve| curve.t.len())?;
+    (shortest.t.len() < t.len()).then(|| shortest.t.last().copied().unwrap_or(0.0))
+}
+
+/// Hue names the joint, line style the side: one legend serves all panels.
+fn legend(joints: usize) -> Vec<(String, Stroke)> {
+    let joint =
+        |joint| (format!("joint {}", joint + 1), Stroke { width: 4.0, ..Stroke::link(joint, joints) });
+    let side = |name: &str, stroke: Stroke| (name.to_owned(), Stroke { color: INK, ..stroke });
+    let sides = [
+        side("link side", Stroke::link(0, 1)),
+        side("motor side", Stroke::motor(0, 1)),
+        side("reference", Stroke::reference()),
+    ];
+    (0..joints).map(joint).chain(sides).collect()
+}

@@ -1,0 +1,205 @@
+//! One self-contained HTML page about several runs.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
+
+use super::markdown::{ERRATA, body};
+use super::number::{NONE, engineering};
+use crate::summary::Summary;
+
+/// Everything a report says. The same report gives the same page, byte for byte: no clock is read.
+#[derive(Clone, Debug, Default)]
+pub struct Report {
+    /// Heading of the page.
+    pub title: String,
+    /// What was run and why: paragraphs, separated by empty lines.
+    pub introduction: String,
+    /// The runs, in the order of the page.
+    pub runs: Vec<RunReport>,
+    /// Figure with all runs in one axis, from [`comparison`](super::comparison()).
+    pub comparison_svg: Option<String>,
+    /// Numbers that no source gives.
+    pub assumptions: Vec<Assumption>,
+    /// How the numbers came about: version, seeds, what makes them reproducible.
+    pub provenance: Vec<String>,
+}
+
+/// One run of a [`Report`].
+#[derive(Clone, Debug)]
+pub struct RunReport {
+    /// Its figures of merit.
+    pub summary: Summary,
+    /// Its figure, from [`four_panel`](super::four_panel()).
+    pub figure_svg: String,
+    /// What the figure shows, in a sentence or two.
+    pub description: String,
+}
+
+/// A number that was assumed, and why.
+#[derive(Clone, Debug)]
+pub struct Assumption {
+    /// File in which it stands.
+    pub file: String,
+    /// Where in the file.
+    pub key: String,
+    /// The number, with its unit.
+    pub value: String,
+    /// Why this number.
+    pub note: String,
+}
+
+/// The page.
+///
+/// Every text is escaped. Figures are inserted as they are: they come from this crate.
+pub fn html(report: &Report) -> String {
+    markup! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (report.title) }
+                style { (PreEscaped(include_str!("report.css"))) }
+            }
+            body { main {
+                header {
+                    h1 { (report.title) }
+                    (paragraphs(&report.introduction))
+                }
+                (contents(report))
+                section id="summary" { h2 { "Summary" } (summary_table(&report.runs)) }
+                section id="runs" { h2 { "Runs" }
+                    @for (index, run) in report.runs.iter().enumerate() { (figure(index + 1, run)) }
+                }
+                @if let Some(svg) = &report.comparison_svg {
+                    section id="comparison" { h2 { "Comparison" }
+                        figure {
+                            div.card { (PreEscaped(svg)) }
+                            figcaption {
+                                "Largest link position error over the joints, for every run. On the logarithmic axis a straight "
+                                "line is an exponential decay, and its slope is the rate."
+                            }
+                        }
+                    }
+                }
+                section id="assumptions" { h2 { "Assumptions" } (assumptions(&report.assumptions)) }
+                section id="errata" { h2 { "Slips of the paper" } div.scroll.prose { (PreEscaped(body(ERRATA))) } }
+                footer { h2 { "How this page was made" }
+                    ul { @for line in &report.provenance { li { (line) } } }
+                }
+            } }
+        }
+    }
+    .into_string()
+}
+
+fn paragraphs(text: &str) -> Markup {
+    markup! { @for paragraph in text.split("\n\n").filter(|paragraph| !paragraph.trim().is_empty()) { p { (paragraph.trim()) } } }
+}
+
+fn contents(report: &Report) -> Markup {
+    markup! {
+        nav aria-label="Contents" {
+            a href="#summary" { "Summary" }
+            @for (index, run) in report.runs.iter().enumerate() { a href={ "#run-" (index + 1) } { (run.summary.name) } }
+            @if report.comparison_svg.is_some() { a href="#comparison" { "Comparison" } }
+            a href="#assumptions" { "Assumptions" }
+            a href="#errata" { "Slips of the paper" }
+        }
+    }
+}
+
+/// Heading and unit of each number in the summary table.
+const COLUMNS: [(&str, &str); 11] = [
+    ("max |e_l|", "rad"),
+    ("rms e_l", "rad"),
+    ("final |e_l|", "rad"),
+    ("settling time", "s"),
+    ("max |u_m|", "N m"),
+    ("rms u_m", "N m"),
+    ("saturated", "%"),
+    ("rate sampled", "1/s"),
+    ("rate certified", "1/s"),
+    ("energy drift", "1"),
+    ("steps", ""),
+];
+
+fn numbers(summary: &Summary) -> [String; COLUMNS.len()] {
+    let optional = |value: Option<f64>| value.map_or(NONE.to_owned(), engineering);
+    [
+        engineering(summary.max_abs_e_l),
+        engineering(summary.rms_e_l),
+        engineering(summary.final_abs_e_l),
+        optional(summary.settling_time),
+        engineering(summary.max_abs_u_m),
+        engineering(summary.rms_u_m),
+        engineering(100.0 * summary.saturated_fraction),
+        engineering(summary.rate_measured),
+        optional(summary.rate_certified),
+        engineering(summary.energy_drift),
+        summary.steps.to_string(),
+    ]
+}
+
+fn summary_table(runs: &[RunReport]) -> Markup {
+    markup! {
+        div.scroll {
+            table.numbers {
+                thead { tr {
+                    th { "run" } th { "controller" } th { "φ" }
+                    @for (title, unit) in COLUMNS {
+                        th { (title) @if !unit.is_empty() { br; span.unit { "[" (unit) "]" } } }
+                    }
+                } }
+                tbody {
+                    @for (index, RunReport { summary, .. }) in runs.iter().enumerate() {
+                        tr {
+                            th scope="row" { a href={ "#run-" (index + 1) } { (summary.name) } }
+                            td.word { (summary.controller) }
+                            td.word { (summary.phi) }
+                            @for number in numbers(summary) { td { (number) } }
+                        }
+                    }
+                }
+            }
+        }
+        p.note {
+            "Settling time: after it every |e_l| stays below 1 mrad; — if that never happens. "
+            "Rate sampled: the smallest contraction rate evaluated along the run, a sample and not a proof. "
+            @if runs.iter().any(|run| run.summary.rate_certified.is_none()) { "— as rate certified: proof not part of this version. " }
+            "Energy drift: the energy balance's residual, relative to the energy that went through the robot."
+        }
+    }
+}
+
+fn figure(number: usize, run: &RunReport) -> Markup {
+    markup! {
+        article id={ "run-" (number) } {
+            h3 { (number) ". " (run.summary.name) }
+            figure {
+                div.card { (PreEscaped(&run.figure_svg)) }
+                figcaption { (run.description) }
+            }
+        }
+    }
+}
+
+fn assumptions(assumptions: &[Assumption]) -> Markup {
+    markup! {
+        @if assumptions.is_empty() {
+            p { "None: every number has a source." }
+        } @else {
+            p { "Numbers that the sources do not give. Change them in the files named here." }
+            div.scroll { table {
+                thead { tr { th { "file" } th { "key" } th { "value" } th { "why" } } }
+                tbody {
+                    @for assumption in assumptions {
+                        tr {
+                            td { code { (assumption.file) } } td { code { (assumption.key) } }
+                            td { (assumption.value) } td { (assumption.note) }
+                        }
+                    }
+                }
+            } }
+        }
+    }
+}

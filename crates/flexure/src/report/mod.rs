@@ -1,0 +1,24 @@
+//! Figures, tables and the HTML report of closed-loop runs.
+//!
+//! Nothing here reads a clock, a file or a font of the machine: the same runs give the same bytes everywhere.
+
+mod axes;
+pub mod comparison;
+mod curve;
+pub mod decimate;
+pub mod figure;
+pub mod html;
+mod markdown;
+pub mod number;
+mod panel;
+mod range;
+pub mod raster;
+mod sheet;
+mod style;
+pub mod table;
+
+pub use comparison::comparison;
+pub use figure::{FigureOptions, four_panel};
+pub use html::{Assumption, Report, RunReport, html};
+pub use raster::{RasterError, png};
+pub use table::summary_table;

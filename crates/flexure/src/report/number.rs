@@ -1,0 +1,135 @@
+//! Numbers as people read them.
+
+/// Shown where there is no number.
+pub const NONE: &str = "—";
+
+/// Three significant digits, powers of ten in steps of three: `0.0123`, `5790`, `123×10⁻⁹`.
+pub fn engineering(value: f64) -> String {
+    significant(value, 3)
+}
+
+/// `value` to `digits` significant digits; outside 10⁻³ … 10⁵ with a power of ten in steps of three.
+pub fn significant(value: f64, digits: usize) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if !value.is_finite() {
+        return "not finite".to_owned();
+    }
+    // Printed once in scientific form: the exponent is that of the rounded value (9.996 is 10.0 to three digits).
+    let scientific = format!("{value:.*e}", digits.saturating_sub(1));
+    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    if (-3..5).contains(&exponent) {
+        return shift(mantissa, exponent);
+    }
+    let power = exponent.div_euclid(3) * 3;
+    format!("{}×10{}", shift(mantissa, exponent - power), superscript(power))
+}
+
+/// A power of ten as an axis label: `10⁻⁶`, `1`, `10`.
+pub fn power_of_ten(exponent: i32) -> String {
+    match exponent {
+        0 => "1".to_owned(),
+        1 => "10".to_owned(),
+        _ => format!("10{}", superscript(exponent)),
+    }
+}
+
+/// An integer in raised digits.
+pub fn superscript(value: i32) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let raise = |c: char| c.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize]);
+    value.to_string().chars().map(raise).collect()
+}
+
+/// As few digits as tell the value, at most `digits`: `20`, not `20.0`.
+pub fn short(value: f64, digits: usize) -> String {
+    let text = significant(value, digits);
+    let (digits, power) = text.split_at(text.find('×').unwrap_or(text.len()));
+    let digits =
+        if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits };
+    format!("{digits}{power}")
+}
+
+/// Seconds in the unit that reads best: `3 ms`, `1.25 s`.
+pub fn duration(seconds: f64) -> String {
+    if seconds != 0.0 && seconds.abs() < 0.1 {
+        format!("{} ms", short(seconds * 1e3, 3))
+    } else {
+        format!("{} s", short(seconds, 3))
+    }
+}
+
+/// Moves the decimal point of a printed mantissa (`d.ddd`) by `places`, filling with zeros.
+fn shift(mantissa: &str, places: i32) -> String {
+    let (sign, mantissa) = mantissa.strip_prefix('-').map_or(("", mantissa), |rest| ("−", rest));
+    let digits: String = mantissa.chars().filter(char::is_ascii_digit).collect();
+    let point = 1 + places;
+    let Ok(point) = usize::try_from(point) else {
+        return format!("{sign}0.{}{digits}", "0".repeat(point.unsigned_abs() as usize));
+    };
+    match point {
+        0 => format!("{sign}0.{digits}"),
+        point if point >= digits.len() => format!("{sign}{digits}{}", "0".repeat(point - digits.len())),
+        point => format!("{sign}{}.{}", &digits[..point], &digits[point..]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{duration, engineering, power_of_ten, significant};
+
+    #[test]
+    fn three_digits_and_powers_in_steps_of_three() {
+        let cases = [
+            (0.0, "0"),
+            (1.0, "1.00"),
+            (-1.0, "−1.00"),
+            (9.996, "10.0"),
+            (5787.3, "5790"),
+            (99999.0, "100×10³"),
+            (0.0123456, "0.0123"),
+            (0.00123456, "0.00123"),
+            (1.234e-4, "123×10⁻⁶"),
+            (1.234e-7, "123×10⁻⁹"),
+            (9.9999e-10, "1.00×10⁻⁹"),
+            (3.0e12, "3.00×10¹²"),
+            (f64::NAN, "not finite"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(engineering(value), text, "{value}");
+        }
+        assert_eq!(significant(5787.3, 4), "5787");
+    }
+
+    #[test]
+    fn printed_numbers_read_back() {
+        for exponent in -20..20 {
+            for mantissa in [1.0, 1.25, 2.5, 4.99, 9.99] {
+                let value = mantissa * 10f64.powi(exponent);
+                let text = engineering(value);
+                let (digits, power) = text.split_once("×10").unwrap_or((&text, ""));
+                let power: String = power
+                    .chars()
+                    .map(|c| {
+                        "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().position(|d| d == c).map_or("-".to_owned(), |d| d.to_string())
+                    })
+                    .collect();
+                let back: f64 =
+                    format!("{digits}e{}", if power.is_empty() { "0" } else { &power }).parse().unwrap();
+                assert!((back / value - 1.0).abs() < 6e-3, "{value:e} printed as {text}"); // half of the third digit
+            }
+        }
+    }
+
+    #[test]
+    fn durations_and_decades() {
+        assert_eq!(duration(0.003), "3 ms");
+        assert_eq!(duration(1.25), "1.25 s");
+        assert_eq!(
+            [power_of_ten(-6), power_of_ten(0), power_of_ten(1), power_of_ten(3)],
+            ["10⁻⁶", "1", "10", "10³"]
+        );
+    }
+}

@@ -1,0 +1,105 @@
+//! A scenario as a simulated run: from its file to trace and summary.
+
+mod recorder;
+
+use std::time::Instant as Clock;
+
+use flexure_core::control::Input;
+use flexure_core::model::{Fjr, Links, Motion};
+use flexure_core::reference::Reference;
+
+use recorder::Recorder;
+pub use recorder::SETTLED;
+
+use crate::io::{self, Problems, Scenario};
+use crate::rates::BlockRates;
+use crate::registry::{AnyReference, Law, RobotVisitor, law, vector, with_robot};
+use crate::sim::{ClosedLoop, Divergence, Hold, Instant};
+use crate::summary::Summary;
+use crate::trace::Trace;
+
+/// Tolerated local error of the plant integrator, relative to the joint speeds.
+pub const TOLERANCE: f64 = 1e-10;
+
+/// A finished run.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// What it is judged by.
+    pub summary: Summary,
+    /// Every control instant.
+    pub trace: Trace,
+    /// Set if the loop diverged before the end; trace and summary then end there.
+    pub divergence: Option<Divergence>,
+}
+
+/// Simulates a scenario. `progress` is told the fraction done, now and then.
+///
+/// # Errors
+/// If the robot has more joints than this program was built for, or the samples of the reference make no path.
+pub fn run(scenario: &Scenario, progress: &(dyn Fn(f64) + Sync)) -> Result<Run, Problems> {
+    with_robot(&scenario.robot, Simulate { scenario, progress })?
+}
+
+struct Simulate<'a> {
+    scenario: &'a Scenario,
+    progress: &'a (dyn Fn(f64) + Sync),
+}
+
+impl RobotVisitor for Simulate<'_> {
+    type Output = Result<Run, Problems>;
+
+    fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) -> Self::Output {
+        let Self { scenario, progress } = self;
+        let io::Controller::Vcbc { phi, .. } = &scenario.controller;
+        let started = Clock::now();
+        let law: Law<N> = law(&scenario.controller);
+        let reference = AnyReference::<N>::new(scenario)?;
+        let settings = ClosedLoop {
+            duration: scenario.duration,
+            period: scenario.control_period,
+            hold: match scenario.hold {
+                io::Hold::ZeroOrder => Hold::ZeroOrder,
+                io::Hold::Continuous => Hold::Continuous,
+            },
+            tolerance: TOLERANCE,
+        };
+        let command = |t: f64, x: &Motion<f64, N>| law.command(&robot, x, &reference.at(t), &Input::ZERO);
+        let mut recorder = Recorder::new(scenario.robot.torque_limit.as_deref().map(vector));
+        let mut observe = |instant: &Instant<'_, N>| {
+            let rates = BlockRates::at(&robot, &law, &instant.motion.q_l, instant.command);
+            recorder.record(&robot, instant, &rates);
+            progress(instant.t / settings.duration);
+        };
+        let outcome = settings.run(&robot, initial(scenario), &command, &mut observe);
+        let (trace, figures) = recorder.finish();
+        let summary = Summary {
+            name: scenario.name.clone(),
+            controller: scenario.controller.kind().to_owned(),
+            phi: phi.name().to_owned(),
+            max_abs_e_l: figures.max_abs_e_l,
+            rms_e_l: figures.rms_e_l(),
+            final_abs_e_l: figures.final_abs_e_l,
+            settling_time: figures.settled_since.filter(|_| outcome.divergence.is_none()),
+            max_abs_u_m: figures.max_abs_u_m,
+            rms_u_m: figures.rms_u_m(),
+            saturated_fraction: figures.limited_fraction(),
+            rate_measured: figures.rate,
+            rate_certified: None,
+            energy_drift: outcome.energy_drift,
+            steps: outcome.steps,
+            wall_seconds: started.elapsed().as_secs_f64(),
+        };
+        Ok(Run { summary, trace, divergence: outcome.divergence })
+    }
+}
+
+/// The initial motion of the scenario.
+fn initial<const N: usize>(scenario: &Scenario) -> Motion<f64, N> {
+    let initial = &scenario.initial;
+    Motion {
+        q_l: vector(&initial.q_l),
+        q_m: vector(&initial.q_m),
+        v_l: vector(&initial.dq_l),
+        v_m: vector(&initial.dq_m),
+    }
+}

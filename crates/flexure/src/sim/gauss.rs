@@ -1,0 +1,340 @@
+//! Gauss–Legendre collocation of order 8 for flexible-joint robots.
+//!
+//! Symplectic, so that an undamped robot neither gains nor loses energy systematically; A-stable, so that a motor
+//! damper of 9000 1/s or a stiff spring on a light wrist cannot blow up; and of high order, so that fast transients
+//! are resolved rather than damped away. The stage equations are solved for accelerations in torque form, which
+//! needs inverse dynamics only. Hairer, Lubich & Wanner, *Geometric Numerical Integration*, chapters II and VI.
+
+use flexure_core::linalg::{Matrix, Vector};
+use flexure_core::model::{Fjr, Links, Motion, Power};
+
+use super::newton::StageSolver;
+
+/// Number of collocation points; the order is twice that.
+pub(super) const STAGES: usize = 4;
+
+/// One number per stage.
+pub(super) type Stages = Vector<f64, STAGES>;
+
+/// The collocation scheme on [0, 1].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scheme {
+    /// Nodes c.
+    pub nodes: Stages,
+    /// Weights b.
+    pub weights: Stages,
+    /// A: integrates stage values once.
+    pub once: Matrix<f64, STAGES, STAGES>,
+    /// A²: integrates them twice.
+    pub twice: Matrix<f64, STAGES, STAGES>,
+    /// bᵀA, which integrates twice up to the end of the step.
+    pub end_twice: Stages,
+    /// Value at 0 of the polynomial through the stage values.
+    pub start: Stages,
+}
+
+impl Scheme {
+    /// Four-point Gauss–Legendre.
+    pub(super) fn gauss() -> Self {
+        let inner = (3.0 / 7.0 - 2.0 / 7.0 * (6.0_f64 / 5.0).sqrt()).sqrt();
+        let outer = (3.0 / 7.0 + 2.0 / 7.0 * (6.0_f64 / 5.0).sqrt()).sqrt();
+        let nodes = Vector([-outer, -inner, inner, outer]).map(|x| 0.5 * (1.0 + x));
+        let heavy = (18.0 + 30.0_f64.sqrt()) / 72.0;
+        let light = (18.0 - 30.0_f64.sqrt()) / 72.0;
+        let weights = Vector([light, heavy, heavy, light]);
+        let polynomials: [[f64; STAGES]; STAGES] = std::array::from_fn(|j| lagrange(&nodes, j));
+        let once = Matrix::from_fn(|i, j| integral(&polynomials[j], nodes[i]));
+        let twice = once * once;
+        Self {
+            nodes,
+            weights,
+            once,
+            twice,
+            end_twice: once.transpose() * weights,
+            start: Vector::from_fn(|j| polynomials[j][0]),
+        }
+    }
+}
+
+/// Coefficients, constant term first, of the Lagrange polynomial that is 1 at node `j`.
+fn lagrange(nodes: &Stages, j: usize) -> [f64; STAGES] {
+    let mut coefficients = [0.0; STAGES];
+    coefficients[0] = 1.0;
+    for (k, node) in nodes.iter().enumerate().filter(|&(k, _)| k != j) {
+        let scale = 1.0 / (nodes[j] - nodes[k]);
+        for power in (0..STAGES).rev() {
+            let lower = if power == 0 { 0.0 } else { coefficients[power - 1] };
+            coefficients[power] = (lower - node * coefficients[power]) * scale;
+        }
+    }
+    coefficients
+}
+
+/// ∫₀ˣ of a polynomial.
+fn integral(coefficients: &[f64; STAGES], x: f64) -> f64 {
+    coefficients.iter().enumerate().rev().fold(0.0, |sum, (k, c)| (sum + c / (k + 1) as f64) * x)
+}
+
+/// Work done on the robot and by it: the two sides of the power balance, integrated.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ledger {
+    /// ∫ q̇_mᵀ u_m dt [J].
+    pub supplied: f64,
+    /// ∫ q̇_lᵀ D_l q̇_l + q̇_mᵀ D_m q̇_m dt [J].
+    pub dissipated: f64,
+    /// ∫ |q̇_mᵀ u_m| dt [J]: what the residual is compared with.
+    pub throughput: f64,
+}
+
+impl Ledger {
+    fn book(&mut self, seconds: f64, power: &Power<f64>) {
+        self.supplied += seconds * power.supplied;
+        self.dissipated += seconds * power.dissipated;
+        self.throughput += seconds * power.supplied.abs();
+    }
+
+    fn add(&mut self, work: &Self) {
+        self.supplied += work.supplied;
+        self.dissipated += work.dissipated;
+        self.throughput += work.throughput;
+    }
+}
+
+/// A step that cannot be made: the state or the torque is not finite, or the step would have to be too small.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepFailure {
+    /// Time into the interval at which it happened [s].
+    pub after: f64,
+}
+
+/// Integrates a robot over intervals, with steps chosen for accuracy.
+#[derive(Clone, Debug)]
+pub struct Integrator {
+    scheme: Scheme,
+    /// Tolerated local error of a step, relative to the speed of the joint.
+    tolerance: f64,
+    /// Last good step [s]: the first guess for the next.
+    step: f64,
+    steps: u64,
+}
+
+/// Speed [rad/s] below which errors count as absolute.
+const SLOW: f64 = 1e-3;
+
+/// Steps shorter than this fraction of the interval are a failure, not an accuracy problem.
+const SHORTEST: f64 = 1e-7;
+
+/// Corrections of this size relative to the speeds of a step are rounding.
+const ROUNDING: f64 = 1e-14;
+
+/// A solved step.
+#[derive(Clone, Copy)]
+struct Step<const N: usize> {
+    end: Motion<f64, N>,
+    work: Ledger,
+    /// By how much the step could have been longer; below 1 it was too long.
+    factor: f64,
+}
+
+/// The collocation polynomial of one step: accelerations at the stages.
+pub(super) struct StepSolution<const N: usize> {
+    pub(super) link: [Vector<f64, N>; STAGES],
+    pub(super) motor: [Vector<f64, N>; STAGES],
+}
+
+impl Integrator {
+    /// With a tolerated local error relative to the joint speeds; 1e-10 is a good start.
+    pub fn new(tolerance: f64) -> Self {
+        Self { scheme: Scheme::gauss(), tolerance, step: f64::INFINITY, steps: 0 }
+    }
+
+    /// Steps taken so far.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// Moves `x` over `[t, t + interval]` under the torque `u_m(t, x)` and books the work in `ledger`.
+    ///
+    /// # Errors
+    /// [`StepFailure`] if the solution leaves the finite numbers or no step is small enough: the loop diverged.
+    pub fn advance<L: Links<f64, N>, const N: usize>(
+        &mut self,
+        robot: &Fjr<f64, L, N>,
+        mut x: Motion<f64, N>,
+        t: f64,
+        interval: f64,
+        torque: &impl Fn(f64, &Motion<f64, N>) -> Vector<f64, N>,
+        ledger: &mut Ledger,
+    ) -> Result<Motion<f64, N>, StepFailure> {
+        let mut done = 0.0;
+        // Equal steps to the end of the interval, of at most the length that was good before.
+        let mut remaining = steps_in(interval, self.step);
+        while remaining > 0 {
+            let h = (interval - done) / f64::from(remaining);
+            let step = self.try_step(robot, &x, t + done, h, torque);
+            if let Some(step) = step.filter(|step| step.factor >= 1.0) {
+                x = step.end;
+                ledger.add(&step.work);
+                self.steps += 1;
+                self.step = h * step.factor.min(2.0);
+                remaining -= 1;
+                done = if remaining == 0 { interval } else { done + h };
+            } else {
+                self.step = h * step.map_or(0.5, |step| step.factor.clamp(0.1, 0.9));
+                // NaN is not longer than anything either.
+                let long_enough = self.step > SHORTEST * interval;
+                if !long_enough {
+                    return Err(StepFailure { after: done });
+                }
+                remaining = steps_in(interval - done, self.step);
+            }
+        }
+        Ok(x)
+    }
+
+    /// Moves `x` by `count` equal steps whatever their error: for convergence studies.
+    ///
+    /// # Errors
+    /// [`StepFailure`] if the stage equations of a step cannot be solved.
+    pub fn advance_uniformly<L: Links<f64, N>, const N: usize>(
+        &mut self,
+        robot: &Fjr<f64, L, N>,
+        mut x: Motion<f64, N>,
+        interval: f64,
+        count: u32,
+        torque: &impl Fn(f64, &Motion<f64, N>) -> Vector<f64, N>,
+    ) -> Result<Motion<f64, N>, StepFailure> {
+        let h = interval / f64::from(count);
+        for i in 0..count {
+            let t = h * f64::from(i);
+            x = self.try_step(robot, &x, t, h, torque).ok_or(StepFailure { after: t })?.end;
+            self.steps += 1;
+        }
+        Ok(x)
+    }
+
+    /// A step of `h`; none if its stage equations cannot be solved in finite numbers.
+    fn try_step<L: Links<f64, N>, const N: usize>(
+        &self,
+        robot: &Fjr<f64, L, N>,
+        x: &Motion<f64, N>,
+        t: f64,
+        h: f64,
+        torque: &impl Fn(f64, &Motion<f64, N>) -> Vector<f64, N>,
+    ) -> Option<Step<N>> {
+        let start = [robot.link_acceleration(x), robot.motor_acceleration(x, &torque(t, x))];
+        let at_stage = |i: usize, solution: &StepSolution<N>| {
+            let motion = self.stage(x, h, solution, i);
+            let u = torque(t + h * self.scheme.nodes[i], &motion);
+            (motion, u)
+        };
+        let mut solution = StepSolution { link: [start[0]; STAGES], motor: [start[1]; STAGES] };
+        // Corrections below this are rounding of velocities.
+        let floor =
+            ROUNDING * (largest(&x.v_l) + largest(&x.v_m) + h * (largest(&start[0]) + largest(&start[1])));
+        StageSolver::new(&self.scheme, robot, &x.q_l, h).solve(robot, &mut solution, floor / h, at_stage)?;
+
+        let mut work = Ledger::default();
+        for i in 0..STAGES {
+            let (motion, u) = at_stage(i, &solution);
+            work.book(h * self.scheme.weights[i], &robot.power(&motion, &u));
+        }
+        let end = self.end_of_step(x, h, &solution);
+        let factor = self.step_factor(x, h, &start, &solution);
+        is_finite(&end).then_some(Step { end, work, factor })
+    }
+
+    /// Position and velocity at stage `i`.
+    #[inline]
+    fn stage<const N: usize>(
+        &self,
+        x: &Motion<f64, N>,
+        h: f64,
+        solution: &StepSolution<N>,
+        i: usize,
+    ) -> Motion<f64, N> {
+        let scheme = &self.scheme;
+        moved(x, h, scheme.nodes[i], &scheme.once.row(i), &scheme.twice.row(i), solution)
+    }
+
+    fn end_of_step<const N: usize>(
+        &self,
+        x: &Motion<f64, N>,
+        h: f64,
+        solution: &StepSolution<N>,
+    ) -> Motion<f64, N> {
+        moved(x, h, 1.0, &self.scheme.weights, &self.scheme.end_twice, solution)
+    }
+
+    /// How much longer the step may be. The defect of the collocation polynomial at the start, a difference of
+    /// accelerations of order h⁴, gives a velocity error of order h⁵; the true local error is of order h⁹, so in units
+    /// of the tolerance the defect may be its 5/9 power.
+    fn step_factor<const N: usize>(
+        &self,
+        x: &Motion<f64, N>,
+        h: f64,
+        start: &[Vector<f64, N>; 2],
+        solution: &StepSolution<N>,
+    ) -> f64 {
+        let defect = |v: &Vector<f64, N>, a: &Vector<f64, N>, stages: &[Vector<f64, N>; STAGES]| {
+            (0..N).fold(0.0, |worst: f64, k| {
+                let extrapolated: f64 = (0..STAGES).map(|i| self.scheme.start[i] * stages[i][k]).sum();
+                let speed = stages.iter().fold(v[k].abs(), |m, a| m.max(h * a[k].abs())) + SLOW;
+                worst.max(h * (a[k] - extrapolated).abs() / speed)
+            })
+        };
+        let worst = defect(&x.v_l, &start[0], &solution.link).max(defect(&x.v_m, &start[1], &solution.motor));
+        let allowed = self.tolerance.powf(5.0 / 9.0);
+        // A margin of 0.8 when lengthening keeps the next step from being rejected.
+        let factor = (allowed / worst).powf(0.2);
+        if factor >= 1.25 {
+            0.8 * factor
+        } else if factor >= 1.0 {
+            1.0
+        } else {
+            0.8 * factor
+        }
+    }
+}
+
+/// `x` moved to the instant `at` of a step by quadrature weights for velocity and position.
+#[inline]
+fn moved<const N: usize>(
+    x: &Motion<f64, N>,
+    h: f64,
+    at: f64,
+    once: &Stages,
+    twice: &Stages,
+    solution: &StepSolution<N>,
+) -> Motion<f64, N> {
+    let sum = |weights: &Stages, values: &[Vector<f64, N>; STAGES]| {
+        let mut total = Vector::ZERO;
+        for (w, value) in weights.iter().zip(values) {
+            total += value.scaled(w);
+        }
+        total
+    };
+    let velocity = |v: &Vector<f64, N>, a| *v + sum(once, a).scaled(h);
+    let position =
+        |q: &Vector<f64, N>, v: &Vector<f64, N>, a| *q + (v.scaled(at) + sum(twice, a).scaled(h)).scaled(h);
+    Motion {
+        q_l: position(&x.q_l, &x.v_l, &solution.link),
+        q_m: position(&x.q_m, &x.v_m, &solution.motor),
+        v_l: velocity(&x.v_l, &solution.link),
+        v_m: velocity(&x.v_m, &solution.motor),
+    }
+}
+
+/// Number of steps of at most `step` that fill `interval`.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to [1, 1e8]")]
+fn steps_in(interval: f64, step: f64) -> u32 {
+    (interval / step * (1.0 - 1e-12)).ceil().clamp(1.0, 1e8) as u32
+}
+
+fn largest<const N: usize>(v: &Vector<f64, N>) -> f64 {
+    v.iter().fold(0.0, |m, x| m.max(x.abs()))
+}
+
+fn is_finite<const N: usize>(x: &Motion<f64, N>) -> bool {
+    [&x.q_l, &x.q_m, &x.v_l, &x.v_m].iter().all(|v| v.iter().all(f64::is_finite))
+}

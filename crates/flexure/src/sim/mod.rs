@@ -1,0 +1,8 @@
+//! The closed loop in time: a sampled controller on a plant that is integrated between samples.
+
+mod closed_loop;
+mod gauss;
+mod newton;
+
+pub use closed_loop::{ClosedLoop, Divergence, Hold, Instant, Outcome};
+pub use gauss::{Integrator, Ledger, StepFailure};

@@ -1,0 +1,231 @@
+//! Figures, pictures, tables and the page: what holds for every trace.
+
+mod fake;
+
+use flexure::report::decimate::{bucket_size, decimate, envelope};
+use flexure::report::{
+    Assumption, FigureOptions, Report, RunReport, comparison, four_panel, html, png, summary_table,
+};
+use flexure::trace::Trace;
+use roxmltree::Document;
+
+fn figure(trace: &Trace) -> String {
+    let options = FigureOptions { title: "tanh, 1 kHz".to_owned(), subtitle: "quanser-2dof".to_owned() };
+    four_panel(trace, &options)
+}
+
+/// Well-formed, and every number in every attribute finite.
+fn check(svg: &str) {
+    let document = Document::parse(svg).expect("well-formed XML");
+    for attribute in document.descendants().flat_map(|node| node.attributes()) {
+        let value = attribute.value().to_ascii_lowercase();
+        assert!(!value.contains("nan") && !value.contains("inf"), "{}=\"{value}\"", attribute.name());
+    }
+    assert!(svg.len() < 300_000, "{} bytes", svg.len());
+}
+
+fn texts(svg: &str) -> Vec<String> {
+    let document = Document::parse(svg).expect("well-formed XML");
+    let text = |node: roxmltree::Node| node.text().unwrap_or_default().to_owned();
+    document.descendants().filter(|node| node.has_tag_name("text")).map(text).collect()
+}
+
+/// How many curves a figure holds: its only paths with relative steps.
+fn curves(svg: &str) -> usize {
+    let document = Document::parse(svg).expect("well-formed XML");
+    document.descendants().filter(|node| node.attribute("d").is_some_and(|d| d.contains('l'))).count()
+}
+
+#[test]
+fn every_joint_count_draws_every_signal_with_each_label_once() {
+    for joints in 1..=8 {
+        let svg = figure(&fake::trace(joints, 10_000, 6.0));
+        check(&svg);
+        // 8 signals a joint, torques twice: the start-up frame holds them too.
+        assert_eq!(curves(&svg), 9 * joints);
+        let texts = texts(&svg);
+        let count = |label: &str| texts.iter().filter(|text| *text == label).count();
+        for label in ["link side", "motor side", "reference"] {
+            assert_eq!(count(label), 1, "{label}");
+        }
+        for joint in 1..=8 {
+            assert_eq!(count(&format!("joint {joint}")), usize::from(joint <= joints));
+        }
+    }
+}
+
+#[test]
+fn a_clipped_peak_is_stated() {
+    let svg = figure(&fake::trace(2, 10_000, 6.0));
+    assert!(texts(&svg).iter().any(|text| text.contains("peak 5697 N m at 0 s")), "{:?}", texts(&svg));
+}
+
+#[test]
+fn noise_in_every_signal_stays_small() {
+    let mut noisy =
+        Trace::new(fake::trace(8, 1, 1.0).columns().iter().map(|column| (column.name.clone(), column.unit)));
+    let mut state = 1u64;
+    let mut noise = || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+    };
+    for sample in 0..20_000 {
+        let row: Vec<f64> = (0..noisy.columns().len())
+            .map(|k| if k == 0 { f64::from(sample) * 1e-3 } else { noise() })
+            .collect();
+        noisy.push(&row);
+    }
+    check(&figure(&noisy));
+}
+
+#[test]
+fn logarithmic_panels_keep_every_peak() {
+    let trace = fake::trace(1, 9_973, 6.0);
+    let (t, values) = (trace.column("t").unwrap(), trace.column("e_l1").unwrap());
+    let highest = |values: &mut dyn Iterator<Item = f64>| extremes(values).1;
+    for buckets in [1, 7, 480, 20_000] {
+        let points = envelope(t, values, buckets);
+        let size = bucket_size(values.len(), buckets);
+        assert_eq!(points.len(), values.len().div_ceil(size));
+        for (point, values) in points.iter().zip(values.chunks(size)) {
+            assert_eq!(Some(point.1.to_bits()), highest(&mut values.iter().copied()));
+        }
+    }
+}
+
+#[test]
+fn a_diverged_run_is_drawn_to_its_end_and_says_so() {
+    let svg = figure(&fake::diverged(2, 5_000));
+    check(&svg);
+    assert!(curves(&svg) >= 16);
+    assert_eq!(texts(&svg).iter().filter(|text| text.contains("not finite after 4 s")).count(), 4);
+}
+
+#[test]
+fn empty_and_constant_traces_are_figures_too() {
+    check(&figure(&Trace::default()));
+    check(&figure(&fake::trace(2, 1, 1.0)));
+    let mut still = Trace::new(["t", "q_l1", "e_l1", "u_m1"].map(|name| (name.to_owned(), "")));
+    for sample in 0..100 {
+        still.push(&[f64::from(sample), 0.0, 0.0, 0.0]);
+    }
+    check(&figure(&still));
+    check(&comparison(&[]));
+}
+
+#[test]
+fn decimation_keeps_both_extremes_of_every_bucket() {
+    let trace = fake::trace(1, 9_973, 6.0);
+    let t = trace.column("t").unwrap();
+    for name in ["u_m1", "e_l1", "q_m1"] {
+        let values = trace.column(name).unwrap();
+        for buckets in [1, 7, 100, 480] {
+            let points = decimate(t, values, buckets);
+            assert!(points.len() <= 2 * buckets + 2);
+            assert!(points.is_sorted_by(|a, b| a.0 <= b.0));
+            let size = bucket_size(values.len(), buckets);
+            for (t, values) in t.chunks(size).zip(values.chunks(size)) {
+                let kept = points.iter().filter(|point| t.contains(&point.0)).map(|point| point.1);
+                assert_eq!(extremes(kept), extremes(values.iter().copied()));
+            }
+        }
+    }
+}
+
+/// Smallest and largest value, bit by bit: nothing is rounded on the way.
+fn extremes(values: impl Iterator<Item = f64>) -> (Option<u64>, Option<u64>) {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    (values.first().copied().map(f64::to_bits), values.last().copied().map(f64::to_bits))
+}
+
+#[test]
+fn titles_are_text() {
+    let trace = fake::trace(1, 100, 6.0);
+    let title = "<script>alert(1)</script> & $\\frac{1}{2}$ \u{0}".repeat(3);
+    let svg = four_panel(&trace, &FigureOptions { title: title.clone(), subtitle: title.clone() });
+    check(&svg);
+    assert!(!svg.contains("<script") && texts(&svg)[0].contains("$\\frac{1}{2}$"));
+    check(&comparison(&[("<script>", &trace)]));
+}
+
+#[test]
+fn the_comparison_names_each_run_once() {
+    let traces = [fake::trace(2, 4_000, 2.0), fake::trace(2, 6_000, 5.0), fake::diverged(2, 5_000)];
+    let svg = comparison(&[("tanh", &traces[0]), ("linear", &traces[1]), ("coupled-tanh", &traces[2])]);
+    check(&svg);
+    assert_eq!(curves(&svg), 3);
+    for name in ["tanh", "linear", "coupled-tanh"] {
+        assert_eq!(texts(&svg).iter().filter(|text| *text == name).count(), 1);
+    }
+}
+
+#[test]
+fn a_comparison_that_leaves_time_out_says_so() {
+    let fast = fake::trace(2, 10_000, 30.0);
+    let said = |traces: &[(&str, &Trace)]| {
+        texts(&comparison(traces)).iter().any(|text| text.contains("of 10 s; after that"))
+    };
+    assert!(said(&[("fast", &fast)]));
+    assert!(!said(&[("fast", &fast), ("diverged", &fake::diverged(2, 10_000))]));
+    assert!(!said(&[("slow", &fake::trace(2, 10_000, 0.5))]));
+}
+
+#[test]
+fn pictures_are_1600_wide_and_bad_ones_are_errors() {
+    let picture = png(&figure(&fake::trace(2, 1_000, 6.0))).unwrap();
+    assert_eq!(&picture[1..4], b"PNG");
+    assert_eq!(u32::from_be_bytes(picture[16..20].try_into().unwrap()), 1600);
+    assert!(png("no drawing").is_err());
+    assert!(png("<svg xmlns='http://www.w3.org/2000/svg' width='1' height='1000'/>").is_err());
+}
+
+fn report() -> Report {
+    let trace = fake::trace(2, 3_000, 6.0);
+    let run = |name: &str| RunReport {
+        summary: fake::summary(name),
+        figure_svg: figure(&trace),
+        description: "<b>A run".to_owned(),
+    };
+    Report {
+        title: "<script>title</script>".to_owned(),
+        introduction: "One.\n\nTwo & three.".to_owned(),
+        runs: vec![run("<script>name</script>"), run("linear")],
+        comparison_svg: Some(comparison(&[("tanh", &trace)])),
+        assumptions: vec![Assumption {
+            file: "robots/<script>.toml".to_owned(),
+            key: "joints.stiffness".to_owned(),
+            value: "9, 4 N m/rad".to_owned(),
+            note: "not in the paper's table".to_owned(),
+        }],
+        provenance: vec!["flexure 0.1.0".to_owned()],
+    }
+}
+
+#[test]
+fn the_page_escapes_what_users_write() {
+    let page = html(&report());
+    assert!(!page.contains("<script") && !page.contains("<b>A run"));
+    assert!(page.contains("&lt;script&gt;name&lt;/script&gt;"));
+}
+
+#[test]
+fn the_page_stands_alone_and_comes_out_the_same() {
+    let page = html(&report());
+    for reference in ["src=", "href=\"http", "@import", "url(", "<link"] {
+        assert!(!page.contains(reference), "{reference}");
+    }
+    // Namespaces of the figures are names, not addresses.
+    assert_eq!(page.matches("://").count(), page.matches("xmlns=\"http://www.w3.org/2000/svg\"").count());
+    assert!(!page.contains("0.123"), "the wall-clock time has no place in a reproducible page");
+    assert_eq!(page, html(&report()));
+    assert!(page.contains("proof not part of this version"));
+}
+
+#[test]
+fn the_terminal_table_fits_100_columns() {
+    let long = fake::summary("a-scenario-with-quite-a-long-name-in-it");
+    let table = summary_table(&[fake::summary("paper-tanh"), long]);
+    assert!(table.lines().all(|line| line.chars().count() <= 100), "{table}");
+    assert!(table.contains("5790") && table.contains("123×10⁻⁹") && !table.contains('\u{1b}'), "{table}");
+}
