@@ -6,8 +6,8 @@
 
 use std::hint::black_box;
 
-use flexure_core::control::{Command, CoupledTanh, Input, Vcbc};
-use flexure_core::linalg::Vector;
+use flexure_core::control::{CoupledTanh, Input, Vcbc};
+use flexure_core::linalg::Vector as V;
 use flexure_core::model::{Fjr, Links, Motion, State};
 use flexure_core::robots::{PlanarTwoLink, Tree};
 use flexure_core::scalar::{Jet, Scalar};
@@ -20,33 +20,23 @@ type Arm = Fjr<f64, PlanarTwoLink<f64>, 2>;
 type Chain = Fjr<f64, Tree<f64, 7>, 7>;
 
 #[cfg_attr(not(debug_assertions), no_panic)]
-fn law_of_the_arm(
-    robot: &Arm,
-    law: &Law<2>,
-    x: &Motion<f64, 2>,
-    q_d: &Vector<Jet<f64, 5>, 2>,
-) -> Command<f64, 2> {
-    law.command(robot, x, q_d, &Input::ZERO)
+fn law_of_the_arm(robot: &Arm, law: &Law<2>, x: &Motion<f64, 2>, q_d: &V<Jet<f64, 5>, 2>) -> V<f64, 2> {
+    law.command(robot, x, q_d, &Input::ZERO).u_m
 }
 
 #[cfg_attr(not(debug_assertions), no_panic)]
-fn law_of_a_tree(
-    robot: &Chain,
-    law: &Law<7>,
-    x: &Motion<f64, 7>,
-    q_d: &Vector<Jet<f64, 5>, 7>,
-) -> Command<f64, 7> {
-    law.command(robot, x, q_d, &Input::ZERO)
+fn law_of_a_tree(robot: &Chain, law: &Law<7>, x: &Motion<f64, 7>, q_d: &V<Jet<f64, 5>, 7>) -> V<f64, 7> {
+    law.command(robot, x, q_d, &Input::ZERO).u_m
 }
 
 #[cfg_attr(not(debug_assertions), no_panic)]
-fn dynamics(robot: &Chain, x: &State<f64, 7>, u_m: &Vector<f64, 7>) -> [State<f64, 7>; 2] {
+fn dynamics(robot: &Chain, x: &State<f64, 7>, u_m: &V<f64, 7>) -> [State<f64, 7>; 2] {
     let plant = robot.hamiltonian_dynamics(x, u_m);
     [plant, virtual_dynamics(robot, x, &robot.motion(x), u_m)]
 }
 
 #[cfg_attr(not(debug_assertions), no_panic)]
-fn factor_and_solve(robot: &Chain, q: &Vector<f64, 7>, b: &Vector<f64, 7>) -> Vector<f64, 7> {
+fn factor_and_solve(robot: &Chain, q: &V<f64, 7>, b: &V<f64, 7>) -> V<f64, 7> {
     robot.links.mass_matrix(q).ldl().solve(b)
 }
 

@@ -1,9 +1,10 @@
-//! Law, dynamics and reference allocate nothing.
+//! Law, dynamics and references allocate nothing.
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc, violation_count};
 use flexure_core::control::{Input, RigidVcbc};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{LinkMatrices, Links, MassFactor};
+use flexure_core::reference::{Multisine, PointToPoint, Reference, Sine, SmoothStart, Smoothstep, Term};
 use flexure_core::scalar::{Jet, Scalar};
 use flexure_core::virtual_system::{Structure, closed_loop, error_coordinates, virtual_dynamics};
 
@@ -70,6 +71,22 @@ fn planar_arm() {
 #[test]
 fn branched_tree() {
     law_and_dynamics_allocate_nothing(branched::<7>(2));
+}
+
+#[test]
+fn references() {
+    let one = Vector([1.0; 3]);
+    let sine = Sine { amplitude: one, frequency: one, ..Sine::ZERO };
+    let term = Term { amplitude: one, frequency: one, phase: one };
+    let multisine = Multisine { offset: one, terms: [term; 5] };
+    let start = SmoothStart { from: one, duration: 2.0, then: sine };
+    let steps = [Smoothstep::Quintic, Smoothstep::Septic, Smoothstep::Nonic];
+    let count = allocations(|| {
+        let steps = steps
+            .map(|step| PointToPoint { from: one, to: one, start: 0.0, duration: 1.0, step }.at::<5>(0.5));
+        (one.at::<5>(0.5), sine.at::<5>(0.5), multisine.at::<5>(0.5), start.at::<5>(0.5), steps)
+    });
+    assert_eq!(count, 0);
 }
 
 #[test]

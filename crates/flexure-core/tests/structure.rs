@@ -26,10 +26,10 @@ fn structure_is_the_jacobian<L, P, const N: usize>(
     let constant = |v: &Vector<f64, N>| v.map(Dual::<f64, N>::constant);
     let seeded = |v: &Vector<f64, N>| Vector::from_fn(|i| Dual::<f64, N>::variable(v[i], i));
     let jacobian = structure.jacobian();
-    for j in 0..4 {
+    for (j, part) in parts(&error).iter().enumerate() {
         let mut dual = map(&error, constant);
         let slots = [&mut dual.e_l, &mut dual.e_m, &mut dual.sigma_l, &mut dual.sigma_m];
-        *slots.into_iter().nth(j).expect("four blocks") = seeded(&parts(&error)[j]);
+        *slots.into_iter().nth(j).expect("four blocks") = seeded(part);
         let rates = closed_loop(robot, law, &dual, &x.map(Dual::constant), &Input::ZERO);
         for (i, rate) in parts(&rates).iter().enumerate() {
             for k in 0..N {

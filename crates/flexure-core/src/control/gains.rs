@@ -72,7 +72,7 @@ pub struct MotorGains<C, P, const N: usize> {
 pub struct LinkTorque<T, const N: usize, const U: usize> {
     /// u_l [N m].
     pub torque: Vector<Jet<T, U>, N>,
-    /// q̃_l = q_l − q_ld [rad].
+    /// q̃_l = q_l − q_ld in rad.
     pub error: Vector<Jet<T, U>, N>,
     /// M_l⁻¹ σ_l = q̇_l − q̇_lr [rad/s].
     pub velocity_error: Vector<Jet<T, U>, N>,

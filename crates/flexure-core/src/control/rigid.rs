@@ -13,7 +13,7 @@ pub struct RigidVcbc<C, P, const N: usize> {
 }
 
 impl<C: Scalar, P: Shaping<C, N>, const N: usize> RigidVcbc<C, P, N> {
-    /// The joint torque u_l with its errors, at positions `q` [rad] and velocities `v` [rad/s]. `link_damping` is
+    /// The joint torque u_l with its errors, at positions `q` in rad and velocities `v` [rad/s]. `link_damping` is
     /// the diagonal of D_l; `q_d` the reference to order 2; `omega` an external torque [N m] that is added.
     #[inline]
     pub fn command<T: Over<C>, L: Links<C, N>>(

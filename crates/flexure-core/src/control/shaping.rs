@@ -5,7 +5,7 @@ use crate::scalar::{Dual, Over, Scalar};
 
 /// A shaping function φ with φ(0) = 0 whose slope contracts in the metric Π: eq. controllaw-positionmetricinquality.
 pub trait Shaping<C: Scalar, const N: usize> {
-    /// φ(q̃) [rad/s] at the position error q̃ [rad].
+    /// φ(q̃) [rad/s] at the position error q̃ in rad.
     fn eval<T: Over<C>>(&self, error: &Vector<T, N>) -> Vector<T, N>;
 
     /// Slope ∂φ/∂q̃ [1/s].

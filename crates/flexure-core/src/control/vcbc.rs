@@ -41,11 +41,11 @@ pub struct Command<T, const N: usize> {
     pub u_m: Vector<T, N>,
     /// Torque that the springs should put on the links [N m].
     pub u_l: Vector<T, N>,
-    /// Motor position that would do so, q_md = q_l + K⁻¹ u_l [rad].
+    /// Motor position that would do so, q_md = q_l + K⁻¹ u_l in rad.
     pub q_md: Vector<T, N>,
-    /// Link position error q̃_l [rad].
+    /// Link position error q̃_l in rad.
     pub e_l: Vector<T, N>,
-    /// Motor position error q̃_m [rad].
+    /// Motor position error q̃_m in rad.
     pub e_m: Vector<T, N>,
     /// Link velocity error M_l⁻¹ σ_l [rad/s].
     pub s_l: Vector<T, N>,
@@ -54,7 +54,7 @@ pub struct Command<T, const N: usize> {
 }
 
 impl<C: Scalar, Pl: Shaping<C, N>, Pm: Shaping<C, N>, const N: usize> Vcbc<C, Pl, Pm, N> {
-    /// The motor torque for the robot at `x`, following `q_ld`, the reference [rad] to order 4.
+    /// The motor torque for the robot at `x`, following `q_ld`, the reference in rad to order 4.
     #[inline]
     pub fn command<T: Over<C>, L: Links<C, N>>(
         &self,

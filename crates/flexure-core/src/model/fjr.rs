@@ -25,9 +25,9 @@ pub struct Fjr<C, L, const N: usize> {
 /// The terms of the power balance Ḣ = supplied − dissipated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Power<T> {
-    /// yᵀ u_m = q̇_mᵀ u_m [W].
+    /// yᵀ u_m = q̇_mᵀ u_m in W.
     pub supplied: T,
-    /// q̇_lᵀ D_l q̇_l + q̇_mᵀ D_m q̇_m [W].
+    /// q̇_lᵀ D_l q̇_l + q̇_mᵀ D_m q̇_m in W.
     pub dissipated: T,
 }
 
@@ -60,7 +60,7 @@ impl<C: Scalar, L: Links<C, N>, const N: usize> Fjr<C, L, N> {
         self.stiffness.diag_mul(&(*q_m - *q_l))
     }
 
-    /// Hamiltonian H [J]: kinetic, gravity and spring energy.
+    /// Hamiltonian H in J: kinetic, gravity and spring energy.
     #[inline]
     pub fn hamiltonian<T: Over<C>>(&self, x: &State<T, N>) -> T {
         let motion = self.motion(x);
@@ -68,7 +68,7 @@ impl<C: Scalar, L: Links<C, N>, const N: usize> Fjr<C, L, N> {
         self.energy(&motion, kinetic)
     }
 
-    /// Total energy [J] from velocities: the Hamiltonian without solving for them.
+    /// Total energy in J from velocities: the Hamiltonian without solving for them.
     #[inline]
     pub fn total_energy<T: Over<C>>(&self, x: &Motion<T, N>) -> T {
         let p = self.state(x);

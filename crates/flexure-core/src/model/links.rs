@@ -16,7 +16,7 @@ pub trait Links<C: Scalar, const N: usize> {
     /// Mass matrix M_l(q) [kg m²], symmetric positive definite.
     fn mass_matrix<T: Over<C>>(&self, q: &Vector<T, N>) -> Matrix<T, N, N>;
 
-    /// Potential energy P_l(q) [J] of the links in the gravity field.
+    /// Potential energy P_l(q) of the links in the gravity field, in J.
     fn potential_energy<T: Over<C>>(&self, q: &Vector<T, N>) -> T;
 
     /// The mass matrix at q, ready for [`MassFactor::solve`].

@@ -17,7 +17,7 @@ pub struct LinkMatrices<T, const N: usize> {
 }
 
 impl<T: Scalar, const N: usize> LinkMatrices<T, N> {
-    /// At position `q` [rad] and velocity `v` [rad/s].
+    /// At position `q` in rad and velocity `v` [rad/s].
     #[inline]
     pub fn new<C: Scalar, L: Links<C, N>>(links: &L, q: &Vector<T, N>, v: &Vector<T, N>) -> Self
     where

@@ -6,9 +6,9 @@ use crate::scalar::{Over, Scalar};
 /// The state x = (q_l, q_m, p_l, p_m) in positions and momenta. Its time derivative has the same shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<S, const N: usize> {
-    /// Link positions [rad].
+    /// Link positions in rad.
     pub q_l: Vector<S, N>,
-    /// Motor positions, link side of the gear [rad].
+    /// Motor positions in rad, on the link side of the gear.
     pub q_m: Vector<S, N>,
     /// Link momenta M_l q̇_l [kg m²/s].
     pub p_l: Vector<S, N>,
@@ -19,9 +19,9 @@ pub struct State<S, const N: usize> {
 /// The same state in positions and velocities: what sensors give and controllers take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion<S, const N: usize> {
-    /// Link positions [rad].
+    /// Link positions in rad.
     pub q_l: Vector<S, N>,
-    /// Motor positions, link side of the gear [rad].
+    /// Motor positions in rad, on the link side of the gear.
     pub q_m: Vector<S, N>,
     /// Link velocities [rad/s].
     pub v_l: Vector<S, N>,
@@ -38,13 +38,13 @@ impl<S: Scalar, const N: usize> State<S, N> {
 }
 
 impl<S: Scalar, const N: usize> Motion<S, N> {
-    /// At rest with links and motors at `q` [rad]: springs relaxed.
+    /// At rest with links and motors at `q` in rad: springs relaxed.
     #[inline]
     pub fn at_rest(q: Vector<S, N>) -> Self {
         Self { q_l: q, q_m: q, v_l: Vector::ZERO, v_m: Vector::ZERO }
     }
 
-    /// Spring deflection ζ = q_m − q_l [rad].
+    /// Spring deflection ζ = q_m − q_l in rad.
     #[inline]
     pub fn deflection(&self) -> Vector<S, N> {
         self.q_m - self.q_l

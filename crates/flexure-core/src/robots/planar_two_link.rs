@@ -13,7 +13,7 @@ pub struct PlanarTwoLink<C> {
 }
 
 impl<C: Scalar> PlanarTwoLink<C> {
-    /// From masses [kg], the length of the first link [m], distances of the centres of mass from the joints [m] and
+    /// From masses in kg, the length of the first link in m, distances of the centres of mass from the joints in m and
     /// rotational inertias about the centres of mass [kg m²].
     pub fn new(mass: [C; 2], length: C, com: [C; 2], inertia: [C; 2]) -> Self {
         let ([m1, m2], [r1, r2], [i1, i2]) = (mass, com, inertia);

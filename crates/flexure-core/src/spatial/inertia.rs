@@ -83,7 +83,7 @@ pub struct RigidInertia<C> {
 }
 
 impl<C: Scalar> RigidInertia<C> {
-    /// From the mass [kg], the centre of mass [m] and the rotational inertia about it [kg m²], given as
+    /// From the mass in kg, the centre of mass in m and the rotational inertia about it [kg m²], given as
     /// `(xx, xy, xz, yy, yz, zz)` in the axes of the link frame. Parallel-axis theorem.
     pub fn new(mass: C, com: [C; 3], [xx, xy, xz, yy, yz, zz]: [C; 6]) -> Self {
         let c = Vec3::from_array(com);

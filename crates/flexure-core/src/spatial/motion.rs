@@ -19,7 +19,7 @@ pub struct Motion<S> {
 pub struct Force<S> {
     /// Moment about the frame's origin [N m].
     pub moment: Vec3<S>,
-    /// Force [N].
+    /// Force in N.
     pub linear: Vec3<S>,
 }
 

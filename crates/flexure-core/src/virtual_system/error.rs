@@ -8,9 +8,9 @@ use crate::scalar::{Jet, Over, Scalar};
 /// The error x̃ = (q̃_l, q̃_m, σ_l, σ_m), or its time derivative, or a variation δx̃.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorState<T, const N: usize> {
-    /// Link position error q̃_l = q_lv − q_ld [rad].
+    /// Link position error q̃_l = q_lv − q_ld in rad.
     pub e_l: Vector<T, N>,
-    /// Motor position error q̃_m = q_mv − q_md [rad].
+    /// Motor position error q̃_m = q_mv − q_md in rad.
     pub e_m: Vector<T, N>,
     /// Link momentum error σ_l = p_lv − p_lr [kg m²/s].
     pub sigma_l: Vector<T, N>,
@@ -19,7 +19,7 @@ pub struct ErrorState<T, const N: usize> {
 }
 
 /// The error of the virtual state `x_v` under the law, along the real motion `x`. Paper, eq. changeofcoordinatesError
-/// and changeofcoordinatesError-motor. `q_ld` is the reference [rad] to order 4.
+/// and changeofcoordinatesError-motor. `q_ld` is the reference in rad to order 4.
 ///
 /// The motor error contains the link part of the law, so the coordinates depend on `omega` too.
 #[inline]

@@ -84,7 +84,7 @@ impl<T: Scalar, const N: usize> Structure<T, N> {
         jacobian
     }
 
-    /// W = ½ δx̃ᵀ Π δx̃ [J]: the differential storage. Paper, eq. design-dLCF-sigma-flexible.
+    /// W = ½ δx̃ᵀ Π δx̃, the differential storage, in J. Paper, eq. design-dLCF-sigma-flexible.
     #[inline]
     pub fn storage(&self, delta: &ErrorState<T, N>) -> T {
         let [Pi_l, Pi_m, inverse_l, inverse_m] = self.metric;

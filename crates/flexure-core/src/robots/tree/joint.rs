@@ -115,7 +115,7 @@ impl<C: Scalar> Joint<C> {
         }
     }
 
-    /// `Sᵀ f`: the torque [N m] or force [N] at the joint.
+    /// `Sᵀ f`: the torque [N m] or force in N at the joint.
     #[inline]
     pub(super) fn project<T: Scalar>(&self, f: &Force<T>) -> T {
         match self.kind {

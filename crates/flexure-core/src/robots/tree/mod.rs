@@ -16,9 +16,9 @@ use joint::Joint;
 /// How a joint moves along or about its axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
-    /// Rotation about the axis [rad].
+    /// Rotation about the axis in rad.
     Revolute,
-    /// Translation along the axis [m].
+    /// Translation along the axis in m.
     Prismatic,
 }
 
@@ -33,11 +33,11 @@ pub struct Body {
     pub axis: [f64; 3],
     /// Orientation of the joint frame at q = 0 in the parent's link frame (columns are its axes).
     pub rotation: [[f64; 3]; 3],
-    /// Origin of the joint frame in the parent's link frame [m].
+    /// Origin of the joint frame in the parent's link frame in m.
     pub translation: [f64; 3],
-    /// Mass [kg].
+    /// Mass in kg.
     pub mass: f64,
-    /// Centre of mass in the link frame [m].
+    /// Centre of mass in the link frame in m.
     pub com: [f64; 3],
     /// Rotational inertia about the centre of mass in link axes [kg m²].
     pub inertia: [[f64; 3]; 3],
