@@ -34,7 +34,10 @@ pub struct Integrator {
 const SLOW: f64 = 1e-3;
 
 /// Steps shorter than this fraction of the interval are a failure, not an accuracy problem.
-const SHORTEST: f64 = 1e-7;
+const SHORTEST: f64 = 1e-6;
+
+/// More steps than this in one interval are a failure too: a run ends in bounded time whatever happens in it.
+const MOST_STEPS: u32 = 100_000;
 
 /// Corrections of this size relative to the speeds of a step are rounding.
 const ROUNDING: f64 = 1e-14;
@@ -81,7 +84,12 @@ impl Integrator {
         let mut done = 0.0;
         // Equal steps to the end of the interval, of at most the length that was good before.
         let mut remaining = steps_in(interval, self.step);
+        let mut tries = 0;
         while remaining > 0 {
+            tries += 1;
+            if tries > MOST_STEPS {
+                return Err(StepFailure { after: done });
+            }
             let h = (interval - done) / f64::from(remaining);
             let step = self.try_step(robot, &x, t + done, h, torque);
             if let Some(step) = step.filter(|step| step.factor >= 1.0) {
