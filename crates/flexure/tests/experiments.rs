@@ -89,3 +89,24 @@ fn runs_repeat_bit_by_bit() {
         assert!(same, "{}", x.name);
     }
 }
+
+#[test]
+fn trace_and_summary_say_what_happened() {
+    let run = simulate(|_| (), "two-link-tanh");
+    let column = |name: &str| run.trace.column(name).expect("recorded");
+    let (t, q_l, q_ld, e_l) = (column("t"), column("q_l1"), column("q_ld1"), column("e_l1"));
+    for i in 0..t.len() {
+        assert!((q_ld[i] - t[i].sin()).abs() < 1e-12, "the reference at {}", t[i]);
+        assert!((q_l[i] - q_ld[i] - e_l[i]).abs() < 1e-12);
+    }
+    // The settling time, found again from its definition.
+    let errors = run.trace.joints("e_l");
+    let unsettled = (0..t.len()).rev().find(|&i| errors.iter().any(|e| e[i].abs() >= flexure::run::SETTLED));
+    let settled = unsettled.map_or(0.0, |i| t[i + 1]);
+    assert_eq!(run.summary.settling_time, Some(settled));
+    let largest = errors.iter().flat_map(|e| e.iter()).fold(0.0, |m: f64, e| m.max(e.abs()));
+    assert!((run.summary.max_abs_e_l - largest).abs() < 1e-15);
+    let mean_square = |e: &[f64]| e.iter().map(|x| x * x).sum::<f64>() / e.len() as f64;
+    let rms = errors.iter().map(|e| mean_square(e)).fold(0.0, f64::max).sqrt();
+    assert!((run.summary.rms_e_l / rms - 1.0).abs() < 1e-12);
+}

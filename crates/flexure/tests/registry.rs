@@ -1,0 +1,53 @@
+//! Data become the right types: closed forms against what the files say.
+
+use flexure::core::reference::Reference as _;
+use flexure::evaluate::evaluate_model;
+use flexure::io::{Profile, Reference, StateRow, load_robot, load_scenario};
+use flexure::registry::AnyReference;
+
+#[test]
+fn the_pendulum_swings_about_its_joint() {
+    let robot = load_robot("pendulum-1dof").expect("built in");
+    let flexure::io::Links::Pendulum { mass, com, inertia } = robot.links else { panic!("a pendulum") };
+    let (q, v) = (0.7, 1.3);
+    let state =
+        StateRow { q_l: vec![q], q_m: vec![0.9], dq_l: vec![v], dq_m: vec![0.0], ..StateRow::default() };
+    let row = &evaluate_model(&robot, &[state]).expect("one joint")[0];
+    let about_the_joint = inertia + mass * com * com;
+    assert!((row.M_l[0][0] - about_the_joint).abs() < 1e-15);
+    assert!((row.bias[0] - mass * 9.81 * com * q.sin()).abs() < 1e-14);
+    let spring = 0.5 * robot.stiffness[0] * 0.2 * 0.2;
+    let energy = 0.5 * about_the_joint * v * v + mass * 9.81 * com * (1.0 - q.cos()) + spring;
+    assert!((row.H - energy).abs() < 1e-14);
+}
+
+#[test]
+fn point_to_point_motions_have_the_smoothness_of_their_name() {
+    for (profile, smooth) in [(Profile::Quintic, 2), (Profile::Septic, 3), (Profile::Nonic, 4)] {
+        let mut scenario = load_scenario("pendulum-tanh").expect("built in");
+        scenario.smooth_start = None;
+        scenario.reference =
+            Reference::PointToPoint { profile, from: vec![0.1], to: vec![1.1], start: 0.5, duration: 2.0 };
+        let reference = AnyReference::<1>::new(&scenario).expect("a path");
+        // Just inside the motion: derivatives up to the smoothness vanish, the next does not.
+        let [jet] = reference.at::<7>(0.5 + 1e-9).0;
+        for k in 1..=smooth {
+            assert!(jet.derivative(k).abs() < 1e-6, "{profile:?}: derivative {k} is {}", jet.derivative(k));
+        }
+        assert!(jet.derivative(smooth + 1).abs() > 1.0, "{profile:?}: {jet:?}");
+        let [end] = reference.at::<2>(3.0).0;
+        assert!((end.derivative(0) - 1.1).abs() < 1e-15 && end.derivative(1) == 0.0);
+    }
+}
+
+#[test]
+fn a_smooth_start_leaves_from_the_robot_and_reaches_the_reference() {
+    let scenario = load_scenario("two-link-tanh-smooth").expect("built in");
+    let duration = scenario.smooth_start.expect("smooth");
+    let reference = AnyReference::<2>::new(&scenario).expect("a path");
+    let start = reference.at::<5>(0.0).0;
+    assert!(start.iter().all(|jet| (0..5).all(|k| jet.derivative(k) == 0.0)), "{start:?}");
+    let [later, _] = reference.at::<3>(duration + 1.0).0;
+    assert!((later.derivative(0) - (duration + 1.0).sin()).abs() < 1e-15);
+    assert!((later.derivative(1) - (duration + 1.0).cos()).abs() < 1e-15);
+}
