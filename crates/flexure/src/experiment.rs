@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::io::{Controller, Hold, Problems, Scenario, load_scenario};
+use crate::io::{self, Controller, Hold, Problems, Scenario, load_scenario};
 use crate::report::number::engineering;
 use crate::report::{Assumption, FigureOptions, Report, RunReport, comparison, four_panel};
 use crate::run::{Run, run};
@@ -117,6 +117,14 @@ fn outcome(summary: &Summary) -> String {
     )
 }
 
+/// The assumed value with its unit; whole tables are named, not printed.
+fn value(assumed: &io::Assumption) -> String {
+    if assumed.value == format!("[{}]", assumed.key) {
+        return "the whole table".to_owned();
+    }
+    format!("{}{}", assumed.value, unit(&assumed.key).replace(' ', "\u{a0}"))
+}
+
 /// Unit of the value at `key` of a robot or scenario file; empty for none and for whole tables.
 fn unit(key: &str) -> &'static str {
     match key.rsplit('.').next().unwrap_or_default() {
@@ -146,7 +154,7 @@ fn assumptions(experiments: &[Experiment]) -> Vec<Assumption> {
                 all.push(Assumption {
                     file: assumed.file.clone(),
                     key: assumed.key.clone(),
-                    value: format!("{}{}", assumed.value, unit(&assumed.key)),
+                    value: value(assumed),
                     note: assumed.note.clone(),
                 });
             }

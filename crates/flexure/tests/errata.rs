@@ -1,5 +1,7 @@
 //! Slips of the paper, by their numbers in `docs/errata.md`: the printed form fails, the corrected one holds.
 
+use std::f64::consts::PI;
+
 use flexure::rates::BlockRates;
 use flexure_core::control::{
     Command, CoupledTanh, Input, Linear, LinkGains, Metric, MotorGains, Shaping, Tanh, Vcbc,
@@ -63,6 +65,11 @@ fn structure_at_rest<L: Links<f64, N>, P: Shaping<f64, N>, const N: usize>(
     law: &Vcbc<f64, P, P, N>,
 ) -> Structure<f64, N> {
     Structure::new(robot, law, &no_error(), &Motion::at_rest(Vector::ZERO))
+}
+
+/// The arm with its second link turned by `angle`, under the linear law.
+fn turned_arm(angle: f64) -> Structure<f64, 2> {
+    Structure::new(&arm(), &law(LINEAR), &no_error(), &Motion::at_rest(Vector([0.0, angle])))
 }
 
 /// The blocks as one matrix of `D` = 4 `N` rows.
@@ -155,8 +162,8 @@ fn the_position_converges_at_half_the_rate_of_the_storage() {
 
     // The paper's arm: no rate beats the spectral abscissa, and the printed rate would have to.
     let beta = rates(LINEAR, 0.0).overall();
-    let abscissa = spectral_abscissa::<8>(&flat(&structure_at_rest(&arm(), &law(LINEAR)).jacobian()));
-    close(abscissa, -32.94, 1e-3); // four digits are known
+    let abscissa = spectral_abscissa::<8>(&flat(&turned_arm(PI).jacobian()));
+    close(abscissa, -32.94, 2e-4); // four digits are known
     assert!(-2.0 * beta < abscissa && abscissa < -beta, "{abscissa} with β = {beta}");
 }
 
@@ -192,7 +199,7 @@ fn saturated_shaping_has_no_global_rate() {
         let slowest = 30.0 / f64::cosh(edge).powi(2);
         close(rates(TANH, edge).phi_l, slowest, ROUNDING);
         for step in -10..=10 {
-            assert!(rates(TANH, 0.1 * f64::from(step) * edge).phi_l >= slowest * (1.0 - ROUNDING));
+            assert!(rates(TANH, 0.1 * f64::from(step) * edge).phi_l >= slowest - 30.0 * ROUNDING);
         }
     }
     assert!(rates(TANH, 9.0).phi_l < 1e-5 && rates(LINEAR, 9.0).phi_l > 29.9);
@@ -215,13 +222,15 @@ fn the_coupling_is_a_differential_for_constant_metrics_only() {
 /// Slip 6. With the printed sign and the printed Π_m the loop is unstable.
 #[test]
 fn the_printed_motor_reference_makes_the_loop_unstable() {
-    let robot = arm();
-    let structure = structure_at_rest(&robot, &law(LINEAR));
-    let mut blocks = structure.jacobian();
-    assert!(spectral_abscissa::<8>(&flat(&blocks)) < 0.0);
-    let printed = Vector::from_fn(|i| MOTOR_GAIN[i] * robot.stiffness[i]);
-    blocks[1][2] = Matrix::diagonal(&printed) * structure.metric[2];
-    close(spectral_abscissa::<8>(&flat(&blocks)), 103.0, 5e-3); // three digits are known
+    let printed = Vector::from_fn(|i| MOTOR_GAIN[i] * arm().stiffness[i]);
+    // Known to five digits from a general eigenvalue solver.
+    for (angle, growth) in [(0.0, 89.374), (0.5 * PI, 94.497), (PI, 103.113)] {
+        let structure = turned_arm(angle);
+        let mut blocks = structure.jacobian();
+        assert!(spectral_abscissa::<8>(&flat(&blocks)) < -32.9);
+        blocks[1][2] = Matrix::diagonal(&printed) * structure.metric[2];
+        close(spectral_abscissa::<8>(&flat(&blocks)), growth, 1e-5);
+    }
 }
 
 /// Slip 7. The output of the motor side is Π_m δq̃_m, the spring torque K δq̃_m.

@@ -13,11 +13,14 @@ pub(super) fn body(markdown: &str) -> String {
         _ => markdown,
     };
     let mut html = String::new();
-    let events = TextMergeStream::new(Parser::new_ext(body, Options::ENABLE_TABLES)).map(|event| match event {
-        Event::Text(text) => Event::InlineHtml(CowStr::from(subscripts(&text))),
-        Event::Code(code) => Event::InlineHtml(CowStr::from(format!("<code>{}</code>", breakable(&code)))),
-        other => other,
-    });
+    let events =
+        TextMergeStream::new(Parser::new_ext(body, Options::ENABLE_TABLES)).map(|event| match event {
+            Event::Text(text) => Event::InlineHtml(CowStr::from(subscripts(&text))),
+            Event::Code(code) => {
+                Event::InlineHtml(CowStr::from(format!("<code>{}</code>", breakable(&code))))
+            }
+            other => other,
+        });
     push_html(&mut html, events);
     html
 }
@@ -43,10 +46,10 @@ pub(super) fn subscripts(text: &str) -> String {
 
 fn breakable(code: &str) -> String {
     let mut html = String::with_capacity(code.len());
-    for piece in code.split_inclusive(['_', ':', '-']) {
+    for piece in code.split_inclusive(['_', '-']) {
         html.extend([&escaped(piece), "<wbr/>"]);
     }
-    html
+    html.replace("::", "::<wbr/>")
 }
 
 fn escaped(text: &str) -> String {
