@@ -78,11 +78,11 @@ fn integral(coefficients: &[f64; STAGES], x: f64) -> f64 {
 /// Work done on the robot and by it: the two sides of the power balance, integrated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ledger {
-    /// ∫ q̇_mᵀ u_m dt [J].
+    /// ∫ q̇_mᵀ u_m dt in J.
     pub supplied: f64,
-    /// ∫ q̇_lᵀ D_l q̇_l + q̇_mᵀ D_m q̇_m dt [J].
+    /// ∫ q̇_lᵀ D_l q̇_l + q̇_mᵀ D_m q̇_m dt in J.
     pub dissipated: f64,
-    /// ∫ |q̇_mᵀ u_m| dt [J]: what the residual is compared with.
+    /// ∫ |q̇_mᵀ u_m| dt in J: what the residual is compared with.
     pub throughput: f64,
 }
 
@@ -103,7 +103,7 @@ impl Ledger {
 /// A step that cannot be made: the state or the torque is not finite, or the step would have to be too small.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepFailure {
-    /// Time into the interval at which it happened [s].
+    /// Time into the interval at which it happened, in s.
     pub after: f64,
 }
 
@@ -113,7 +113,7 @@ pub struct Integrator {
     scheme: Scheme,
     /// Tolerated local error of a step, relative to the speed of the joint.
     tolerance: f64,
-    /// Last good step [s]: the first guess for the next.
+    /// Last good step, in s: the first guess for the next.
     step: f64,
     steps: u64,
 }
