@@ -13,23 +13,23 @@ use crate::registry::{AnyReference, Law, RobotVisitor, law, vector, with_robot};
 #[expect(non_snake_case, reason = "keys of the contract")]
 #[derive(Clone, Debug, Serialize)]
 pub struct LawRow {
-    /// Time [s].
+    /// Time in s.
     pub t: f64,
     /// Motor torque [N m].
     pub u_m: Vec<f64>,
     /// Link torque that the springs should give [N m].
     pub u_l: Vec<f64>,
-    /// Motor position that would give it [rad].
+    /// Motor position that would give it, in rad.
     pub q_md: Vec<f64>,
-    /// Link position error [rad].
+    /// Link position error in rad.
     pub e_l: Vec<f64>,
-    /// Motor position error [rad].
+    /// Motor position error in rad.
     pub e_m: Vec<f64>,
     /// Link momentum error [kg m²/s].
     pub sigma_l: Vec<f64>,
     /// Motor momentum error [kg m²/s].
     pub sigma_m: Vec<f64>,
-    /// Total energy [J].
+    /// Total energy in J.
     pub H: f64,
 }
 
@@ -47,7 +47,7 @@ pub struct ModelRow {
     pub dM_l: Vec<Vec<f64>>,
     /// C q̇ + g of the links [N m].
     pub bias: Vec<f64>,
-    /// Total energy [J].
+    /// Total energy in J.
     pub H: f64,
     /// Link accelerations [rad/s²].
     pub ddq_l: Vec<f64>,

@@ -2,9 +2,11 @@
 
 use rayon::prelude::*;
 
-use crate::io::{Controller, Hold, Problems, Scenario, load_scenario};
+use crate::io::{self, Controller, Hold, Problems, Scenario, load_scenario};
+use crate::report::number::engineering;
 use crate::report::{Assumption, FigureOptions, Report, RunReport, comparison, four_panel};
 use crate::run::{Run, run};
+use crate::summary::Summary;
 
 /// The experiments of the paper: each shaping function from rest off the reference, and from a smooth start.
 pub const REPRODUCED: [&str; 6] = [
@@ -94,7 +96,50 @@ fn run_report(experiment: &Experiment) -> RunReport {
     RunReport {
         summary: experiment.run.summary.clone(),
         figure_svg: experiment.figure.clone(),
-        description: describe(&experiment.scenario),
+        description: outcome(&experiment.run.summary),
+    }
+}
+
+/// What a run came to, in a sentence.
+fn outcome(summary: &Summary) -> String {
+    let settled = match summary.settling_time {
+        Some(0.0) => "every link stays within 1 mrad of the reference".to_owned(),
+        Some(time) => {
+            format!("every link stays within 1 mrad of the reference after {} s", engineering(time))
+        }
+        None => "the links do not settle within 1 mrad of the reference".to_owned(),
+    };
+    format!(
+        "φ = {}: {settled}; largest motor torque {} N m, root mean square {} N m.",
+        summary.phi,
+        engineering(summary.max_abs_u_m),
+        engineering(summary.rms_u_m)
+    )
+}
+
+/// The assumed value with its unit; whole tables are named, not printed.
+fn value(assumed: &io::Assumption) -> String {
+    if assumed.value == format!("[{}]", assumed.key) {
+        return "the whole table".to_owned();
+    }
+    format!("{}{}", assumed.value, unit(&assumed.key).replace(' ', "\u{a0}"))
+}
+
+/// Unit of the value at `key` of a robot or scenario file; empty for none and for whole tables.
+fn unit(key: &str) -> &'static str {
+    match key.rsplit('.').next().unwrap_or_default() {
+        "duration" | "control_period" => " s",
+        "gravity" => " m/s²",
+        "mass" => " kg",
+        "length" | "com" => " m",
+        "inertia" | "motor_inertia" => " kg m²",
+        "stiffness" | "metric" => " N m/rad",
+        "link_damping" | "motor_damping" | "damping" => " N m s/rad",
+        "torque_limit" => " N m",
+        "velocity_limit" => " rad/s",
+        "deflection_limit" => " rad",
+        "kappa" => " 1/s",
+        _ => "",
     }
 }
 
@@ -108,7 +153,7 @@ fn assumptions(experiments: &[Experiment]) -> Vec<Assumption> {
                 all.push(Assumption {
                     file: assumed.file.clone(),
                     key: assumed.key.clone(),
-                    value: assumed.value.clone(),
+                    value: value(assumed),
                     note: assumed.note.clone(),
                 });
             }

@@ -13,3 +13,8 @@ pub mod run;
 pub mod sim;
 pub mod summary;
 pub mod trace;
+
+/// The program of the README, compiled and run with the tests of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+pub struct Readme;

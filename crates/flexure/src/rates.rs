@@ -21,7 +21,7 @@ pub struct BlockRates {
 }
 
 impl BlockRates {
-    /// At a state where the law gives `command` and the links are at `q_l` [rad].
+    /// At a state where the law gives `command` and the links are at `q_l` in rad.
     pub fn at<L, Pl, Pm, const N: usize>(
         robot: &Fjr<f64, L, N>,
         law: &Vcbc<f64, Pl, Pm, N>,

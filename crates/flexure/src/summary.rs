@@ -11,13 +11,13 @@ pub struct Summary {
     pub controller: String,
     /// Shaping function, as in the scenario file.
     pub phi: String,
-    /// Largest |q_l − q_ld| over all joints and the whole run [rad].
+    /// Largest |q_l − q_ld| over all joints and the whole run, in rad.
     pub max_abs_e_l: f64,
-    /// Root mean square over time of |q_l − q_ld|, the largest over the joints [rad].
+    /// Root mean square over time of |q_l − q_ld|, the largest over the joints, in rad.
     pub rms_e_l: f64,
-    /// Largest |q_l − q_ld| over the joints at the end [rad].
+    /// Largest |q_l − q_ld| over the joints at the end, in rad.
     pub final_abs_e_l: f64,
-    /// Time after which every |q_l − q_ld| stays below 1 mrad [s]; none if it does not settle.
+    /// Time after which every |q_l − q_ld| stays below 1 mrad, in s; none if it does not settle.
     pub settling_time: Option<f64>,
     /// Largest |u_m| [N m].
     pub max_abs_u_m: f64,
@@ -33,6 +33,6 @@ pub struct Summary {
     pub energy_drift: f64,
     /// Integration steps taken.
     pub steps: u64,
-    /// Wall-clock time of the simulation [s].
+    /// Wall-clock time of the simulation in s.
     pub wall_seconds: f64,
 }

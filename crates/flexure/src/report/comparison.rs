@@ -29,7 +29,9 @@ pub fn comparison(traces: &[(&str, &Trace)]) -> String {
     let x = decay(&errors, whole).unwrap_or(whole);
     let shown: Vec<Curve> = errors.iter().map(|curve| curve.within(x)).collect();
     let buckets = buckets(traces.len());
-    let curves: Vec<Curve> = shown.iter().map(|curve| curve.exponents(buckets)).collect();
+    let mut curves: Vec<Curve> = shown.iter().map(|curve| curve.exponents(buckets)).collect();
+    // Runs that coincide both show: broken lines lie on top of solid ones.
+    curves.sort_by_key(|curve| !curve.stroke.dash.is_empty());
     let y = decades(&curves);
 
     let subtitle = if x == whole { String::new() } else { left_out(&errors, x, whole) };
@@ -42,7 +44,7 @@ pub fn comparison(traces: &[(&str, &Trace)]) -> String {
         x,
         y,
         x_label: "time [s]",
-        y_label: "max |e_l| [rad]",
+        y_label: "max |eₗ| [rad]",
         y_labels: Labels::Decades,
         left: 76.0,
     };

@@ -35,28 +35,28 @@ pub fn four_panel(trace: &Trace, options: &FigureOptions) -> String {
     let positions = over(over(motor("q_m"), link("q_l")), dotted("q_ld"));
     let panels = [
         Panel {
-            title: "(a)  positions q_l, q_m and reference q_ld",
+            title: "(a)  positions qₗ, qₘ and reference of qₗ",
             quantity: "position",
             unit: "rad",
             scale: Scale::Linear,
             curves: positions,
         },
         Panel {
-            title: "(b)  position errors e_l, e_m",
+            title: "(b)  position errors eₗ, eₘ",
             quantity: "|error|",
             unit: "rad",
             scale: Scale::Decades,
             curves: over(motor("e_m"), link("e_l")),
         },
         Panel {
-            title: "(c)  momentum errors σ_l, σ_m",
+            title: "(c)  momentum errors σₗ, σₘ",
             quantity: "|momentum error|",
             unit: "kg m²/s",
             scale: Scale::Decades,
             curves: over(motor("sigma_m"), link("sigma_l")),
         },
         Panel {
-            title: "(d)  motor torques u_m",
+            title: "(d)  motor torques uₘ",
             quantity: "torque",
             unit: "N m",
             scale: Scale::Linear,

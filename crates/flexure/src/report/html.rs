@@ -2,7 +2,7 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 
-use super::markdown::{ERRATA, body};
+use super::markdown::{ERRATA, body, subscripts};
 use super::number::{NONE, engineering};
 use crate::summary::Summary;
 
@@ -119,8 +119,8 @@ const COLUMNS: [(&str, &str); 11] = [
     ("saturated", "%"),
     ("rate sampled", "1/s"),
     ("rate certified", "1/s"),
-    ("energy drift", "1"),
-    ("steps", ""),
+    ("energy drift", "–"),
+    ("steps", "–"),
 ];
 
 fn numbers(summary: &Summary) -> [String; COLUMNS.len()] {
@@ -145,17 +145,18 @@ fn summary_table(runs: &[RunReport]) -> Markup {
         div.scroll {
             table.numbers {
                 thead { tr {
-                    th { "run" } th { "controller" } th { "φ" }
+                    th { "run" br; span.unit { "controller, φ" } }
                     @for (title, unit) in COLUMNS {
-                        th { (title) @if !unit.is_empty() { br; span.unit { "[" (unit) "]" } } }
+                        th { (symbols(title)) br; span.unit { "[" (unit) "]" } }
                     }
                 } }
                 tbody {
                     @for (index, RunReport { summary, .. }) in runs.iter().enumerate() {
                         tr {
-                            th scope="row" { a href={ "#run-" (index + 1) } { (summary.name) } }
-                            td.word { (summary.controller) }
-                            td.word { (summary.phi) }
+                            th scope="row" {
+                                a href={ "#run-" (index + 1) } { (summary.name) } br;
+                                span.unit { (summary.controller) ", " (summary.phi) }
+                            }
                             @for number in numbers(summary) { td { (number) } }
                         }
                     }
@@ -163,12 +164,17 @@ fn summary_table(runs: &[RunReport]) -> Markup {
             }
         }
         p.note {
-            "Settling time: after it every |e_l| stays below 1 mrad; — if that never happens. "
+            "Settling time: after it every " (symbols("|e_l|")) " stays below 1 mrad; — if that never happens. "
             "Rate sampled: the smallest contraction rate evaluated along the run, a sample and not a proof. "
             @if runs.iter().any(|run| run.summary.rate_certified.is_none()) { "— as rate certified: proof not part of this version. " }
             "Energy drift: the energy balance's residual, relative to the energy that went through the robot."
         }
     }
+}
+
+/// `u_m` with its subscript lowered.
+fn symbols(text: &str) -> Markup {
+    markup! { (PreEscaped(subscripts(text))) }
 }
 
 fn figure(number: usize, run: &RunReport) -> Markup {
@@ -184,18 +190,28 @@ fn figure(number: usize, run: &RunReport) -> Markup {
 }
 
 fn assumptions(assumptions: &[Assumption]) -> Markup {
+    let mut rows: Vec<(&Assumption, Vec<&str>)> = Vec::new();
+    for assumption in assumptions {
+        let same = |other: &Assumption| {
+            (&other.key, &other.value, &other.note) == (&assumption.key, &assumption.value, &assumption.note)
+        };
+        match rows.iter_mut().find(|(first, _)| same(first)) {
+            Some((_, files)) => files.push(&assumption.file),
+            None => rows.push((assumption, vec![&assumption.file])),
+        }
+    }
     markup! {
         @if assumptions.is_empty() {
             p { "None: every number has a source." }
         } @else {
             p { "Numbers that the sources do not give. Change them in the files named here." }
             div.scroll { table {
-                thead { tr { th { "file" } th { "key" } th { "value" } th { "why" } } }
+                thead { tr { th { "key" } th { "value" } th { "why" } th { "files" } } }
                 tbody {
-                    @for assumption in assumptions {
+                    @for (assumption, files) in &rows {
                         tr {
-                            td { code { (assumption.file) } } td { code { (assumption.key) } }
-                            td { (assumption.value) } td { (assumption.note) }
+                            td { code { (assumption.key) } } td { (assumption.value) } td { (assumption.note) }
+                            td.files { @for file in files { code { (file) } " " } }
                         }
                     }
                 }

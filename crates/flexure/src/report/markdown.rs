@@ -1,24 +1,70 @@
 //! The pages of `docs/` that reports carry.
 
-use pulldown_cmark::{Options, Parser, html::push_html};
+use pulldown_cmark::{CowStr, Event, Options, Parser, TextMergeStream, html::push_html};
 
 /// `docs/errata.md`: the slips of the paper and what the software does instead.
 pub(super) const ERRATA: &str = include_str!("../../../../docs/errata.md");
 
-/// Markdown with tables as HTML, without its top heading: the report has its own.
+/// Markdown with tables as HTML, without its top heading: the report has its own. Subscripts (`q_l`) are lowered, and
+/// labels in code spans may break after their punctuation.
 pub(super) fn body(markdown: &str) -> String {
     let body = match markdown.split_once('\n') {
         Some((heading, rest)) if heading.starts_with("# ") => rest,
         _ => markdown,
     };
     let mut html = String::new();
-    push_html(&mut html, Parser::new_ext(body, Options::ENABLE_TABLES));
+    let events =
+        TextMergeStream::new(Parser::new_ext(body, Options::ENABLE_TABLES)).map(|event| match event {
+            Event::Text(text) => Event::InlineHtml(CowStr::from(subscripts(&text))),
+            Event::Code(code) => {
+                Event::InlineHtml(CowStr::from(format!("<code>{}</code>", breakable(&code))))
+            }
+            other => other,
+        });
+    push_html(&mut html, events);
     html
+}
+
+/// Text as HTML with its subscripts lowered: letters and digits after an underscore that follows a symbol.
+pub(super) fn subscripts(text: &str) -> String {
+    let mut html = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some((before, after)) = rest.split_once('_') {
+        let length = after.find(|c: char| !c.is_ascii_alphanumeric()).unwrap_or(after.len());
+        let (subscript, remaining) = after.split_at(length);
+        html.push_str(&escaped(before));
+        if before.ends_with(char::is_whitespace) || before.is_empty() || subscript.is_empty() {
+            html.push('_');
+            rest = after;
+        } else {
+            html.extend(["<sub>", subscript, "</sub>"]);
+            rest = remaining;
+        }
+    }
+    html + &escaped(rest)
+}
+
+fn breakable(code: &str) -> String {
+    let mut html = String::with_capacity(code.len());
+    for piece in code.split_inclusive(['_', '-']) {
+        html.extend([&escaped(piece), "<wbr/>"]);
+    }
+    html.replace("::", "::<wbr/>")
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{ERRATA, body};
+    use super::{ERRATA, body, subscripts};
+
+    #[test]
+    fn subscripts_are_lowered_and_text_is_escaped() {
+        assert_eq!(subscripts("M_l⁻¹ < q̃_mr"), "M<sub>l</sub>⁻¹ &lt; q̃<sub>mr</sub>");
+        assert_eq!(subscripts("_a λ_(k) <b>_1"), "_a λ_(k) &lt;b&gt;<sub>1</sub>");
+    }
 
     #[test]
     fn the_errata_table_has_every_slip() {

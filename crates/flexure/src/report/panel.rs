@@ -109,7 +109,7 @@ impl Panel {
         let right = Axes { left: 60.0, ..axes(right, view.t, range, "") };
         right.draw(sheet, &self.curves, view.diverged, view.buckets);
         let [from, to] = [ticks.low, ticks.high].map(|t| short(t, 3));
-        format!("left: {from} to {to} {unit}, {}; right: whole run, cut there", self.peak())
+        format!("left: {from} to {to} {unit}, {}; right: whole run, axis cut", self.peak())
     }
 
     fn label(&self) -> String {

@@ -41,10 +41,11 @@ impl Stroke {
         Self { color: INK, width: 1.3, dash: &[2, 4] }
     }
 
-    /// Several whole runs in one axis; colours that come round again are dashed.
+    /// Several whole runs in one axis: every other one is dashed and thinner, and so are colours that come round again.
     pub(super) fn run(index: usize) -> Self {
-        let dash: &[u8] = [&[][..], &[8, 4], &[2, 3]][(index / HUES.len()).min(2)];
-        Self { color: hue(index), width: 1.8, dash }
+        let broken = index % 2 + 2 * (index / HUES.len()).min(1);
+        let dash: &[u8] = [&[][..], &[8, 5], &[2, 3], &[8, 3, 2, 3]][broken];
+        Self { color: hue(index), width: if dash.is_empty() { 2.6 } else { 1.8 }, dash }
     }
 
     /// The dash pattern as SVG writes it, in multiples of `unit` pixels.

@@ -7,7 +7,7 @@ use crate::rates::BlockRates;
 use crate::sim::Instant;
 use crate::trace::Trace;
 
-/// Errors below this count as settled [rad].
+/// Errors below this, in rad, count as settled.
 pub const SETTLED: f64 = 1e-3;
 
 /// Watches a run, instant by instant.

@@ -19,9 +19,9 @@ pub enum Hold {
 /// A closed loop to simulate.
 #[derive(Clone, Copy, Debug)]
 pub struct ClosedLoop {
-    /// Length of the run [s].
+    /// Length of the run in s.
     pub duration: f64,
-    /// Control period [s]; also the interval at which the run is observed.
+    /// Control period in s; also the interval at which the run is observed.
     pub period: f64,
     /// Torque between control instants.
     pub hold: Hold,
@@ -32,15 +32,15 @@ pub struct ClosedLoop {
 /// What a control instant looks like to an observer.
 #[derive(Clone, Copy, Debug)]
 pub struct Instant<'a, const N: usize> {
-    /// Time [s].
+    /// Time in s.
     pub t: f64,
     /// Motion of the robot.
     pub motion: &'a Motion<f64, N>,
     /// What the law commands.
     pub command: &'a Command<f64, N>,
-    /// Total energy H [J].
+    /// Total energy H in J.
     pub energy: f64,
-    /// H(t) − H(0) − supplied + dissipated [J]: zero up to integration errors.
+    /// H(t) − H(0) − supplied + dissipated in J: zero up to integration errors.
     pub residual: f64,
     /// Work so far.
     pub ledger: &'a Ledger,
@@ -61,13 +61,13 @@ pub struct Outcome {
 /// A loop that left the finite numbers, or any sensible range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Divergence {
-    /// Time at which the run had to stop [s].
+    /// Time at which the run had to stop, in s.
     pub time: f64,
     /// Largest link position or velocity seen at the last good instant [rad, rad/s].
     pub magnitude: f64,
 }
 
-/// A position [rad] or speed [rad/s] beyond this is a diverged loop, not a robot.
+/// A position in rad or speed [rad/s] beyond this is a diverged loop, not a robot.
 const BEYOND: f64 = 1e6;
 
 impl ClosedLoop {
