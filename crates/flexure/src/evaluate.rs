@@ -6,7 +6,7 @@ use flexure_core::model::{Fjr, LinkMatrices, Links, Motion};
 use flexure_core::reference::Reference;
 use serde::Serialize;
 
-use crate::io::{Problems, Robot, Scenario, StateRow};
+use crate::io::{Problem, Problems, Robot, Scenario, StateFile, StateRow};
 use crate::registry::{AnyReference, Law, RobotVisitor, law, vector, with_robot};
 
 /// The law at one state: a line of `flexure eval`.
@@ -59,22 +59,22 @@ pub struct ModelRow {
 /// Evaluates the law of `scenario` at `states`.
 ///
 /// # Errors
-/// If the robot has too many joints or the reference is no path.
-pub fn evaluate_law(scenario: &Scenario, states: &[StateRow]) -> Result<Vec<LawRow>, Problems> {
+/// If the robot has too many joints, the reference is no path, or a number is not finite at one of the states.
+pub fn evaluate_law(scenario: &Scenario, states: &StateFile) -> Result<Vec<LawRow>, Problems> {
     with_robot(&scenario.robot, EvaluateLaw { scenario, states })?
 }
 
 /// Evaluates the model of `robot` at `states`.
 ///
 /// # Errors
-/// If the robot has too many joints.
-pub fn evaluate_model(robot: &Robot, states: &[StateRow]) -> Result<Vec<ModelRow>, Problems> {
-    with_robot(robot, EvaluateModel { states })
+/// If the robot has too many joints, or a number is not finite at one of the states.
+pub fn evaluate_model(robot: &Robot, states: &StateFile) -> Result<Vec<ModelRow>, Problems> {
+    Ok(with_robot(robot, EvaluateModel { states })??)
 }
 
 struct EvaluateLaw<'a> {
     scenario: &'a Scenario,
-    states: &'a [StateRow],
+    states: &'a StateFile,
 }
 
 impl RobotVisitor for EvaluateLaw<'_> {
@@ -83,11 +83,11 @@ impl RobotVisitor for EvaluateLaw<'_> {
     fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) -> Self::Output {
         let law: Law<N> = law(&self.scenario.controller);
         let reference = AnyReference::new(self.scenario)?;
-        let row = |state: &StateRow| {
+        let row = |state: &StateRow| -> Result<LawRow, Problem> {
             let x = motion(state);
             let command = law.command(&robot, &x, &reference.at(state.t), &Input::ZERO);
             let sigma = robot.state(&Motion { v_l: command.s_l, v_m: command.s_m, ..x });
-            LawRow {
+            let row = LawRow {
                 t: state.t,
                 u_m: list(&command.u_m),
                 u_l: list(&command.u_l),
@@ -97,28 +97,40 @@ impl RobotVisitor for EvaluateLaw<'_> {
                 sigma_l: list(&sigma.p_l),
                 sigma_m: list(&sigma.p_m),
                 H: robot.total_energy(&x),
-            }
+            };
+            let numbers: [(_, &[f64]); 8] = [
+                ("u_m", &row.u_m),
+                ("u_l", &row.u_l),
+                ("q_md", &row.q_md),
+                ("e_l", &row.e_l),
+                ("e_m", &row.e_m),
+                ("sigma_l", &row.sigma_l),
+                ("sigma_m", &row.sigma_m),
+                ("H", &[row.H]),
+            ];
+            finite(self.states, state, numbers)?;
+            Ok(row)
         };
-        Ok(self.states.iter().map(row).collect())
+        Ok(self.states.rows.iter().map(row).collect::<Result<_, Problem>>()?)
     }
 }
 
 struct EvaluateModel<'a> {
-    states: &'a [StateRow],
+    states: &'a StateFile,
 }
 
 impl RobotVisitor for EvaluateModel<'_> {
-    type Output = Vec<ModelRow>;
+    type Output = Result<Vec<ModelRow>, Problem>;
 
     fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) -> Self::Output {
-        let row = |state: &StateRow| {
+        let row = |state: &StateRow| -> Result<ModelRow, Problem> {
             let x = motion(state);
             let matrices = LinkMatrices::new(&robot.links, &x.q_l, &x.v_l);
             let dx = state.u_m.as_deref().map(|u_m| {
                 let dx = robot.workless_dynamics(&robot.state(&x), &vector(u_m));
                 [dx.q_l, dx.q_m, dx.p_l, dx.p_m].iter().flat_map(list).collect()
             });
-            ModelRow {
+            let row = ModelRow {
                 M_l: rows(&matrices.mass),
                 E_l: rows(&matrices.workless()),
                 S_l: rows(&matrices.skew),
@@ -127,9 +139,38 @@ impl RobotVisitor for EvaluateModel<'_> {
                 H: robot.total_energy(&x),
                 ddq_l: list(&robot.link_acceleration(&x)),
                 dx,
-            }
+            };
+            let numbers: [(_, &[f64]); 8] = [
+                ("M_l", &row.M_l.concat()),
+                ("E_l", &row.E_l.concat()),
+                ("S_l", &row.S_l.concat()),
+                ("dM_l", &row.dM_l.concat()),
+                ("bias", &row.bias),
+                ("H", &[row.H]),
+                ("ddq_l", &row.ddq_l),
+                ("dx", row.dx.as_deref().unwrap_or_default()),
+            ];
+            finite(self.states, state, numbers)?;
+            Ok(row)
         };
-        self.states.iter().map(row).collect()
+        self.states.rows.iter().map(row).collect()
+    }
+}
+
+/// A problem if some of the numbers computed at `state` are not finite: JSON has no word for them.
+fn finite<const K: usize>(
+    states: &StateFile,
+    state: &StateRow,
+    numbers: [(&str, &[f64]); K],
+) -> Result<(), Problem> {
+    match numbers.iter().find(|(_, values)| !values.iter().all(|x| x.is_finite())) {
+        None => Ok(()),
+        Some((key, values)) => Err(states.problem(
+            state,
+            "not-finite",
+            format!("at this state {key} is {values:?}, must be finite"),
+            "the state is beyond what double precision can square; positions are in rad, velocities in rad/s, torques in N m",
+        )),
     }
 }
 

@@ -63,7 +63,7 @@ impl Problem {
 
 impl Diagnostic for Problem {
     fn code<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        Some(Box::new(format!("flexure::io::{}", self.code)))
+        Some(Box::new(self.code))
     }
     fn severity(&self) -> Option<Severity> {
         Some(self.severity)
@@ -75,8 +75,8 @@ impl Diagnostic for Problem {
         self.place.as_deref().map(|(source, _)| source as &dyn SourceCode)
     }
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let (_, span) = self.place.as_deref()?;
-        Some(Box::new(std::iter::once(LabeledSpan::underline(span.clone()))))
+        let (source, span) = self.place.as_deref()?;
+        Some(Box::new(std::iter::once(LabeledSpan::underline(source.in_view(span)))))
     }
 }
 

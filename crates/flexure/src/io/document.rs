@@ -71,10 +71,47 @@ impl Log {
     }
 }
 
+/// A kind of file.
+pub(super) struct Form {
+    /// What it is called in messages.
+    pub what: &'static str,
+    /// Keys that must be there.
+    pub required: &'static [&'static str],
+    /// Keys that may be there.
+    pub optional: &'static [&'static str],
+    /// A key of the other kind of file, what that is called, and what to do with it instead.
+    pub other: (&'static str, &'static str, &'static str),
+}
+
+impl Form {
+    /// Notes an error if there is nothing in the file, or if it is of the other kind.
+    fn refuse_stranger(&self, root: &DeTable<'_>, log: &Log) -> bool {
+        let required = self.required.join(", ");
+        let (key, other, instead) = self.other;
+        if root.is_empty() {
+            let message = format!("missing keys {required}: the file is empty");
+            log.error(
+                0..0,
+                "empty",
+                message,
+                format!("a {} has at least these keys; is it the right file?", self.what),
+            );
+        } else if let Some((found, _)) =
+            root.get_key_value(key).filter(|_| !self.required.iter().any(|own| root.contains_key(*own)))
+        {
+            let message = format!("this is a {other}, must be a {}", self.what);
+            log.error(found.span(), "wrong-kind", message, instead);
+        } else {
+            return false;
+        }
+        true
+    }
+}
+
 /// Reads `source` as TOML and hands the root table to `read`.
 pub(super) fn parse<T>(
     source: &Source,
-    known: &[&str],
+    form: &Form,
     read: impl FnOnce(&Table<'_>, &Places) -> Option<T>,
 ) -> Result<(T, Vec<Problem>), Problems> {
     let log = Log::new(source);
@@ -87,9 +124,12 @@ pub(super) fn parse<T>(
     if !errors.is_empty() {
         return log.finish(None);
     }
+    if form.refuse_stranger(root.get_ref(), &log) {
+        return log.finish(None);
+    }
     let places = Places::of(source, root.get_ref());
     let table = Table::new(root.get_ref(), String::new(), 0..0, &log);
-    table.refuse_unknown(known);
+    table.refuse_unknown(&[form.required, form.optional].concat());
     let value = read(&table, &places);
     log.finish(value)
 }

@@ -55,6 +55,18 @@ pub fn write_trace(path: &Path, trace: &Trace) -> Result<(), WriteError> {
     })
 }
 
+/// Creates `folder` if it is missing, and a file in it that is gone again: to know before a long run that its outputs
+/// can be written.
+///
+/// # Errors
+/// If they cannot.
+pub fn prepare(folder: &Path) -> Result<(), WriteError> {
+    create(folder)?;
+    tempfile::tempfile_in(folder)
+        .map(drop)
+        .map_err(|cause| WriteError::Folder { folder: folder.into(), cause })
+}
+
 fn create(folder: &Path) -> Result<(), WriteError> {
     fs::create_dir_all(folder).map_err(|cause| WriteError::Folder { folder: folder.into(), cause })
 }

@@ -74,7 +74,7 @@ impl Quantity {
 }
 
 /// `x` in the shorter of its two notations.
-fn shortest(x: f64) -> String {
+pub(super) fn shortest(x: f64) -> String {
     let (plain, scientific) = (format!("{x}"), format!("{x:e}"));
     if plain.len() <= scientific.len() + 2 { plain } else { scientific }
 }

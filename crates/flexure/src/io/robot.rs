@@ -1,7 +1,7 @@
 //! Robot files.
 
 use super::diagnostic::{Problem, Problems};
-use super::document::{self, Places};
+use super::document::{self, Form, Places};
 use super::links::{self, Links};
 use super::provenance::{self, Assumption};
 use super::quantity::{self, Quantity};
@@ -59,9 +59,15 @@ pub fn robot_from_text(name: &str, text: &str) -> Result<Robot, Problems> {
     read(&Source::new(name, text))
 }
 
+const FORM: Form = Form {
+    what: "robot file",
+    required: &["name", "links", "joints"],
+    optional: &["gravity", "sources"],
+    other: ("controller", "scenario file", "its robot is what robot = \"...\" in it names"),
+};
+
 pub(super) fn read(source: &Source) -> Result<Robot, Problems> {
-    let known = ["name", "gravity", "links", "joints", "sources"];
-    let (mut robot, warnings) = document::parse(source, &known, robot)?;
+    let (mut robot, warnings) = document::parse(source, &FORM, robot)?;
     robot.warnings = warnings;
     Ok(robot)
 }

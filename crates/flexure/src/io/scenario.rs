@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::builtin;
 use super::controller::{self, Controller};
 use super::diagnostic::{Problem, Problems};
-use super::document::{self, Places};
+use super::document::{self, Form, Places};
 use super::field::Field;
 use super::initial::{self, Initial};
 use super::links;
@@ -19,8 +19,11 @@ use super::table::Table;
 /// Farthest that a reference without smooth start may be from the robot at t = 0 \[rad\].
 const FAR: f64 = 0.5;
 
-/// Most control periods in a run: more would fill any disk.
-const MOST_PERIODS: f64 = 1e9;
+/// Most control periods in a run: every one of them is kept in memory until the trace is written.
+const MOST_PERIODS: f64 = 5e6;
+
+/// Largest part of a control period that a run may be longer or shorter than whole ones without a word.
+const UNEVEN: f64 = 1e-6;
 
 /// One closed loop, as data.
 #[derive(Clone, Debug)]
@@ -82,21 +85,20 @@ pub fn scenario_from_text(name: &str, text: &str, folder: &Path) -> Result<Scena
     read(&Source::new(name, text), &Base(Some(folder.to_owned())))
 }
 
-const KEYS: &[&str] = &[
-    "robot",
-    "duration",
-    "control_period",
-    "hold",
-    "initial",
-    "reference",
-    "controller",
-    "sources",
-    "imperfection",
-];
+const FORM: Form = Form {
+    what: "scenario file",
+    required: &["robot", "duration", "control_period", "reference", "controller"],
+    optional: &["hold", "initial", "sources", "imperfection"],
+    other: (
+        "links",
+        "robot file",
+        "write a scenario with robot = \"path of this file\"; `flexure list` shows examples",
+    ),
+};
 
 pub(super) fn read(source: &Source, base: &Base) -> Result<Scenario, Problems> {
     let (mut scenario, warnings) =
-        document::parse(source, KEYS, |root, places| scenario(root, places, base))?;
+        document::parse(source, &FORM, |root, places| scenario(root, places, base))?;
     scenario.warnings.extend(warnings);
     Ok(scenario)
 }
@@ -162,9 +164,20 @@ fn times(root: &Table<'_>) -> Option<(f64, f64)> {
     }
     if duration / period > MOST_PERIODS {
         let message =
-            format!("{:e} control periods in {duration} s, must be <= {MOST_PERIODS:e}", duration / period);
-        field.error("range", message, "a shorter run or a longer period");
+            format!("{:.4e} control periods in {duration} s, must be <= {MOST_PERIODS:e}", duration / period);
+        let hint = format!(
+            "with this period a run may take {} s, with this duration the period may be {} s",
+            quantity::shortest(period * MOST_PERIODS),
+            quantity::shortest(duration / MOST_PERIODS)
+        );
+        field.error("range", message, hint);
         return None;
+    }
+    let periods = (duration / period).round();
+    if (duration / period - periods).abs() > UNEVEN {
+        let message = format!("duration is {duration} s, is no multiple of control_period, {period} s");
+        let hint = format!("the run takes {periods} periods, {:.9} s", periods * period);
+        root.get("duration")?.warn("uneven", message, hint);
     }
     Some((duration, period))
 }

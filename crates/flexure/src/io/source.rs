@@ -2,6 +2,7 @@
 
 use std::fs::File;
 use std::io::Read;
+use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -17,6 +18,8 @@ const LIMIT: u64 = 16 << 20;
 pub(super) struct Source {
     pub name: Arc<str>,
     pub text: Arc<str>,
+    /// `text` without control characters, byte for byte as long: what a terminal may be shown.
+    shown: Arc<str>,
     /// Lines of the file before `text`.
     lines_before: usize,
 }
@@ -29,7 +32,9 @@ impl Source {
 
     /// From the text after `lines_before` lines.
     pub fn part(name: &str, text: &str, lines_before: usize) -> Self {
-        Self { name: name.into(), text: text.into(), lines_before }
+        let text: Arc<str> = text.into();
+        let shown = if text.chars().any(is_hostile) { harmless(&text).into() } else { text.clone() };
+        Self { name: name.into(), text, shown, lines_before }
     }
 
     /// Line and column of the byte at `offset`, counted from 1; the column in characters.
@@ -48,16 +53,63 @@ impl SourceCode for Source {
         lines_before: usize,
         lines_after: usize,
     ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
-        let found = self.text.read_span(span, lines_before, lines_after)?;
-        Ok(Box::new(MietteSpanContents::new_named(
-            self.name.to_string(),
-            found.data(),
-            *found.span(),
-            found.line() + self.lines_before,
-            found.column(),
-            found.line_count(),
-        )))
+        let found = self.shown.read_span(span, lines_before, lines_after)?;
+        let (line, column) = self.line_column(span.offset()).ok_or(MietteError::OutOfBounds)?;
+        // Without context it is asked where the span is; the column is in characters.
+        let place = (lines_before + lines_after == 0).then_some((line - 1, column - 1));
+        let named = |data, span, (line, column), count| {
+            let name = self.name.to_string();
+            Box::new(MietteSpanContents::new_named(name, data, span, line, column, count))
+        };
+        let wide = found.data().split(|&byte| byte == b'\n').any(|line| line.len() > WIDEST);
+        if wide {
+            let window = self.window(span.offset());
+            let data = self.shown.get(window.clone()).unwrap_or_default().as_bytes();
+            return Ok(named(data, window.into(), place.unwrap_or((line - 1, 0)), 1));
+        }
+        let place = place.unwrap_or((found.line() + self.lines_before, found.column()));
+        Ok(named(found.data(), *found.span(), place, found.line_count()))
     }
+}
+
+/// Widest line that is shown whole \[bytes\].
+pub(super) const WIDEST: usize = 160;
+
+impl Source {
+    /// As much of `span` as is shown of it.
+    pub fn in_view(&self, span: &Range<usize>) -> Range<usize> {
+        let part = self.text.get(span.clone()).unwrap_or_default();
+        if part.len() <= WIDEST / 4 || part.lines().all(|line| line.len() <= WIDEST / 4) {
+            return span.clone();
+        }
+        let window = self.window(span.start);
+        span.start..window.end.min(span.end).min(span.start + WIDEST / 4)
+    }
+
+    /// A part around `offset` of the line that it is in.
+    fn window(&self, offset: usize) -> Range<usize> {
+        let text = &*self.shown;
+        let line_start = text[..offset].rfind('\n').map_or(0, |newline| newline + 1);
+        let line_end = text[offset..].find('\n').map_or(text.len(), |newline| offset + newline);
+        let boundary =
+            |at: usize| (0..=at.min(text.len())).rev().find(|&i| text.is_char_boundary(i)).unwrap_or(0);
+        let start = boundary(offset.saturating_sub(WIDEST / 2)).max(line_start);
+        start..boundary(start + WIDEST).min(line_end)
+    }
+}
+
+/// Whether a terminal might obey `c`.
+fn is_hostile(c: char) -> bool {
+    c.is_control() && !matches!(c, '\n' | '\r' | '\t')
+}
+
+fn harmless(text: &str) -> String {
+    text.chars()
+        .flat_map(|c| {
+            let (shown, count) = if is_hostile(c) { ('?', c.len_utf8()) } else { (c, 1) };
+            std::iter::repeat_n(shown, count)
+        })
+        .collect()
 }
 
 /// Reads the text file at `path`.

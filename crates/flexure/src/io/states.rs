@@ -1,7 +1,9 @@
 //! States files: JSON Lines, one state a line.
 
 use std::fmt;
-use std::io::BufRead;
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
 
 use serde::de::{self, DeserializeSeed, MapAccess, Visitor};
 
@@ -15,6 +17,8 @@ const LONGEST: usize = 1 << 20;
 /// A time, a state and perhaps a torque; one number per joint.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StateRow {
+    /// Line of the file, counted from 1.
+    pub line: usize,
     /// Time \[s\]; 0 if not given.
     pub t: f64,
     /// Link positions \[rad\].
@@ -57,9 +61,9 @@ impl<R: BufRead> States<R> {
                 Ok(length) if length <= LONGEST => match String::from_utf8(bytes) {
                     Ok(line) if line.trim().is_empty() => continue,
                     Ok(line) => return Some(Ok(line)),
-                    Err(_) => return Some(Err(self.problem("encoding", "", 0, "not UTF-8"))),
+                    Err(_) => return Some(Err(self.problem("encoding", "", 0, "the line is not UTF-8"))),
                 },
-                Ok(_) => self.problem("huge", "", 0, &format!("longer than {LONGEST} bytes")),
+                Ok(_) => self.problem("huge", "", 0, &format!("the line is longer than {LONGEST} bytes")),
                 Err(error) => self.problem("unreadable", "", 0, &format!("cannot be read: {error}")),
             };
             self.broken = true;
@@ -91,18 +95,78 @@ impl<R: BufRead> Iterator for States<R> {
             Err(problem) => return Some(Err(problem)),
         };
         let mut json = serde_json::Deserializer::from_str(&line);
-        let row = Row { joints: self.joints }.deserialize(&mut json).and_then(|row| json.end().map(|()| row));
+        let row = Row { joints: self.joints, line: self.line }
+            .deserialize(&mut json)
+            .and_then(|row| json.end().map(|()| row));
         Some(row.map_err(|error| {
             let text = error.to_string();
             let what = text.split(" at line ").next().unwrap_or_default();
-            self.problem("state", &line, error.column().saturating_sub(1), what)
+            // What breaks the grammar has no words of ours.
+            let what = if error.is_data() { what.to_owned() } else { format!("not JSON: {what}") };
+            self.problem("state", &line, error.column().saturating_sub(1), &what)
         }))
     }
+}
+
+/// All states of a file.
+#[derive(Clone, Debug)]
+pub struct StateFile {
+    /// Stands for the file in messages.
+    pub name: String,
+    /// At least one.
+    pub rows: Vec<StateRow>,
+}
+
+impl StateFile {
+    /// Every state in `reader`, of a robot with `joints` joints; `name` stands for the file in messages.
+    ///
+    /// # Errors
+    /// With the first line that is bad, or if there is none.
+    pub fn read(reader: impl BufRead, joints: usize, name: &str) -> Result<Self, Problem> {
+        let mut states = States::new(reader, joints, name);
+        let rows = states.by_ref().collect::<Result<Vec<_>, _>>()?;
+        if rows.is_empty() {
+            return Err(states.problem("empty", "", 0, "no states: the file is empty"));
+        }
+        Ok(Self { name: name.to_owned(), rows })
+    }
+
+    /// A problem with the state at `row`. `code` is one word; `help` says what to do.
+    pub fn problem(
+        &self,
+        row: &StateRow,
+        code: &'static str,
+        what: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Problem {
+        Problem::new(code, what, help).at(&Source::part(&self.name, "", row.line - 1), 0..0)
+    }
+}
+
+/// Reads the states file at `path`, or standard input if that is `-`.
+///
+/// # Errors
+/// If it cannot be read, with the first line that is bad, or if there is no state in it.
+pub fn load_states(path: &Path, joints: usize) -> Result<StateFile, Problem> {
+    if path.as_os_str() == "-" {
+        return StateFile::read(std::io::stdin().lock(), joints, "standard input");
+    }
+    let name = path.display();
+    let unreadable = |error| {
+        let help = "give a file of JSON Lines with q_l, q_m, dq_l, dq_m, or - for standard input";
+        Problem::new("unreadable", format!("cannot read {name}: {error}"), help)
+    };
+    let file = File::open(path).map_err(unreadable)?;
+    if file.metadata().map_err(unreadable)?.is_dir() {
+        return Err(unreadable(std::io::ErrorKind::IsADirectory.into()));
+    }
+    StateFile::read(BufReader::new(file), joints, &name.to_string())
 }
 
 /// One line, for a known number of joints.
 struct Row {
     joints: usize,
+    line: usize,
 }
 
 const KEYS: &[&str] = &["t", "q_l", "q_m", "dq_l", "dq_m", "u_m"];
@@ -151,6 +215,7 @@ impl<'de> Visitor<'de> for Row {
         let [q_l, q_m, dq_l, dq_m, u_m] = vectors;
         let missing = |key: &'static str| move || de::Error::custom(format!("missing key {key}"));
         Ok(StateRow {
+            line: self.line,
             t: time.unwrap_or(0.0),
             q_l: q_l.ok_or_else(missing("q_l"))?,
             q_m: q_m.ok_or_else(missing("q_m"))?,
@@ -178,6 +243,7 @@ mod tests {
         let rows = read(&format!("\n{line}\r\n   \n{line}"));
         assert_eq!(rows.len(), 2);
         let expected = StateRow {
+            line: 2,
             t: 0.5,
             q_l: vec![1.0, 2.0],
             q_m: vec![3.0, 4.0],
@@ -185,7 +251,8 @@ mod tests {
             dq_m: vec![7.0, 8.5],
             u_m: Some(vec![0.0, -1e3]),
         };
-        assert_eq!(rows, [Ok(expected.clone()), Ok(expected)]);
+        let later = StateRow { line: 4, ..expected.clone() };
+        assert_eq!(rows, [Ok(expected), Ok(later)]);
     }
 
     #[test]
