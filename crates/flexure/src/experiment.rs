@@ -143,12 +143,11 @@ fn unit(key: &str) -> &'static str {
     }
 }
 
-/// Every assumption of every file, once.
+/// Every assumption of every file, once; a scenario's include its robot's.
 fn assumptions(experiments: &[Experiment]) -> Vec<Assumption> {
     let mut all: Vec<Assumption> = Vec::new();
     for experiment in experiments {
-        let robot = experiment.scenario.robot.assumptions();
-        for assumed in robot.iter().chain(&experiment.scenario.assumptions) {
+        for assumed in &experiment.scenario.assumptions {
             let seen = all.iter().any(|a| a.file == assumed.file && a.key == assumed.key);
             if !seen {
                 all.push(Assumption {

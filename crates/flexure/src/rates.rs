@@ -62,10 +62,10 @@ fn shaping_rate<const N: usize>(
     metric: &Vector<f64, N>,
     metric_rate: &Vector<f64, N>,
 ) -> f64 {
-    let slope = phi.eval(&Vector::<Dual<f64, N>, N>::from_fn(|i| Dual::variable(e[i], i)));
+    let slope = phi.slope(e);
     let symmetric = Matrix::from_fn(|i, j| {
         let own = if i == j { metric_rate[i] } else { 0.0 };
-        0.5 * (metric[i] * slope[i].gradient[j] + metric[j] * slope[j].gradient[i] - own)
+        0.5 * (metric[i] * slope[(i, j)] + metric[j] * slope[(j, i)] - own)
     });
     relative(&symmetric, metric).0
 }

@@ -340,6 +340,22 @@ fn a_bad_robot_is_reported_in_its_own_file() {
     assert_eq!(problems.iter().next().and_then(Problem::line_column), Some((10, 19)));
 }
 
+/// Without the robot nobody knows how many numbers there must be: arrays of any length are looked at.
+#[test]
+fn lengths_that_disagree_with_each_other_do_no_harm() {
+    let text =
+        SCENARIO.replace("quanser-2dof", "none").replace("amplitude = [1.0, 1.0]", "amplitude = [1.0]");
+    let text = text.replace(
+        "[reference]",
+        "q_m = 0\ndq_l = [0]\ndq_m = [0, 0, 0]\n[reference]\noffset = [0, 0, 0]\nphase = [0, 0]",
+    );
+    for q_m in ["0", "[0]"] {
+        let text = text.replace("q_m = 0\n", &format!("q_m = {q_m}\n"));
+        let problems = scenario_from_text("s.toml", &text, Path::new("")).unwrap_err();
+        assert_eq!(problems.iter().count(), 1, "{problems}");
+    }
+}
+
 /// The input is accepted with a warning whose message or hint has `fragment`.
 fn warned(good: &str, from: &str, to: &str, fragment: &str) {
     let text = good.replacen(from, to, 1);

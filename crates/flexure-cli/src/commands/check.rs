@@ -70,10 +70,8 @@ fn verdict(file: &str, json: bool) -> Verdict {
             (Some(Content { kind: "robot", name: robot.name, joints, assumptions }), robot.warnings)
         }
         Ok(Checked::Scenario(scenario)) => {
-            let (robot, name) = (scenario.robot, scenario.name);
-            let assumptions = robot.assumptions().len() + scenario.assumptions.len();
-            let content = Content { kind: "scenario", name, joints: robot.joints(), assumptions };
-            (Some(content), robot.warnings.into_iter().chain(scenario.warnings).collect())
+            let (joints, assumptions) = (scenario.robot.joints(), scenario.assumptions.len());
+            (Some(Content { kind: "scenario", name: scenario.name, joints, assumptions }), scenario.warnings)
         }
         Err(problems) => return bad(file, &problems, json),
     };

@@ -10,7 +10,7 @@ use crate::failure::{Failure, warn};
 
 pub fn eval(scenario: &str, states: &Path, json: bool) -> Result<(), Failure> {
     let scenario = load_scenario(scenario)?;
-    warn(scenario.robot.warnings.iter().chain(&scenario.warnings));
+    warn(&scenario.warnings);
     let states = print::states(states, scenario.robot.joints())?;
     print::rows(&evaluate_law(&scenario, &states)?, json)
 }

@@ -31,7 +31,7 @@ impl<'a> Outcome<'a> {
 
 pub fn run(scenario: &str, out: &Path, json: bool) -> Result<(), Failure> {
     let scenario = load_scenario(scenario)?;
-    warn(scenario.robot.warnings.iter().chain(&scenario.warnings));
+    warn(&scenario.warnings);
     let experiment = {
         let progress = Progress::new();
         let bar = progress.bar(&scenario.name);

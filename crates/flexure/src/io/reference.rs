@@ -61,19 +61,24 @@ pub enum Profile {
 }
 
 impl Reference {
-    /// Position at t = 0 \[rad\], before any smooth start; straight between samples.
+    /// Position at t = 0 \[rad\], before any smooth start; straight between samples, the last one after the end.
     pub fn initial(&self) -> Vec<f64> {
         match self {
-            Self::Sines { offset, terms } => {
-                let sine =
-                    |i: usize| terms.iter().map(|term| term.amplitude[i] * term.phase[i].sin()).sum::<f64>();
-                offset.iter().enumerate().map(|(i, offset)| offset + sine(i)).collect()
-            }
+            Self::Sines { offset, terms } => terms.iter().fold(offset.clone(), |mut sum, term| {
+                for (q, (amplitude, phase)) in sum.iter_mut().zip(term.amplitude.iter().zip(&term.phase)) {
+                    *q += amplitude * phase.sin();
+                }
+                sum
+            }),
             Self::PointToPoint { from, .. } => from.clone(),
             Self::Samples { t, q } => {
-                let next = t.partition_point(|&t| t < 0.0).clamp(1, t.len() - 1);
-                let part = -t[next - 1] / (t[next] - t[next - 1]);
-                q[next - 1].iter().zip(&q[next]).map(|(a, b)| a + part * (b - a)).collect()
+                let next = t.partition_point(|&t| t < 0.0).max(1);
+                let (Some([t_a, t_b]), Some([q_a, q_b])) = (t.get(next - 1..=next), q.get(next - 1..=next))
+                else {
+                    return q.last().cloned().unwrap_or_default();
+                };
+                let part = -t_a / (t_b - t_a);
+                q_a.iter().zip(q_b).map(|(a, b)| a + part * (b - a)).collect()
             }
         }
     }

@@ -4,7 +4,8 @@ use flexure_core::control::Command;
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion};
 
-use super::gauss::{Integrator, Ledger};
+use super::gauss::Integrator;
+use super::ledger::Ledger;
 
 /// How the torque behaves between control instants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,100 +5,12 @@
 //! are resolved rather than damped away. The stage equations are solved for accelerations in torque form, which
 //! needs inverse dynamics only. Hairer, Lubich & Wanner, *Geometric Numerical Integration*, chapters II and VI.
 
-use flexure_core::linalg::{Matrix, Vector};
-use flexure_core::model::{Fjr, Links, Motion, Power};
+use flexure_core::linalg::Vector;
+use flexure_core::model::{Fjr, Links, Motion};
 
+use super::ledger::Ledger;
 use super::newton::StageSolver;
-
-/// Number of collocation points; the order is twice that.
-pub(super) const STAGES: usize = 4;
-
-/// One number per stage.
-pub(super) type Stages = Vector<f64, STAGES>;
-
-/// The collocation scheme on [0, 1].
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Scheme {
-    /// Nodes c.
-    pub nodes: Stages,
-    /// Weights b.
-    pub weights: Stages,
-    /// A: integrates stage values once.
-    pub once: Matrix<f64, STAGES, STAGES>,
-    /// A²: integrates them twice.
-    pub twice: Matrix<f64, STAGES, STAGES>,
-    /// bᵀA, which integrates twice up to the end of the step.
-    pub end_twice: Stages,
-    /// Value at 0 of the polynomial through the stage values.
-    pub start: Stages,
-}
-
-impl Scheme {
-    /// Four-point Gauss–Legendre.
-    pub(super) fn gauss() -> Self {
-        let inner = (3.0 / 7.0 - 2.0 / 7.0 * (6.0_f64 / 5.0).sqrt()).sqrt();
-        let outer = (3.0 / 7.0 + 2.0 / 7.0 * (6.0_f64 / 5.0).sqrt()).sqrt();
-        let nodes = Vector([-outer, -inner, inner, outer]).map(|x| 0.5 * (1.0 + x));
-        let heavy = (18.0 + 30.0_f64.sqrt()) / 72.0;
-        let light = (18.0 - 30.0_f64.sqrt()) / 72.0;
-        let weights = Vector([light, heavy, heavy, light]);
-        let polynomials: [[f64; STAGES]; STAGES] = std::array::from_fn(|j| lagrange(&nodes, j));
-        let once = Matrix::from_fn(|i, j| integral(&polynomials[j], nodes[i]));
-        let twice = once * once;
-        Self {
-            nodes,
-            weights,
-            once,
-            twice,
-            end_twice: once.transpose() * weights,
-            start: Vector::from_fn(|j| polynomials[j][0]),
-        }
-    }
-}
-
-/// Coefficients, constant term first, of the Lagrange polynomial that is 1 at node `j`.
-fn lagrange(nodes: &Stages, j: usize) -> [f64; STAGES] {
-    let mut coefficients = [0.0; STAGES];
-    coefficients[0] = 1.0;
-    for (k, node) in nodes.iter().enumerate().filter(|&(k, _)| k != j) {
-        let scale = 1.0 / (nodes[j] - nodes[k]);
-        for power in (0..STAGES).rev() {
-            let lower = if power == 0 { 0.0 } else { coefficients[power - 1] };
-            coefficients[power] = (lower - node * coefficients[power]) * scale;
-        }
-    }
-    coefficients
-}
-
-/// ∫₀ˣ of a polynomial.
-fn integral(coefficients: &[f64; STAGES], x: f64) -> f64 {
-    coefficients.iter().enumerate().rev().fold(0.0, |sum, (k, c)| (sum + c / (k + 1) as f64) * x)
-}
-
-/// Work done on the robot and by it: the two sides of the power balance, integrated.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Ledger {
-    /// ∫ q̇_mᵀ u_m dt in J.
-    pub supplied: f64,
-    /// ∫ q̇_lᵀ D_l q̇_l + q̇_mᵀ D_m q̇_m dt in J.
-    pub dissipated: f64,
-    /// ∫ |q̇_mᵀ u_m| dt in J: what the residual is compared with.
-    pub throughput: f64,
-}
-
-impl Ledger {
-    fn book(&mut self, seconds: f64, power: &Power<f64>) {
-        self.supplied += seconds * power.supplied;
-        self.dissipated += seconds * power.dissipated;
-        self.throughput += seconds * power.supplied.abs();
-    }
-
-    fn add(&mut self, work: &Self) {
-        self.supplied += work.supplied;
-        self.dissipated += work.dissipated;
-        self.throughput += work.throughput;
-    }
-}
+use super::scheme::{STAGES, Scheme, Stages};
 
 /// A step that cannot be made: the state or the torque is not finite, or the step would have to be too small.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -122,7 +34,10 @@ pub struct Integrator {
 const SLOW: f64 = 1e-3;
 
 /// Steps shorter than this fraction of the interval are a failure, not an accuracy problem.
-const SHORTEST: f64 = 1e-7;
+const SHORTEST: f64 = 1e-6;
+
+/// More steps than this in one interval are a failure too: a run ends in bounded time whatever happens in it.
+const MOST_STEPS: u32 = 100_000;
 
 /// Corrections of this size relative to the speeds of a step are rounding.
 const ROUNDING: f64 = 1e-14;
@@ -169,7 +84,12 @@ impl Integrator {
         let mut done = 0.0;
         // Equal steps to the end of the interval, of at most the length that was good before.
         let mut remaining = steps_in(interval, self.step);
+        let mut tries = 0;
         while remaining > 0 {
+            tries += 1;
+            if tries > MOST_STEPS {
+                return Err(StepFailure { after: done });
+            }
             let h = (interval - done) / f64::from(remaining);
             let step = self.try_step(robot, &x, t + done, h, torque);
             if let Some(step) = step.filter(|step| step.factor >= 1.0) {

@@ -2,7 +2,10 @@
 
 mod closed_loop;
 mod gauss;
+mod ledger;
 mod newton;
+mod scheme;
 
 pub use closed_loop::{ClosedLoop, Divergence, Hold, Instant, Outcome};
-pub use gauss::{Integrator, Ledger, StepFailure};
+pub use gauss::{Integrator, StepFailure};
+pub use ledger::Ledger;

@@ -8,7 +8,8 @@
 use flexure_core::linalg::{Matrix, Vector};
 use flexure_core::model::{Fjr, Links, Motion};
 
-use super::gauss::{STAGES, Scheme, Stages, StepSolution};
+use super::gauss::StepSolution;
+use super::scheme::{STAGES, Scheme, Stages};
 
 type Block = Matrix<f64, STAGES, STAGES>;
 

@@ -1,0 +1,91 @@
+//! What an honest simulation of the paper's loop shows: theory, section 7.
+
+use flexure::experiment::REPRODUCED;
+use flexure::io::{Hold, Scenario, load_scenario};
+use flexure::run::{Run, run};
+
+fn simulate(change: impl Fn(&mut Scenario), name: &str) -> Run {
+    let mut scenario = load_scenario(name).expect("built in");
+    change(&mut scenario);
+    run(&scenario, &|_| ()).expect("a robot of two joints")
+}
+
+/// Largest |e_l| of any joint from `t` on [rad].
+fn error_after(run: &Run, t: f64) -> f64 {
+    let times = run.trace.column("t").expect("time");
+    let errors = run.trace.joints("e_l");
+    let late = (0..times.len()).filter(|&i| times[i] >= t);
+    late.flat_map(|i| errors.iter().map(move |e| e[i].abs())).fold(0.0, f64::max)
+}
+
+#[test]
+fn the_ideal_loop_tracks_at_one_kilohertz() {
+    let run = simulate(|_| (), "two-link-tanh");
+    assert!(run.divergence.is_none());
+    // The hold leaves an error of first order in the period.
+    assert!(error_after(&run, 4.0) < 1e-6, "{}", error_after(&run, 4.0));
+    assert!((run.trace.column("t").expect("time").last().expect("an end") - 10.0).abs() < 1e-12);
+}
+
+#[test]
+fn the_continuous_loop_tracks_to_rounding() {
+    for name in ["two-link-tanh", "two-link-linear", "two-link-coupled-tanh"] {
+        let run = simulate(|s| (s.hold, s.duration) = (Hold::Continuous, 6.0), name);
+        assert!(error_after(&run, 4.0) < 1e-11, "{name}: {}", error_after(&run, 4.0));
+    }
+}
+
+#[test]
+fn the_error_left_by_the_hold_shrinks_with_the_period() {
+    let error = |period: f64| error_after(&simulate(|s| s.control_period = period, "two-link-tanh"), 4.0);
+    let (coarse, fine) = (error(1e-3), error(5e-4));
+    let order = (coarse / fine).log2();
+    assert!((0.8..2.3).contains(&order), "order {order}: {coarse}, {fine}");
+}
+
+#[test]
+fn power_balances_in_every_experiment() {
+    for name in REPRODUCED {
+        let run = simulate(|_| (), name);
+        assert!(run.summary.energy_drift < 1e-9, "{name}: {}", run.summary.energy_drift);
+        assert!(run.divergence.is_none(), "{name}");
+    }
+}
+
+#[test]
+fn a_smooth_start_needs_a_hundredth_of_the_torque() {
+    let (rough, smooth) = (simulate(|_| (), "two-link-tanh"), simulate(|_| (), "two-link-tanh-smooth"));
+    assert!(rough.summary.max_abs_u_m > 1e3, "thousands of N m: {}", rough.summary.max_abs_u_m);
+    assert!(smooth.summary.max_abs_u_m < 0.01 * rough.summary.max_abs_u_m, "{}", smooth.summary.max_abs_u_m);
+    assert!(smooth.summary.max_abs_e_l < 1e-4, "{}", smooth.summary.max_abs_e_l);
+}
+
+#[test]
+fn five_hundred_hertz_is_too_slow_for_the_paper_s_gains() {
+    let run = simulate(|s| s.control_period = 2e-3, "two-link-tanh");
+    let divergence = run.divergence.expect("the loop diverges");
+    assert!(divergence.time > 0.0 && divergence.time < 10.0, "{divergence:?}");
+    // What was recorded before is kept, and finite.
+    assert!(!run.trace.is_empty());
+    assert!(run.trace.columns().iter().all(|c| c.values.iter().all(|x| x.is_finite())));
+    assert_eq!(run.summary.settling_time, None);
+}
+
+#[test]
+fn every_built_in_scenario_runs_to_its_end_and_settles() {
+    for (name, _) in flexure::io::SCENARIOS {
+        let run = simulate(|_| (), name);
+        assert!(run.divergence.is_none(), "{name}: {:?}", run.divergence);
+        assert!(run.summary.settling_time.is_some(), "{name}: {:?}", run.summary);
+        assert!(run.summary.rate_measured > 0.0, "{name}: {:?}", run.summary);
+    }
+}
+
+#[test]
+fn runs_repeat_bit_by_bit() {
+    let (a, b) = (simulate(|_| (), "two-link-coupled-tanh"), simulate(|_| (), "two-link-coupled-tanh"));
+    for (x, y) in a.trace.columns().iter().zip(b.trace.columns()) {
+        let same = x.values.iter().zip(&y.values).all(|(x, y)| x.to_bits() == y.to_bits());
+        assert!(same, "{}", x.name);
+    }
+}
