@@ -10,6 +10,11 @@ pub struct Ledger {
     /// ∫ q̇_lᵀ D_l q̇_l + q̇_mᵀ D_m q̇_m dt in J.
     pub dissipated: f64,
     /// ∫ |q̇_mᵀ u_m| dt in J: what the residual is compared with.
+    /// ∫ q̇_mᵀ u_m dt, in J.
+    pub supplied: f64,
+    /// ∫ q̇_lᵀ D_l q̇_l + q̇_mᵀ D_m q̇_m dt, in J.
+    pub dissipated: f64,
+    /// ∫ |q̇_mᵀ u_m| dt, in J: what the residual is compared with.
     pub throughput: f64,
 }
 
