@@ -2,7 +2,7 @@
 
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links};
-use flexure_core::robots::{Body, JointKind, Pendulum, PlanarTwoLink, Tree};
+use flexure_core::robots::{Body, Pendulum, PlanarTwoLink, Tree};
 
 use crate::io;
 
@@ -63,24 +63,8 @@ fn robot<L, const N: usize>(data: &io::Robot, links: L) -> Fjr<f64, L, N> {
     }
 }
 
-fn tree<const N: usize>(bodies: &[io::Body], gravity: [f64; 3]) -> Tree<f64, N> {
-    let bodies = std::array::from_fn(|i| {
-        let body = &bodies[i];
-        Body {
-            parent: body.parent,
-            kind: match body.kind {
-                io::JointKind::Revolute => JointKind::Revolute,
-                io::JointKind::Prismatic => JointKind::Prismatic,
-            },
-            axis: body.axis,
-            rotation: body.rotation,
-            translation: body.translation,
-            mass: body.mass,
-            com: body.com,
-            inertia: body.inertia,
-        }
-    });
-    Tree::new(&bodies, gravity).expect("the reader puts parents before children")
+fn tree<const N: usize>(bodies: &[Body], gravity: [f64; 3]) -> Tree<f64, N> {
+    Tree::new(&std::array::from_fn(|i| bodies[i]), gravity).expect("the reader puts parents before children")
 }
 
 /// Per-joint data, whose length the reader has checked.

@@ -23,7 +23,7 @@ pub enum JointKind {
 }
 
 /// A body and the joint that carries it, as data: the unit a [`Tree`] is built from.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
     /// Index of the body that carries the joint, smaller than the body's own; none for the base.
     pub parent: Option<usize>,

@@ -5,6 +5,8 @@ mod joint;
 mod rigid;
 mod tree;
 
+pub use flexure_core::robots::{Body, JointKind};
+
 use super::field::{Field, Joints};
 use super::quantity::{self, Quantity};
 use super::table::Table;
@@ -34,38 +36,6 @@ pub enum Links {
     },
     /// A tree of moving joints, parents before children; fixed joints are already merged into the bodies.
     Tree(Vec<Body>),
-}
-
-/// A moving joint and the rigid body that it carries.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Body {
-    /// Name of the joint.
-    pub name: String,
-    /// Index of the parent among the moving joints; none for the base.
-    pub parent: Option<usize>,
-    /// How it moves.
-    pub kind: JointKind,
-    /// Unit vector of the axis in the joint frame.
-    pub axis: [f64; 3],
-    /// Takes joint-frame coordinates at q = 0 to those of the parent's frame; rows first.
-    pub rotation: [[f64; 3]; 3],
-    /// Origin of the joint frame in the parent's frame \[m\].
-    pub translation: [f64; 3],
-    /// Mass \[kg\].
-    pub mass: f64,
-    /// Centre of mass in the joint frame \[m\].
-    pub com: [f64; 3],
-    /// Rotational inertia about the centre of mass, in the axes of the joint frame [kg m²].
-    pub inertia: [[f64; 3]; 3],
-}
-
-/// How a joint moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum JointKind {
-    /// Turns about its axis \[rad\].
-    Revolute,
-    /// Slides along its axis \[m\].
-    Prismatic,
 }
 
 impl Links {

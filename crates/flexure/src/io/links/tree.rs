@@ -40,7 +40,7 @@ pub(super) fn read(table: &Table<'_>) -> Option<Links> {
         return None;
     }
     assembly.check()?;
-    Some(Links::Tree(assembly.bodies.into_iter().map(|(body, rigid, _)| body.carrying(&rigid)).collect()))
+    Some(Links::Tree(assembly.bodies.into_iter().map(|(body, rigid, _)| carrying(body, &rigid)).collect()))
 }
 
 impl<'a> Assembly<'a> {
@@ -62,7 +62,7 @@ impl<'a> Assembly<'a> {
         };
         let pose = outer.then(&joint.pose);
         let placed = if let Some((kind, axis)) = joint.motion {
-            self.bodies.push((Body::new(joint.name, parent, kind, axis, &pose), joint.body, pose));
+            self.bodies.push((moving(parent, kind, axis, &pose), joint.body, pose));
             Placed { body: Some(self.bodies.len() - 1), pose: Pose::identity() }
         } else {
             // What is fixed in the base never moves: only what is fixed in a body counts.
@@ -112,23 +112,12 @@ impl<'a> Assembly<'a> {
     }
 }
 
-impl Body {
-    fn new(name: &str, parent: Option<usize>, kind: JointKind, axis: [f64; 3], pose: &Pose) -> Self {
-        let (rotation, translation) = (pose.rotation.0, pose.translation.0);
-        Self {
-            name: name.to_owned(),
-            parent,
-            kind,
-            axis,
-            rotation,
-            translation,
-            mass: 0.0,
-            com: [0.0; 3],
-            inertia: [[0.0; 3]; 3],
-        }
-    }
+/// The moving joint, with a body that nothing is known of yet.
+fn moving(parent: Option<usize>, kind: JointKind, axis: [f64; 3], pose: &Pose) -> Body {
+    let (rotation, translation) = (pose.rotation.0, pose.translation.0);
+    Body { parent, kind, axis, rotation, translation, mass: 0.0, com: [0.0; 3], inertia: [[0.0; 3]; 3] }
+}
 
-    fn carrying(self, rigid: &Rigid) -> Self {
-        Self { mass: rigid.mass, com: rigid.com.0, inertia: rigid.inertia.0, ..self }
-    }
+fn carrying(body: Body, rigid: &Rigid) -> Body {
+    Body { mass: rigid.mass, com: rigid.com.0, inertia: rigid.inertia.0, ..body }
 }
