@@ -1,7 +1,7 @@
 //! The law and the model of a 7-joint arm against `golden/panda.json`: the links of `robots/panda.toml`, with the gains
 //! and drives of the file.
 
-use flexure::io::{self, StateRow};
+use flexure::io::{self, StateFile, StateRow};
 use serde::Deserialize;
 
 /// The issue asks for 1e-8; the file's numbers and ours agree to rounding amplified by torques of 1e5 N m.
@@ -104,7 +104,7 @@ fn panda_golden_file() {
     let mut count = 0;
     for case in &golden.cases {
         let scenario = scenario(case);
-        let states: Vec<_> = case
+        let rows = case
             .samples
             .iter()
             .map(|s| StateRow {
@@ -114,8 +114,10 @@ fn panda_golden_file() {
                 dq_l: s.dq_l.clone(),
                 dq_m: s.dq_m.clone(),
                 u_m: None,
+                ..StateRow::default()
             })
             .collect();
+        let states = StateFile { name: "golden".to_owned(), rows };
         let laws = flexure::evaluate::evaluate_law(&scenario, &states).expect("seven joints");
         let models = flexure::evaluate::evaluate_model(&scenario.robot, &states).expect("seven joints");
         for ((law, model), sample) in laws.iter().zip(&models).zip(&case.samples) {

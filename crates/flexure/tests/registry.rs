@@ -2,7 +2,7 @@
 
 use flexure::core::reference::Reference as _;
 use flexure::evaluate::evaluate_model;
-use flexure::io::{Profile, Reference, StateRow, load_robot, load_scenario};
+use flexure::io::{Profile, Reference, StateFile, StateRow, load_robot, load_scenario};
 use flexure::registry::AnyReference;
 
 #[test]
@@ -12,7 +12,8 @@ fn the_pendulum_swings_about_its_joint() {
     let (q, v) = (0.7, 1.3);
     let state =
         StateRow { q_l: vec![q], q_m: vec![0.9], dq_l: vec![v], dq_m: vec![0.0], ..StateRow::default() };
-    let row = &evaluate_model(&robot, &[state]).expect("one joint")[0];
+    let states = StateFile { name: "test".to_owned(), rows: vec![state] };
+    let row = &evaluate_model(&robot, &states).expect("one joint")[0];
     let about_the_joint = inertia + mass * com * com;
     assert!((row.M_l[0][0] - about_the_joint).abs() < 1e-15);
     assert!((row.bias[0] - mass * 9.81 * com * q.sin()).abs() < 1e-14);

@@ -139,7 +139,7 @@ impl StateFile {
         what: impl Into<String>,
         help: impl Into<String>,
     ) -> Problem {
-        Problem::new(code, what, help).at(&Source::part(&self.name, "", row.line - 1), 0..0)
+        Problem::new(code, what, help).at(&Source::part(&self.name, "", row.line.saturating_sub(1)), 0..0)
     }
 }
 
