@@ -199,7 +199,7 @@ const SCENARIO_CASES: &[Case] = &[
     ("\"quanser-2dof\"", "\"none/arm.toml\"", "\"none", "cannot read"),
     ("duration = 10.0", "duration = -10.0", "-10.0", "duration is -10 s, must be > 0"),
     ("period = 0.001", "period = 20", "20\n", "control_period is 20 s, must be <= duration, 10 s"),
-    ("period = 0.001", "period = 1e-12", "1e-12", "control periods in 10 s, must be <= 1e9"),
+    ("period = 0.001", "period = 1e-12", "1e-12", "control periods in 10 s, must be <= 5e6"),
     ("period = 0.001", "period = 0.001\nhold = \"first-order\"", "\"first-order\"", "hold is 'first-order'"),
     (
         "[0.0, 0.0]",
