@@ -6,7 +6,14 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 /// Model, design, simulate and compare controllers for robots with elastic joints.
 #[derive(Debug, Parser)]
-#[command(name = "flexure", version, about, propagate_version = true, arg_required_else_help = true)]
+#[command(
+    name = "flexure",
+    bin_name = "flexure",
+    version,
+    propagate_version = true,
+    arg_required_else_help = true
+)]
+#[command(after_help = "Exit codes: 0 done; 1 the answer is no, as for a loop that diverges; 2 bad input.")]
 pub struct Cli {
     #[command(subcommand)]
     pub command: Command,

@@ -1,59 +1,60 @@
-//! Why a command did not succeed, and the exit code that says so.
+//! Why a command did not succeed, the exit code that says so, and how it is said.
 
-use std::io;
+use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
 
 use flexure::io::{Problem, Problems, WriteError};
-use miette::{Diagnostic, Report};
+use miette::{MietteDiagnostic, MietteHandlerOpts, Report};
+use textwrap::WordSplitter;
+
+/// Problems beyond these are counted, not shown.
+const MOST_SHOWN: usize = 10;
 
 /// What ends a command early.
 pub enum Failure {
     /// The input is bad, or an output cannot be written: exit code 2.
-    Input(Box<dyn Diagnostic + Send + Sync>),
-    /// The input is bad, and it has been said why: exit code 2.
-    Bad(String),
-    /// The answer is no: exit code 1. The text is for people.
-    No(String),
+    Input(Vec<Report>),
+    /// The answer is no: exit code 1.
+    No(Vec<Report>),
     /// Whoever read the output went away: nothing to say.
     Gone,
 }
 
 impl Failure {
+    /// A bad input that a sentence and a hint tell.
+    pub fn input(code: &str, message: String, hint: &str) -> Self {
+        Self::Input(vec![
+            MietteDiagnostic::new(message).with_code(format!("error[{code}]")).with_help(hint).into(),
+        ])
+    }
+
     /// Says it on stderr and gives the exit code.
     pub fn report(self) -> ExitCode {
-        match self {
-            Self::Input(diagnostic) => {
-                eprintln!("{:?}", Report::new_boxed(diagnostic));
-                ExitCode::from(2)
-            }
-            Self::Bad(text) => {
-                eprintln!("{text}");
-                ExitCode::from(2)
-            }
-            Self::No(text) => {
-                eprintln!("{text}");
-                ExitCode::from(1)
-            }
-            Self::Gone => ExitCode::SUCCESS,
-        }
+        let (reports, code) = match self {
+            Self::Input(reports) => (reports, 2),
+            Self::No(reports) => (reports, 1),
+            Self::Gone => return ExitCode::SUCCESS,
+        };
+        say_all(reports);
+        ExitCode::from(code)
     }
 }
 
 impl From<Problems> for Failure {
     fn from(problems: Problems) -> Self {
-        Self::Input(Box::new(problems))
+        Self::Input(problems.into_iter().map(Report::new).collect())
     }
 }
 
 impl From<Problem> for Failure {
     fn from(problem: Problem) -> Self {
-        Self::Input(Box::new(problem))
+        Self::Input(vec![problem.into()])
     }
 }
 
 impl From<WriteError> for Failure {
     fn from(error: WriteError) -> Self {
-        Self::Input(Box::new(error))
+        Self::Input(vec![error.into()])
     }
 }
 
@@ -62,13 +63,39 @@ impl From<io::Error> for Failure {
         if error.kind() == io::ErrorKind::BrokenPipe {
             return Self::Gone;
         }
-        Self::Input(Report::msg(format!("cannot write to stdout: {error}")).into())
+        Self::input("write", format!("cannot write to stdout: {error}"), "is the disk full?")
     }
 }
 
-/// Shows warnings on stderr.
-pub fn warn<'a>(warnings: impl IntoIterator<Item = &'a Problem>) {
-    for warning in warnings {
-        eprintln!("{:?}", Report::new(warning.clone()));
+/// Shows problems on stderr.
+pub fn say<'a>(problems: impl IntoIterator<Item = &'a Problem>) {
+    say_all(problems.into_iter().cloned().map(Report::new).collect());
+}
+
+fn say_all(reports: Vec<Report>) {
+    // Nobody can be told that stderr is gone.
+    let mut err = io::stderr().lock();
+    let rest = reports.len().saturating_sub(MOST_SHOWN);
+    for report in reports.into_iter().take(MOST_SHOWN) {
+        let _ = writeln!(err, "{report:?}");
     }
+    if rest > 0 {
+        let _ = writeln!(err, "and {rest} more");
+    }
+}
+
+/// Decides how problems are drawn: on a terminal in colour and in its width; elsewhere a sentence is a line, so that it
+/// can be searched for.
+pub fn install() {
+    let terminal = io::stderr().is_terminal();
+    // Fails only if it was done before.
+    let _ = miette::set_hook(Box::new(move |_| {
+        let options = MietteHandlerOpts::new()
+            .without_cause_chain() // the message has it
+            .wrap_lines(terminal)
+            .break_words(false)
+            .word_splitter(WordSplitter::NoHyphenation); // paths and names stay whole
+        // miette takes 80 columns where there is no terminal.
+        Box::new(if terminal { options } else { options.width(usize::from(u16::MAX)) }.build())
+    }));
 }

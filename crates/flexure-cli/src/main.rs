@@ -12,6 +12,7 @@ use clap::Parser;
 use args::{Cli, Command};
 
 fn main() -> ExitCode {
+    failure::install();
     let cli = Cli::parse();
     let json = cli.json;
     let done = match cli.command {

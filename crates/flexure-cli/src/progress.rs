@@ -15,7 +15,7 @@ impl Progress {
 
     /// A bar that fills from 0 to 1.
     pub fn bar(&self, name: &str) -> Bar {
-        let style = ProgressStyle::with_template("{prefix:>26} {bar:32.cyan/dim} {percent:>3}%")
+        let style = ProgressStyle::with_template("{bar:32.cyan/dim} {percent:>3}%  {prefix}")
             .unwrap_or_else(|_| ProgressStyle::default_bar());
         let bar = self.bars.add(ProgressBar::new(RESOLUTION).with_style(style).with_prefix(name.to_owned()));
         Bar { bar }

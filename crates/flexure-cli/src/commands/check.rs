@@ -1,11 +1,10 @@
 //! `flexure check`: are these files good?
 
 use flexure::io::{self, Checked, Problem, Problems};
-use miette::Report;
 use serde::Serialize;
 
 use super::print;
-use crate::failure::{Failure, warn};
+use crate::failure::{Failure, say};
 
 /// What is said of a file.
 #[derive(Serialize)]
@@ -55,7 +54,13 @@ pub fn check(files: &[String], json: bool) -> Result<(), Failure> {
     }
     match verdicts.iter().filter(|verdict| !verdict.ok).count() {
         0 => Ok(()),
-        bad => Err(Failure::Bad(format!("{bad} of {} cannot be used", counted(files.len(), "file")))),
+        // Of one file everything has been said.
+        1 if files.len() == 1 => Err(Failure::Input(Vec::new())),
+        bad => Err(Failure::input(
+            "check",
+            format!("{bad} of {} cannot be used", counted(files.len(), "file")),
+            "each file's problems are listed above",
+        )),
     }
 }
 
@@ -76,7 +81,7 @@ fn verdict(file: &str, json: bool) -> Verdict {
         Err(problems) => return bad(file, &problems, json),
     };
     if !json {
-        warn(&complaints);
+        say(&complaints);
     }
     let warnings = complaints.iter().map(complaint).collect();
     Verdict { file: file.to_owned(), ok: true, content, warnings, errors: Vec::new() }
@@ -84,7 +89,7 @@ fn verdict(file: &str, json: bool) -> Verdict {
 
 fn bad(file: &str, problems: &Problems, json: bool) -> Verdict {
     if !json {
-        eprintln!("{:?}", Report::new(problems.clone()));
+        say(problems.iter());
     }
     let (warnings, errors): (Vec<_>, Vec<_>) = problems.iter().partition(|problem| problem.is_warning());
     let complaints = |problems: Vec<&Problem>| problems.into_iter().map(complaint).collect();

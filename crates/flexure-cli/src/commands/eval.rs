@@ -3,14 +3,16 @@
 use std::path::Path;
 
 use flexure::evaluate::evaluate_law;
-use flexure::io::load_scenario;
+use flexure::io::{load_scenario, load_states};
 
 use super::print;
-use crate::failure::{Failure, warn};
+use crate::failure::{Failure, say};
 
 pub fn eval(scenario: &str, states: &Path, json: bool) -> Result<(), Failure> {
     let scenario = load_scenario(scenario)?;
     warn(&scenario.warnings);
     let states = print::states(states, scenario.robot.joints())?;
+    say(&scenario.warnings);
+    let states = load_states(states, scenario.robot.joints())?;
     print::rows(&evaluate_law(&scenario, &states)?, json)
 }

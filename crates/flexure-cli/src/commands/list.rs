@@ -26,10 +26,12 @@ pub fn list(kind: Option<Kind>, json: bool) -> Result<(), Failure> {
             sections.into_iter().map(|(name, members)| (name, members.into_iter().collect())).collect();
         return print::json(&document);
     }
+    let width =
+        sections.iter().flat_map(|(_, members)| members).map(|(member, _)| member.len()).max().unwrap_or(0);
     for (name, members) in sections {
         print::line(name)?;
         for (member, summary) in members {
-            print::line(&format!("  {member:<30} {summary}"))?;
+            print::line(&format!("  {member:<width$}  {summary}"))?;
         }
     }
     Ok(())

@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use flexure::evaluate::evaluate_model;
-use flexure::io::load_robot;
+use flexure::io::{load_robot, load_states};
 
 use super::print;
-use crate::failure::{Failure, warn};
+use crate::failure::{Failure, say};
 
 pub fn model(robot: &str, states: &Path, json: bool) -> Result<(), Failure> {
     let robot = load_robot(robot)?;
-    warn(&robot.warnings);
-    let states = print::states(states, robot.joints())?;
+    say(&robot.warnings);
+    let states = load_states(states, robot.joints())?;
     print::rows(&evaluate_model(&robot, &states)?, json)
 }

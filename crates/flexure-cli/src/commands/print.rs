@@ -1,10 +1,7 @@
-//! Printing on stdout, and the states that come in on stdin.
+//! Printing on stdout.
 
-use std::fs::File;
-use std::io::{self, BufRead, BufReader, BufWriter, Write};
-use std::path::Path;
+use std::io::{self, BufWriter, Write};
 
-use flexure::io::{StateRow, States};
 use serde::Serialize;
 
 use crate::failure::Failure;
@@ -33,22 +30,4 @@ pub fn rows(rows: &[impl Serialize], as_one: bool) -> Result<(), Failure> {
 /// A line of text.
 pub fn line(text: &str) -> Result<(), Failure> {
     Ok(writeln!(io::stdout(), "{text}")?)
-}
-
-/// All states of a file, or of standard input for `-`: everything is read and checked before anything is computed.
-pub fn states(path: &Path, joints: usize) -> Result<Vec<StateRow>, Failure> {
-    let reader: Box<dyn BufRead> = if path.as_os_str() == "-" {
-        Box::new(io::stdin().lock())
-    } else {
-        let file = File::open(path).map_err(|error| {
-            Failure::Bad(format!(
-                "cannot read {}: {error}\n  hint: --states takes a file of JSON Lines with q_l, q_m, dq_l, dq_m, or - \
-                 for standard input",
-                path.display()
-            ))
-        })?;
-        Box::new(BufReader::new(file))
-    };
-    let name = path.display().to_string();
-    Ok(States::new(reader, joints, name).collect::<Result<_, _>>()?)
 }

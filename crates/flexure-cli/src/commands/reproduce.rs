@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use flexure::experiment::{REPRODUCED, reproduce as experiments};
-use flexure::io::{write_experiment, write_report};
+use flexure::io::{prepare, write_experiment, write_report};
 use flexure::report::summary_table;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -20,6 +20,7 @@ struct Reproduction<'a> {
 }
 
 pub fn reproduce(out: &Path, json: bool) -> Result<(), Failure> {
+    prepare(out)?;
     let experiments = {
         let progress = Progress::new();
         let bars = REPRODUCED.map(|name| progress.bar(name));
@@ -41,8 +42,6 @@ pub fn reproduce(out: &Path, json: bool) -> Result<(), Failure> {
             report.display()
         ))?;
     }
-    match experiments.iter().filter_map(diverged).reduce(|a, b| format!("{a}\n{b}")) {
-        Some(text) => Err(Failure::No(text)),
-        None => Ok(()),
-    }
+    let diverged: Vec<_> = experiments.iter().filter_map(diverged).map(Into::into).collect();
+    if diverged.is_empty() { Ok(()) } else { Err(Failure::No(diverged)) }
 }

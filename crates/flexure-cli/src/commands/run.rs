@@ -3,13 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use flexure::experiment::Experiment;
-use flexure::io::{load_scenario, write_experiment};
+use flexure::io::{Problem, load_scenario, prepare, write_experiment};
 use flexure::report::summary_table;
 use flexure::summary::Summary;
 use serde::Serialize;
 
 use super::print;
-use crate::failure::{Failure, warn};
+use crate::failure::{Failure, say};
 use crate::progress::Progress;
 
 /// A summary and where the files are.
@@ -32,6 +32,8 @@ impl<'a> Outcome<'a> {
 pub fn run(scenario: &str, out: &Path, json: bool) -> Result<(), Failure> {
     let scenario = load_scenario(scenario)?;
     warn(&scenario.warnings);
+    say(&scenario.warnings);
+    prepare(out)?;
     let experiment = {
         let progress = Progress::new();
         let bar = progress.bar(&scenario.name);
@@ -46,18 +48,20 @@ pub fn run(scenario: &str, out: &Path, json: bool) -> Result<(), Failure> {
             print::line(&format!("wrote {}", file.display()))?;
         }
     }
-    diverged(&experiment).map_or(Ok(()), |text| Err(Failure::No(text)))
+    diverged(&experiment).map_or(Ok(()), |problem| Err(Failure::No(vec![problem.into()])))
 }
 
 /// What to say of a loop that diverged.
-pub fn diverged(experiment: &Experiment) -> Option<String> {
-    experiment.run.divergence.map(|divergence| {
-        let scenario = &experiment.scenario;
-        format!(
-            "{}: the loop diverged at t = {:.4} s (positions or speeds up to {:.3e} rad, rad/s at the last control \
-             instant)\n  hint: shorten control_period ({} s), lower the gains, or join the reference smoothly with \
-             [reference.smooth_start]",
-            scenario.name, divergence.time, divergence.magnitude, scenario.control_period
-        )
+pub fn diverged(experiment: &Experiment) -> Option<Problem> {
+    let Experiment { scenario, run, .. } = experiment;
+    run.divergence.map(|divergence| {
+        let message = format!(
+            "{}: the loop diverged at t = {:.4} s; the last control instant has positions or speeds up to {:.3e} rad or \
+             rad/s",
+            scenario.name, divergence.time, divergence.magnitude
+        );
+        let hint = "shorten control_period, lower the gains, or join the reference smoothly with \
+                    [reference.smooth_start]; outputs end where the loop does";
+        scenario.places.problem("control_period", "diverged", message, hint)
     })
 }

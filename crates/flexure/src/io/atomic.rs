@@ -12,7 +12,7 @@ use tempfile::Builder;
 pub enum WriteError {
     /// No file can be created beside the target.
     #[error("cannot create files in {}: {cause}", folder.display())]
-    #[diagnostic(code(write), help("name a folder in which files can be created"))]
+    #[diagnostic(code("error[write]"), help("name a folder in which files can be created"))]
     Folder {
         /// The folder.
         folder: PathBuf,
@@ -22,14 +22,14 @@ pub enum WriteError {
     },
     /// The target is a folder or a device.
     #[error("{} is not a regular file", path.display())]
-    #[diagnostic(code(write), help("name a file that does not exist yet, or one to replace"))]
+    #[diagnostic(code("error[write]"), help("name a file that does not exist yet, or one to replace"))]
     NotAFile {
         /// The target.
         path: PathBuf,
     },
     /// Writing failed on the way.
     #[error("cannot write {}: {cause}", path.display())]
-    #[diagnostic(code(write), help("is the disk full, or the file in use?"))]
+    #[diagnostic(code("error[write]"), help("is the disk full, or the file in use?"))]
     Content {
         /// The target.
         path: PathBuf,

@@ -63,7 +63,7 @@ impl Problem {
 
 impl Diagnostic for Problem {
     fn code<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        Some(Box::new(self.code))
+        Some(Box::new(format!("{}[{}]", if self.is_warning() { "warning" } else { "error" }, self.code)))
     }
     fn severity(&self) -> Option<Severity> {
         Some(self.severity)

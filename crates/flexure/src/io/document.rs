@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeTable, DeValue, Error};
 
 use super::diagnostic::{Problem, Problems};
 use super::quantity::Quantity;
@@ -116,7 +116,11 @@ pub(super) fn parse<T>(
 ) -> Result<(T, Vec<Problem>), Problems> {
     let log = Log::new(source);
     let (root, errors) = DeTable::parse_recoverable(&source.text);
-    for error in &errors {
+    // One slip in nested brackets is reported once for each of them.
+    let same = |a: &Error, b: &Error| a.message() == b.message() && a.span() == b.span();
+    for (_, error) in
+        errors.iter().enumerate().filter(|(i, error)| !errors[..*i].iter().any(|e| same(e, error)))
+    {
         let help =
             "not valid TOML: text stands in quotes, numbers like 0.5, arrays like [1.0, 2.0], one key a line";
         log.error(error.span().unwrap_or(0..0), "syntax", error.message(), help);

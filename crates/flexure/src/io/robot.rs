@@ -63,7 +63,7 @@ const FORM: Form = Form {
     what: "robot file",
     required: &["name", "links", "joints"],
     optional: &["gravity", "sources"],
-    other: ("controller", "scenario file", "its robot is what robot = \"...\" in it names"),
+    other: ("controller", "scenario file", "give the robot that robot = \"...\" in it names"),
 };
 
 pub(super) fn read(source: &Source) -> Result<Robot, Problems> {

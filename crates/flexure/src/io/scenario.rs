@@ -176,7 +176,9 @@ fn times(root: &Table<'_>) -> Option<(f64, f64)> {
     let periods = (duration / period).round();
     if (duration / period - periods).abs() > UNEVEN {
         let message = format!("duration is {duration} s, is no multiple of control_period, {period} s");
-        let hint = format!("the run takes {periods} periods, {:.9} s", periods * period);
+        // Without the noise of the product.
+        let whole = (1e9 * periods * period).round() / 1e9;
+        let hint = format!("the run takes {periods} periods, {} s", quantity::shortest(whole));
         root.get("duration")?.warn("uneven", message, hint);
     }
     Some((duration, period))

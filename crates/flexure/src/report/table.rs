@@ -10,41 +10,52 @@ use crate::summary::Summary;
 /// Columns of a terminal that the table is laid out for.
 const WIDTH: u16 = 100;
 
-/// One row a run, at most 100 columns wide, without colours: the same text on a terminal and in a file.
+/// A column of numbers: three lines of heading, and what stands in it.
+type Column = (&'static str, fn(&Summary) -> String);
+
+const NUMBERS: [Column; 5] = [
+    ("max\n|e_l|\n[rad]", |summary| number(summary.max_abs_e_l)),
+    ("final\n|e_l|\n[rad]", |summary| number(summary.final_abs_e_l)),
+    ("settled\n\n[s]", |summary| optional(summary.settling_time)),
+    ("max\n|u_m|\n[N m]", |summary| number(summary.max_abs_u_m)),
+    ("rate\nsampled\n[1/s]", |summary| number(summary.rate_measured)),
+];
+const AT_LIMIT: Column = ("at\nlimit\n[%]", |summary| number(100.0 * summary.saturated_fraction));
+const PROVED: Column = ("rate\nproved\n[1/s]", |summary| optional(summary.rate_certified));
+
+/// One row a run, at most 100 columns wide, without colours: the same text on a terminal and in a file. Torque limits
+/// and proved rates have a column where any run has them.
 pub fn summary_table(summaries: &[Summary]) -> String {
-    const HEADER: [&str; 8] = [
-        "run",
-        "φ",
-        "final\n|e_l|\n[rad]",
-        "settled\n\n[s]",
-        "max\n|u_m|\n[N m]",
-        "at limit\n\n[%]",
-        "rate\nsampled\n[1/s]",
-        "rate\nproved\n[1/s]",
-    ];
+    let limited = summaries.iter().any(|summary| summary.saturated_fraction > 0.0);
+    let proved = summaries.iter().any(|summary| summary.rate_certified.is_some());
+    let columns: Vec<Column> =
+        NUMBERS.into_iter().chain(limited.then_some(AT_LIMIT)).chain(proved.then_some(PROVED)).collect();
     let mut table = Table::new();
     table
         .load_style(UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()))
         .set_content_arrangement(ContentArrangement::Dynamic)
         .set_width(WIDTH);
-    table.set_header(HEADER.map(|title| Cell::new(title).set_alignment(CellAlignment::Center)));
+    let titles = ["run", "φ"].into_iter().chain(columns.iter().map(|(title, _)| *title));
+    let centred = |title| Cell::new(title).set_alignment(CellAlignment::Center);
+    table.set_header(titles.map(centred).collect::<Vec<_>>());
     for summary in summaries {
-        table.add_row(row(summary));
+        table.add_row(row(summary, &columns));
     }
     table.to_string()
 }
 
-fn row(summary: &Summary) -> Row {
-    let optional = |value: Option<f64>| value.map_or(NONE.to_owned(), engineering);
-    let numbers = [
-        engineering(summary.final_abs_e_l),
-        optional(summary.settling_time),
-        engineering(summary.max_abs_u_m),
-        engineering(100.0 * summary.saturated_fraction),
-        engineering(summary.rate_measured),
-        optional(summary.rate_certified),
-    ];
+/// A dash for what a run that diverged at once has no figure of.
+fn number(value: f64) -> String {
+    optional(Some(value).filter(|value| value.is_finite()))
+}
+
+fn optional(value: Option<f64>) -> String {
+    value.map_or(NONE.to_owned(), engineering)
+}
+
+fn row(summary: &Summary, columns: &[Column]) -> Row {
     let words = [&summary.name, &summary.phi].map(Cell::new);
-    let numbers = numbers.map(|number| Cell::new(number).set_alignment(CellAlignment::Right));
+    let numbers =
+        columns.iter().map(|(_, show)| Cell::new(show(summary)).set_alignment(CellAlignment::Right));
     Row::from(words.into_iter().chain(numbers).collect::<Vec<_>>())
 }

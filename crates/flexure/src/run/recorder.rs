@@ -46,7 +46,7 @@ impl<const N: usize> Figures<N> {
     }
 
     fn root_mean(&self, squared: &Vector<f64, N>) -> f64 {
-        (largest(squared) / f64::from(self.instants.max(1))).sqrt()
+        (largest(squared) / f64::from(self.instants)).sqrt()
     }
 }
 
@@ -135,8 +135,20 @@ impl<const N: usize> Recorder<N> {
         figures.squared_u_m += command.u_m.map(|x| x * x);
     }
 
+    /// Trace and figures; of a run that diverged before its first instant there are no figures.
     pub(super) fn finish(self) -> (Trace, Figures<N>) {
-        (self.trace, self.figures)
+        let mut figures = self.figures;
+        if figures.instants == 0 {
+            for figure in [
+                &mut figures.max_abs_e_l,
+                &mut figures.final_abs_e_l,
+                &mut figures.max_abs_u_m,
+                &mut figures.rate,
+            ] {
+                *figure = f64::NAN;
+            }
+        }
+        (self.trace, figures)
     }
 }
 
