@@ -10,8 +10,6 @@ use crate::failure::{Failure, say};
 
 pub fn eval(scenario: &str, states: &Path, json: bool) -> Result<(), Failure> {
     let scenario = load_scenario(scenario)?;
-    warn(&scenario.warnings);
-    let states = print::states(states, scenario.robot.joints())?;
     say(&scenario.warnings);
     let states = load_states(states, scenario.robot.joints())?;
     print::rows(&evaluate_law(&scenario, &states)?, json)
