@@ -17,7 +17,7 @@ use crate::progress::Progress;
 pub struct Outcome<'a> {
     #[serde(flatten)]
     pub summary: &'a Summary,
-    /// Time of divergence [s]; none if the loop ran to the end.
+    /// Time of divergence in s; none if the loop ran to the end.
     pub diverged_at: Option<f64>,
     pub files: Vec<PathBuf>,
 }
