@@ -1,0 +1,81 @@
+//! `flexure check` and `flexure list`.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::command::{Place, ROBOT};
+
+#[test]
+fn every_listed_robot_and_scenario_is_good() {
+    let place = Place::new();
+    let listed = place.run(&["list", "--json"]).done().json();
+    for kind in ["robots", "scenarios", "controllers", "shaping", "references"] {
+        assert!(listed[kind].as_object().is_some_and(|members| !members.is_empty()), "{kind}");
+        let only = place.run(&["list", kind, "--json"]).done().json();
+        assert_eq!(only.as_object().unwrap().len(), 1);
+        assert_eq!(only[kind], listed[kind]);
+        let text = place.run(&["list", kind]).done().stdout;
+        for (name, summary) in listed[kind].as_object().unwrap() {
+            let line = text.lines().find(|line| line.split_whitespace().next() == Some(name));
+            assert!(line.is_some_and(|line| line.ends_with(summary.as_str().unwrap())), "{name} in\n{text}");
+        }
+    }
+    for kind in ["robots", "scenarios"] {
+        let names: Vec<_> = listed[kind].as_object().unwrap().keys().map(String::as_str).collect();
+        let verdicts = place.run(&[&["check", "--json"], &names[..]].concat()).done().json();
+        for (verdict, name) in verdicts.as_array().unwrap().iter().zip(names) {
+            assert_eq!((&verdict["ok"], &verdict["name"]), (&true.into(), &name.into()), "{verdict}");
+            assert_eq!(verdict["kind"].as_str().map(|one| format!("{one}s")).as_deref(), Some(kind));
+        }
+    }
+}
+
+#[test]
+fn shipped_files_are_good() {
+    let place = Place::new();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    for folder in ["robots", "scenarios"] {
+        for entry in std::fs::read_dir(root.join(folder)).unwrap() {
+            place.run(&["check", entry.unwrap().path().to_str().unwrap()]).done();
+        }
+    }
+}
+
+#[test]
+fn one_bad_file_among_good_ones_is_told_apart() {
+    let place = Place::new();
+    place.write("good.toml", ROBOT).scenario("bad.toml", &[("[55.0, 30.0]", "[55.0, -30.0]")]);
+    let files = ["check", "good.toml", "bad.toml", "two-link-tanh", "none.toml"];
+    let outcome = place.run(&files);
+    assert_eq!(outcome.code, Some(2));
+    outcome.said(&["bad.toml:23:17", "2 of 4 files", "cannot read none.toml"]);
+    assert_eq!(outcome.stdout.lines().count(), 2, "a line for each good one: {}", outcome.stdout);
+
+    let outcome = place.run(&[&files[..], &["--json"]].concat());
+    assert_eq!(outcome.code, Some(2));
+    let document = outcome.json();
+    let verdicts = document.as_array().unwrap();
+    let ok: Vec<_> = verdicts.iter().map(|verdict| verdict["ok"].as_bool().unwrap()).collect();
+    assert_eq!(ok, [true, false, true, false]);
+    let error = &verdicts[1]["errors"][0];
+    assert_eq!(
+        (&error["line"], &error["column"], &error["file"]),
+        (&23.into(), &17.into(), &"bad.toml".into())
+    );
+    assert!(error["message"].as_str().unwrap().contains("-30"), "{error}");
+    assert!(error["hint"].as_str().is_some_and(|hint| !hint.is_empty()));
+}
+
+#[test]
+fn assumptions_and_warnings_count_once() {
+    let place = Place::new();
+    place.write("arm.toml", ROBOT.replacen("[9.0, 4.0]", "[9.0, 4e-4]", 1));
+    place.scenario("s.toml", &[("\"quanser-2dof\"", "\"arm.toml\"")]);
+    let outcome = place.run(&["check", "s.toml"]).done();
+    assert_eq!(outcome.stderr.matches("warning[").count(), 1, "{}", outcome.stderr);
+    let verdict = &place.run(&["check", "s.toml", "--json"]).done().json()[0];
+    assert_eq!(verdict["warnings"].as_array().map(Vec::len), Some(1));
+    let assumed = |file: &str| place.read(file).matches("= \"assumed").count();
+    assert_eq!(verdict["assumptions"], Value::from(assumed("arm.toml") + assumed("s.toml")));
+}

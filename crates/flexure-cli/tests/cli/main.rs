@@ -1,0 +1,10 @@
+//! The command as a user meets it: arguments, files, output, messages and exit codes.
+
+mod bad_input;
+mod check_list;
+mod command;
+mod divergence;
+mod eval_model;
+mod pipes;
+mod reproduce;
+mod run;

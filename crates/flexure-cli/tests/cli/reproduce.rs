@@ -1,0 +1,80 @@
+//! `flexure reproduce`: every experiment, and the same bytes every time.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::command::{Place, assert_summary};
+
+const EXPERIMENTS: [&str; 6] = [
+    "two-link-tanh",
+    "two-link-linear",
+    "two-link-coupled-tanh",
+    "two-link-tanh-smooth",
+    "two-link-linear-smooth",
+    "two-link-coupled-tanh-smooth",
+];
+
+/// Every wall-clock time set to zero: all that may differ between two runs.
+fn timeless(mut document: Value) -> Value {
+    for scenario in document["scenarios"].as_array_mut().unwrap() {
+        scenario["wall_seconds"] = 0.into();
+    }
+    document
+}
+
+#[test]
+fn all_files_the_same_bytes_on_any_number_of_threads() {
+    let place = Place::new();
+    let run = |threads: &str| {
+        let mut command = place.command(&["reproduce", "--json", "--out", "out"]);
+        let outcome: crate::command::Outcome =
+            command.env("RAYON_NUM_THREADS", threads).output().unwrap().into();
+        let document = outcome.done().json();
+        fs::rename(place.path().join("out"), place.path().join(threads)).unwrap();
+        document
+    };
+    let (one, four) = (run("1"), run("4"));
+    assert_eq!(timeless(one.clone()), timeless(four));
+
+    let mut expected: Vec<_> = EXPERIMENTS
+        .iter()
+        .flat_map(|name| ["csv", "svg", "png"].map(|ending| format!("{name}.{ending}")))
+        .collect();
+    expected.push("report.html".into());
+    expected.sort();
+    assert_eq!(place.names("1"), expected);
+    assert_eq!(place.names("4"), expected);
+    for name in &expected {
+        let bytes = |folder: &str| fs::read(place.path().join(folder).join(name)).unwrap();
+        assert!(bytes("1") == bytes("4"), "{name} differs");
+    }
+
+    let scenarios = one["scenarios"].as_array().unwrap();
+    let names: Vec<_> = scenarios.iter().map(|scenario| scenario["name"].as_str().unwrap()).collect();
+    assert_eq!(names, EXPERIMENTS);
+    for scenario in scenarios {
+        assert_summary(scenario);
+        assert_eq!(scenario["diverged_at"], Value::Null);
+        assert_eq!(scenario["files"].as_array().unwrap().len(), 3);
+    }
+    assert_eq!(one["report"], "out/report.html");
+    let page = place.read("1/report.html");
+    for name in EXPERIMENTS {
+        assert!(page.contains(name), "{name}");
+    }
+}
+
+#[test]
+fn the_table_has_a_line_a_run_and_fits_100_columns() {
+    let place = Place::new();
+    let outcome = place.run(&["reproduce"]).done();
+    assert_eq!(outcome.stderr, "", "progress is for terminals");
+    assert!(outcome.stdout.lines().all(|line| line.chars().count() <= 100), "{}", outcome.stdout);
+    for name in EXPERIMENTS {
+        let of_run = |line: &&str| line.split_whitespace().next() == Some(name);
+        assert_eq!(outcome.stdout.lines().filter(of_run).count(), 1, "{name} in\n{}", outcome.stdout);
+    }
+    assert!(outcome.stdout.contains("out/report.html"));
+    assert_eq!(place.names("out").len(), 19);
+}
