@@ -110,3 +110,39 @@ fn trace_and_summary_say_what_happened() {
     let rms = errors.iter().map(|e| mean_square(e)).fold(0.0, f64::max).sqrt();
     assert!((run.summary.rms_e_l / rms - 1.0).abs() < 1e-12);
 }
+
+#[test]
+fn the_continuous_loop_starts_from_rest_on_the_reference() {
+    // Exactly at rest, corrections of the stage equations are rounding of torques that cancel.
+    for name in ["two-link-tanh-smooth", "two-link-linear-smooth", "two-link-coupled-tanh-smooth"] {
+        let run = simulate(|s| (s.hold, s.duration) = (Hold::Continuous, 5.0), name);
+        assert!(run.divergence.is_none(), "{name}: {:?}", run.divergence);
+        assert!(error_after(&run, 4.0) < 1e-11, "{name}: {}", error_after(&run, 4.0));
+    }
+}
+
+#[test]
+fn an_arm_that_has_come_to_rest_costs_no_more_than_one_that_moves() {
+    use flexure::io::{Profile, Reference};
+    for (name, hold) in [
+        ("pendulum-tanh", Hold::ZeroOrder),
+        ("panda-tanh-smooth", Hold::ZeroOrder),
+        ("two-link-tanh", Hold::Continuous),
+    ] {
+        let run = simulate(
+            |s| {
+                let from = s.initial.q_l.clone();
+                let to = from.iter().map(|q| q + 0.4).collect();
+                (s.smooth_start, s.duration, s.hold) = (None, 4.0, hold);
+                s.reference =
+                    Reference::PointToPoint { profile: Profile::Septic, from, to, start: 0.2, duration: 1.0 };
+            },
+            name,
+        );
+        assert!(run.divergence.is_none(), "{name}: {:?}", run.divergence);
+        // 4000 control periods of a few steps each.
+        assert!(run.summary.steps < 60_000, "{name}: {} steps", run.summary.steps);
+        assert!(run.summary.energy_drift < 1e-9, "{name}: {}", run.summary.energy_drift);
+        assert!(run.summary.final_abs_e_l < 1e-5, "{name}: {}", run.summary.final_abs_e_l);
+    }
+}

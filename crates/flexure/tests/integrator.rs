@@ -231,5 +231,6 @@ fn an_explosion_is_reported_where_it_happens() {
     let x = Motion::at_rest(Vector([0.0, 0.0]));
     let failure =
         integrator.advance(&robot, x, 0.0, 1.0, &torque, &mut Ledger::default()).expect_err("NaN torque");
-    assert!((0.2..=0.2501).contains(&failure.after), "{failure:?}");
+    // A step whose last stage lies before the explosion may end a little after it.
+    assert!((0.24..0.26).contains(&failure.after), "{failure:?}");
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use flexure::experiment::Experiment;
 use flexure::io::{Problem, load_scenario, prepare, write_experiment};
 use flexure::report::summary_table;
+use flexure::sim::{Cause, Divergence};
 use flexure::summary::Summary;
 use serde::Serialize;
 
@@ -54,13 +55,26 @@ pub fn run(scenario: &str, out: &Path, json: bool) -> Result<(), Failure> {
 pub fn diverged(experiment: &Experiment) -> Option<Problem> {
     let Experiment { scenario, run, .. } = experiment;
     run.divergence.map(|divergence| {
+        let Divergence { time, magnitude, cause } = divergence;
+        let (code, what, hint) = match cause {
+            Cause::Unbounded => (
+                "diverged",
+                "the loop diverged",
+                "shorten control_period, lower the gains, or join the reference smoothly with \
+                 [reference.smooth_start]; outputs end where the loop does",
+            ),
+            Cause::Unsolvable => (
+                "unsolvable",
+                "the motion diverged or became too wild to integrate",
+                "shorten control_period, lower the gains, and check that the reference has four continuous \
+                 derivatives; outputs end there",
+            ),
+        };
         let message = format!(
-            "{}: the loop diverged at t = {:.4} s; the last control instant has positions or speeds up to {:.3e} rad or \
-             rad/s",
-            scenario.name, divergence.time, divergence.magnitude
+            "{}: {what} at t = {time:.4} s; the last control instant has positions or speeds up to {magnitude:.3e} rad \
+             or rad/s",
+            scenario.name
         );
-        let hint = "shorten control_period, lower the gains, or join the reference smoothly with \
-                    [reference.smooth_start]; outputs end where the loop does";
-        scenario.places.problem("control_period", "diverged", message, hint)
+        scenario.places.problem("control_period", code, message, hint)
     })
 }

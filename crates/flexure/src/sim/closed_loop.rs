@@ -65,6 +65,17 @@ pub struct Divergence {
     pub time: f64,
     /// Largest link position or velocity seen at the last good instant [rad, rad/s].
     pub magnitude: f64,
+    /// What stopped the run.
+    pub cause: Cause,
+}
+
+/// What stopped a run before its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cause {
+    /// Positions, speeds or torques left every sensible range, or the finite numbers.
+    Unbounded,
+    /// The motion between two control instants could not be integrated.
+    Unsolvable,
 }
 
 /// A position in rad or speed [rad/s] beyond this is a diverged loop, not a robot.
@@ -98,7 +109,7 @@ impl ClosedLoop {
                 .fold(0.0, |m: f64, x| m.max(x.abs()));
             let sane = magnitude < BEYOND && command.u_m.iter().all(f64::is_finite);
             if !sane {
-                divergence = Some(Divergence { time: t, magnitude });
+                divergence = Some(Divergence { time: t, magnitude, cause: Cause::Unbounded });
                 break;
             }
             observe(&Instant { t, motion: &x, command: &command, energy, residual, ledger: &ledger });
@@ -126,7 +137,8 @@ impl ClosedLoop {
             match next {
                 Ok(next) => x = next,
                 Err(failure) => {
-                    divergence = Some(Divergence { time: t + failure.after, magnitude });
+                    let time = t + failure.after;
+                    divergence = Some(Divergence { time, magnitude, cause: Cause::Unsolvable });
                     break;
                 }
             }

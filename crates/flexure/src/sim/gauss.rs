@@ -33,14 +33,18 @@ pub struct Integrator {
 /// Speed [rad/s] below which errors count as absolute.
 const SLOW: f64 = 1e-3;
 
-/// Steps shorter than this fraction of the interval are a failure, not an accuracy problem.
-const SHORTEST: f64 = 1e-6;
+/// Steps of this fraction of the interval are taken whatever their error: a torque that jumps cannot be resolved, only
+/// stepped across.
+const SHORTEST: f64 = 1e-5;
 
-/// More steps than this in one interval are a failure too: a run ends in bounded time whatever happens in it.
-const MOST_STEPS: u32 = 100_000;
+/// More steps than this in one interval are a failure: a run ends in bounded time whatever happens in it.
+const MOST_STEPS: u32 = 200_000;
 
 /// Corrections of this size relative to the speeds of a step are rounding.
 const ROUNDING: f64 = 1e-14;
+
+/// So are corrections of this size in rad/s whatever the speeds: at rest, torques of finite size still cancel.
+const STILL: f64 = 1e-13;
 
 /// A solved step.
 #[derive(Clone, Copy)]
@@ -71,7 +75,8 @@ impl Integrator {
     /// Moves `x` over `[t, t + interval]` under the torque `u_m(t, x)` and books the work in `ledger`.
     ///
     /// # Errors
-    /// [`StepFailure`] if the solution leaves the finite numbers or no step is small enough: the loop diverged.
+    /// [`StepFailure`] if the solution leaves the finite numbers or the stage equations cannot be solved: the loop
+    /// diverged, or its torque is no function of the state.
     pub fn advance<L: Links<f64, N>, const N: usize>(
         &mut self,
         robot: &Fjr<f64, L, N>,
@@ -82,34 +87,28 @@ impl Integrator {
         ledger: &mut Ledger,
     ) -> Result<Motion<f64, N>, StepFailure> {
         let mut done = 0.0;
-        // Equal steps to the end of the interval, of at most the length that was good before.
-        let mut remaining = steps_in(interval, self.step);
-        let mut tries = 0;
-        while remaining > 0 {
-            tries += 1;
-            if tries > MOST_STEPS {
-                return Err(StepFailure { after: done });
-            }
+        let shortest = SHORTEST * interval;
+        for _ in 0..MOST_STEPS {
+            // Equal steps to the end of the interval, of at most the length that is good now.
+            let remaining = steps_in(interval - done, self.step);
             let h = (interval - done) / f64::from(remaining);
-            let step = self.try_step(robot, &x, t + done, h, torque);
-            if let Some(step) = step.filter(|step| step.factor >= 1.0) {
-                x = step.end;
-                ledger.add(&step.work);
-                self.steps += 1;
-                self.step = h * step.factor.min(2.0);
-                remaining -= 1;
-                done = if remaining == 0 { interval } else { done + h };
-            } else {
-                self.step = h * step.map_or(0.5, |step| step.factor.clamp(0.1, 0.9));
-                // NaN is not longer than anything either.
-                let long_enough = self.step > SHORTEST * interval;
-                if !long_enough {
-                    return Err(StepFailure { after: done });
+            match self.try_step(robot, &x, t + done, h, torque) {
+                Some(step) if step.factor >= 1.0 || h <= shortest => {
+                    x = step.end;
+                    ledger.add(&step.work);
+                    self.steps += 1;
+                    self.step = (h * step.factor.min(2.0)).max(shortest);
+                    if remaining == 1 {
+                        return Ok(x);
+                    }
+                    done += h;
                 }
-                remaining = steps_in(interval - done, self.step);
+                Some(step) => self.step = (h * step.factor.clamp(0.1, 0.9)).max(shortest),
+                None if h > shortest => self.step = (0.5 * h).max(shortest),
+                None => break,
             }
         }
-        Ok(x)
+        Err(StepFailure { after: done })
     }
 
     /// Moves `x` by `count` equal steps whatever their error: for convergence studies.
@@ -150,8 +149,8 @@ impl Integrator {
         };
         let mut solution = StepSolution { link: [start[0]; STAGES], motor: [start[1]; STAGES] };
         // Corrections below this are rounding of velocities.
-        let floor =
-            ROUNDING * (largest(&x.v_l) + largest(&x.v_m) + h * (largest(&start[0]) + largest(&start[1])));
+        let speeds = largest(&x.v_l) + largest(&x.v_m) + h * (largest(&start[0]) + largest(&start[1]));
+        let floor = ROUNDING * speeds + STILL;
         StageSolver::new(&self.scheme, robot, &x.q_l, h).solve(robot, &mut solution, floor / h, at_stage)?;
 
         let mut work = Ledger::default();

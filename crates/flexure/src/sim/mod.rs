@@ -6,6 +6,6 @@ mod ledger;
 mod newton;
 mod scheme;
 
-pub use closed_loop::{ClosedLoop, Divergence, Hold, Instant, Outcome};
+pub use closed_loop::{Cause, ClosedLoop, Divergence, Hold, Instant, Outcome};
 pub use gauss::{Integrator, StepFailure};
 pub use ledger::Ledger;
