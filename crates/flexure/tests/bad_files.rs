@@ -199,7 +199,7 @@ const SCENARIO_CASES: &[Case] = &[
     ("\"quanser-2dof\"", "\"none/arm.toml\"", "\"none", "cannot read"),
     ("duration = 10.0", "duration = -10.0", "-10.0", "duration is -10 s, must be > 0"),
     ("period = 0.001", "period = 20", "20\n", "control_period is 20 s, must be <= duration, 10 s"),
-    ("period = 0.001", "period = 1e-12", "1e-12", "control periods in 10 s, must be <= 1e9"),
+    ("period = 0.001", "period = 1e-12", "1e-12", "control periods in 10 s, must be <= 5e6"),
     ("period = 0.001", "period = 0.001\nhold = \"first-order\"", "\"first-order\"", "hold is 'first-order'"),
     (
         "[0.0, 0.0]",
@@ -366,6 +366,7 @@ fn suspicious_numbers_are_warned_about() {
     warned(TREE, "xyz = [0.3, 0, 0]", "xyz = [0.3, 0, 0]\nrpy = [90, 0, 0]", "it looks like degrees");
     warned(SCENARIO, "q_l = [0.0, 0.0]", "q_l = [0.0, 0.0]\nq_m = [45.0, 0.0]", "it looks like degrees");
     warned(SCENARIO, "q_l = [0.0, 0.0]", "q_l = [0.1, 0.0]", "initial.q_m is not given");
+    warned(SCENARIO, "duration = 10.0", "duration = 0.0124", "the run takes 12 periods, 0.012 s");
     warned(SCENARIO, "control_period = 0.001", "control_period = 1.0", "is it in milliseconds");
 }
 
