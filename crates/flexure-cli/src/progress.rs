@@ -1,42 +1,44 @@
 //! Progress on stderr, and only on a terminal.
 
-use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::sync::atomic::{AtomicU64, Ordering};
 
-/// A set of progress bars; silent when stderr is not a terminal.
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// Steps of the bar for each part of the work.
+const RESOLUTION: u64 = 1000;
+
+/// A bar that disappears when it is dropped; silent when stderr is not a terminal.
 pub struct Progress {
-    bars: MultiProgress,
+    bar: ProgressBar,
+    parts: Vec<AtomicU64>,
 }
 
 impl Progress {
-    pub fn new() -> Self {
-        // indicatif draws nothing if stderr is not a terminal.
-        Self { bars: MultiProgress::with_draw_target(ProgressDrawTarget::stderr_with_hz(10)) }
-    }
-
-    /// A bar that fills from 0 to 1.
-    pub fn bar(&self, name: &str) -> Bar {
+    /// Of `parts` pieces of work, done side by side, that `name` says.
+    pub fn new(name: &str, parts: usize) -> Self {
         let style = ProgressStyle::with_template("{bar:32.cyan/dim} {percent:>3}%  {prefix}")
             .unwrap_or_else(|_| ProgressStyle::default_bar());
-        let bar = self.bars.add(ProgressBar::new(RESOLUTION).with_style(style).with_prefix(name.to_owned()));
-        Bar { bar }
+        // indicatif draws nothing if stderr is not a terminal.
+        let bar = ProgressBar::with_draw_target(
+            Some(RESOLUTION * parts as u64),
+            ProgressDrawTarget::stderr_with_hz(10),
+        );
+        let parts = (0..parts).map(|_| AtomicU64::new(0)).collect();
+        Self { bar: bar.with_style(style).with_prefix(name.to_owned()), parts }
     }
-}
 
-const RESOLUTION: u64 = 1000;
-
-/// One bar; it disappears when it is done.
-pub struct Bar {
-    bar: ProgressBar,
-}
-
-impl Bar {
+    /// The fraction of a part that is done; it only grows.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to [0, 1]")]
-    pub fn set(&self, fraction: f64) {
-        self.bar.set_position((fraction.clamp(0.0, 1.0) * RESOLUTION as f64) as u64);
+    pub fn set(&self, part: usize, fraction: f64) {
+        let now = (fraction.clamp(0.0, 1.0) * RESOLUTION as f64) as u64;
+        let before = self.parts[part].swap(now, Ordering::Relaxed);
+        if now > before {
+            self.bar.inc(now - before);
+        }
     }
 }
 
-impl Drop for Bar {
+impl Drop for Progress {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
     }

@@ -382,6 +382,7 @@ fn suspicious_numbers_are_warned_about() {
     warned(TREE, "xyz = [0.3, 0, 0]", "xyz = [0.3, 0, 0]\nrpy = [90, 0, 0]", "it looks like degrees");
     warned(SCENARIO, "q_l = [0.0, 0.0]", "q_l = [0.0, 0.0]\nq_m = [45.0, 0.0]", "it looks like degrees");
     warned(SCENARIO, "q_l = [0.0, 0.0]", "q_l = [0.1, 0.0]", "initial.q_m is not given");
+    warned(SCENARIO, "duration = 10.0", "duration = 0.0124", "the run takes 12 periods, 0.012 s");
     warned(SCENARIO, "control_period = 0.001", "control_period = 1.0", "is it in milliseconds");
 }
 

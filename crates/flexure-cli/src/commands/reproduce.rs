@@ -22,9 +22,9 @@ struct Reproduction<'a> {
 pub fn reproduce(out: &Path, json: bool) -> Result<(), Failure> {
     prepare(out)?;
     let experiments = {
-        let progress = Progress::new();
-        let bars = REPRODUCED.map(|name| progress.bar(name));
-        experiments(&|i, fraction| bars[i].set(fraction))?
+        let name = format!("{} experiments", REPRODUCED.len());
+        let progress = Progress::new(&name, REPRODUCED.len());
+        experiments(&|i, fraction| progress.set(i, fraction))?
     };
     let files: Vec<_> = experiments
         .par_iter()

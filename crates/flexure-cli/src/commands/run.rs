@@ -35,9 +35,8 @@ pub fn run(scenario: &str, out: &Path, json: bool) -> Result<(), Failure> {
     say(&scenario.warnings);
     prepare(out)?;
     let experiment = {
-        let progress = Progress::new();
-        let bar = progress.bar(&scenario.name);
-        Experiment::new(scenario, &|fraction| bar.set(fraction))?
+        let progress = Progress::new(&scenario.name, 1);
+        Experiment::new(scenario, &|fraction| progress.set(0, fraction))?
     };
     let files = write_experiment(out, &experiment)?;
     if json {

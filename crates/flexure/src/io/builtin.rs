@@ -70,7 +70,7 @@ fn find(name: &str, registry: &[(&str, &'static str)], what: &str) -> Result<&'s
     registry.iter().find(|(known, _)| *known == name).map(|&(_, text)| text).ok_or_else(|| {
         let message = format!("no built-in {what} is called {}", suggest::quoted(name));
         let help = suggest::hint(name, registry.iter().map(|&(known, _)| known));
-        Problem::new("unknown-name", message, format!("{help}; a path ends in .toml"))
+        Problem::new("unknown-name", message, format!("{help}; a path ends in .toml or begins with ./"))
     })
 }
 

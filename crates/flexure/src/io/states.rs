@@ -58,7 +58,7 @@ impl<R: BufRead> States<R> {
             let read = std::io::Read::take(&mut self.reader, limit).read_until(b'\n', &mut bytes);
             let broken = match read {
                 Ok(0) => return None,
-                Ok(length) if length <= LONGEST => match String::from_utf8(bytes) {
+                Ok(length) if length <= LONGEST => match String::from_utf8(without_mark(bytes, self.line)) {
                     Ok(line) if line.trim().is_empty() => continue,
                     Ok(line) => return Some(Ok(line)),
                     Err(_) => return Some(Err(self.problem("encoding", "", 0, "the line is not UTF-8"))),
@@ -163,6 +163,14 @@ pub fn load_states(path: &Path, joints: usize) -> Result<StateFile, Problem> {
     StateFile::read(BufReader::new(file), joints, &name.to_string())
 }
 
+/// The bytes of a line; the first may begin with the mark that some editors put before UTF-8.
+fn without_mark(mut bytes: Vec<u8>, line: usize) -> Vec<u8> {
+    if line == 1 && bytes.starts_with(b"\xef\xbb\xbf") {
+        bytes.drain(..3);
+    }
+    bytes
+}
+
 /// One line, for a known number of joints.
 struct Row {
     joints: usize,
@@ -253,6 +261,7 @@ mod tests {
         };
         let later = StateRow { line: 4, ..expected.clone() };
         assert_eq!(rows, [Ok(expected), Ok(later)]);
+        assert!(read(&format!("\u{feff}{line}"))[0].is_ok());
     }
 
     #[test]

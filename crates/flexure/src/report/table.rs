@@ -38,6 +38,9 @@ pub fn summary_table(summaries: &[Summary]) -> String {
     let titles = ["run", "φ"].into_iter().chain(columns.iter().map(|(title, _)| *title));
     let centred = |title| Cell::new(title).set_alignment(CellAlignment::Center);
     table.set_header(titles.map(centred).collect::<Vec<_>>());
+    table.column_iter_mut().for_each(|column| {
+        column.set_padding((1, 0));
+    });
     for summary in summaries {
         table.add_row(row(summary, &columns));
     }

@@ -6,6 +6,7 @@ use flexure::report::decimate::{bucket_size, decimate, envelope};
 use flexure::report::{
     Assumption, FigureOptions, Report, RunReport, comparison, four_panel, html, png, summary_table,
 };
+use flexure::summary::Summary;
 use flexure::trace::Trace;
 use roxmltree::Document;
 
@@ -228,4 +229,18 @@ fn the_terminal_table_fits_100_columns() {
     let table = summary_table(&[fake::summary("paper-tanh"), long]);
     assert!(table.lines().all(|line| line.chars().count() <= 100), "{table}");
     assert!(table.contains("5790") && table.contains("123×10⁻⁹") && !table.contains('\u{1b}'), "{table}");
+    assert!(!table.contains("proved") && !table.contains("limit"), "no run has them: {table}");
+    let longest = Summary {
+        phi: "coupled-tanh".to_owned(),
+        max_abs_e_l: 5.12e-6,
+        max_abs_u_m: 164e6,
+        rate_certified: Some(2.5),
+        ..fake::summary("two-link-coupled-tanh-smooth")
+    };
+    let table = summary_table(std::slice::from_ref(&longest));
+    assert!(table.lines().all(|line| line.chars().count() <= 100), "{table}");
+    assert!(table.contains(" two-link-coupled-tanh-smooth ") && table.contains("2.50"), "{table}");
+    let limited = summary_table(&[Summary { saturated_fraction: 0.25, ..longest }]);
+    assert!(limited.contains("limit") && limited.contains("25.0"), "{limited}");
+    assert!(limited.lines().all(|line| line.chars().count() <= 100), "{limited}");
 }
