@@ -11,7 +11,8 @@ pub struct Summary {
     pub controller: String,
     /// Shaping function, as in the scenario file.
     pub phi: String,
-    /// Largest |q_l − q_ld| over all joints and the whole run, in rad.
+    /// Largest |q_l − q_ld| over all joints and the whole run, in rad. Like the next two NaN (null in JSON) for a run
+    /// that diverged.
     pub max_abs_e_l: f64,
     /// Root mean square over time of |q_l − q_ld|, the largest over the joints, in rad.
     pub rms_e_l: f64,

@@ -2,13 +2,14 @@
 
 use flexure::core::reference::Reference as _;
 use flexure::evaluate::evaluate_model;
-use flexure::io::{Profile, Reference, StateFile, StateRow, load_robot, load_scenario};
-use flexure::registry::AnyReference;
+use flexure::io::{Links, Profile, Reference, StateFile, StateRow, load_robot, load_scenario};
+use flexure::registry::{AnyReference, supported};
+use flexure::run::preload;
 
 #[test]
 fn the_pendulum_swings_about_its_joint() {
     let robot = load_robot("pendulum-1dof").expect("built in");
-    let flexure::io::Links::Pendulum { mass, com, inertia } = robot.links else { panic!("a pendulum") };
+    let Links::Pendulum { mass, com, inertia } = robot.links else { panic!("a pendulum") };
     let (q, v) = (0.7, 1.3);
     let state =
         StateRow { q_l: vec![q], q_m: vec![0.9], dq_l: vec![v], dq_m: vec![0.0], ..StateRow::default() };
@@ -51,4 +52,25 @@ fn a_smooth_start_leaves_from_the_robot_and_reaches_the_reference() {
     let [later, _] = reference.at::<3>(duration + 1.0).0;
     assert!((later.derivative(0) - (duration + 1.0).sin()).abs() < 1e-15);
     assert!((later.derivative(1) - (duration + 1.0).cos()).abs() < 1e-15);
+}
+
+#[test]
+fn springs_that_do_not_carry_the_arm_are_a_warning_that_says_what_would() {
+    let mut scenario = load_scenario("panda-tanh-smooth").expect("built in");
+    assert!(preload(&scenario).expect("seven joints").is_none(), "the shipped start holds the arm");
+    let holding = scenario.initial.q_m.clone();
+    scenario.initial.q_m.clone_from(&scenario.initial.q_l);
+    let warning = preload(&scenario).expect("seven joints").expect("unloaded springs under gravity");
+    assert!(warning.is_warning());
+    assert!(warning.hint().contains(&format!("{:.6}", holding[3])), "{}", warning.hint());
+}
+
+#[test]
+fn a_robot_of_nine_joints_is_refused_before_it_runs() {
+    let mut robot = load_robot("panda").expect("built in");
+    assert!(supported(&robot).is_ok());
+    let Links::Tree(bodies) = &mut robot.links else { panic!("a tree") };
+    bodies.extend_from_within(0..2);
+    let problems = supported(&robot).expect_err("nine joints");
+    assert!(problems.to_string().contains("at most 8"), "{problems}");
 }

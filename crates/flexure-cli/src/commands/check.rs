@@ -1,6 +1,7 @@
 //! `flexure check`: are these files good?
 
 use flexure::io::{self, Checked, Problem, Problems};
+use flexure::registry::supported;
 use serde::Serialize;
 
 use super::print;
@@ -69,7 +70,7 @@ fn counted(n: usize, what: &str) -> String {
 }
 
 fn verdict(file: &str, json: bool) -> Verdict {
-    let (content, complaints): (_, Vec<Problem>) = match io::check(file) {
+    let (content, complaints): (_, Vec<Problem>) = match load(file) {
         Ok(Checked::Robot(robot)) => {
             let (joints, assumptions) = (robot.joints(), robot.assumptions().len());
             (Some(Content { kind: "robot", name: robot.name, joints, assumptions }), robot.warnings)
@@ -85,6 +86,16 @@ fn verdict(file: &str, json: bool) -> Verdict {
     }
     let warnings = complaints.iter().map(complaint).collect();
     Verdict { file: file.to_owned(), ok: true, content, warnings, errors: Vec::new() }
+}
+
+/// What is in the file, if this program can use it.
+fn load(file: &str) -> Result<Checked, Problems> {
+    let checked = io::check(file)?;
+    match &checked {
+        Checked::Robot(robot) => supported(robot)?,
+        Checked::Scenario(scenario) => supported(&scenario.robot)?,
+    }
+    Ok(checked)
 }
 
 fn bad(file: &str, problems: &Problems, json: bool) -> Verdict {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use flexure::experiment::Experiment;
 use flexure::io::{Problem, load_scenario, prepare, write_experiment};
 use flexure::report::summary_table;
+use flexure::run::preload;
 use flexure::sim::{Cause, Divergence};
 use flexure::summary::Summary;
 use serde::Serialize;
@@ -33,6 +34,7 @@ impl<'a> Outcome<'a> {
 pub fn run(scenario: &str, out: &Path, json: bool) -> Result<(), Failure> {
     let scenario = load_scenario(scenario)?;
     say(&scenario.warnings);
+    say(&preload(&scenario)?);
     prepare(out)?;
     let experiment = {
         let progress = Progress::new(&scenario.name, 1);

@@ -9,7 +9,7 @@ mod shaping;
 pub use controller::{CONTROLLERS, Law, law};
 pub use reference::{AnyReference, REFERENCES};
 pub(crate) use robot::vector;
-pub use robot::{MAX_JOINTS, RobotVisitor, with_robot};
+pub use robot::{MAX_JOINTS, RobotVisitor, supported, with_robot};
 pub use shaping::{AnyShaping, SHAPING};
 
 /// A registered name and what it stands for.

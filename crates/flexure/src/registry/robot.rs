@@ -44,6 +44,14 @@ pub fn with_robot<V: RobotVisitor>(data: &io::Robot, visitor: V) -> Result<V::Ou
     })
 }
 
+/// Whether this program is built for the robot's joint count.
+///
+/// # Errors
+/// For a robot with more than [`MAX_JOINTS`] moving joints.
+pub fn supported(data: &io::Robot) -> Result<(), io::Problems> {
+    if data.joints() > MAX_JOINTS { Err(too_many(data, data.joints())) } else { Ok(()) }
+}
+
 fn too_many(data: &io::Robot, joints: usize) -> io::Problems {
     let message = format!(
         "robot {} has {joints} moving joints; this program is built for at most {MAX_JOINTS}",

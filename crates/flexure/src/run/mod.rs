@@ -1,5 +1,6 @@
 //! A scenario as a simulated run: from its file to trace and summary.
 
+mod preload;
 mod recorder;
 
 use std::time::Instant as Clock;
@@ -8,6 +9,7 @@ use flexure_core::control::Input;
 use flexure_core::model::{Fjr, Links, Motion};
 use flexure_core::reference::Reference;
 
+pub use preload::preload;
 use recorder::Recorder;
 pub use recorder::SETTLED;
 
@@ -72,13 +74,15 @@ impl RobotVisitor for Simulate<'_> {
         };
         let outcome = settings.run(&robot, initial(scenario), &command, &mut observe);
         let (trace, figures) = recorder.finish();
+        // Errors of a run that diverged are beyond those that were recorded: no number stands for them.
+        let ended = |error: f64| if outcome.divergence.is_none() { error } else { f64::NAN };
         let summary = Summary {
             name: scenario.name.clone(),
             controller: scenario.controller.kind().to_owned(),
             phi: phi.name().to_owned(),
-            max_abs_e_l: figures.max_abs_e_l,
-            rms_e_l: figures.rms_e_l(),
-            final_abs_e_l: figures.final_abs_e_l,
+            max_abs_e_l: ended(figures.max_abs_e_l),
+            rms_e_l: ended(figures.rms_e_l()),
+            final_abs_e_l: ended(figures.final_abs_e_l),
             settling_time: figures.settled_since.filter(|_| outcome.divergence.is_none()),
             max_abs_u_m: figures.max_abs_u_m,
             rms_u_m: figures.rms_u_m(),
