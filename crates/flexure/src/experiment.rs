@@ -36,7 +36,9 @@ impl Experiment {
     /// If the robot has too many joints or the reference is no path.
     pub fn new(scenario: Scenario, progress: &(dyn Fn(f64) + Sync)) -> Result<Self, Problems> {
         let run = run(&scenario, progress)?;
-        let options = FigureOptions { title: scenario.name.clone(), subtitle: describe(&scenario) };
+        let ended = run.divergence.map(|divergence| format!("; diverged at t = {:.3} s", divergence.time));
+        let subtitle = describe(&scenario) + &ended.unwrap_or_default();
+        let options = FigureOptions { title: scenario.name.clone(), subtitle };
         let figure = four_panel(&run.trace, &options);
         Ok(Self { scenario, run, figure })
     }

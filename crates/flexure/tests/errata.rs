@@ -12,6 +12,9 @@ use flexure_core::robots::{Pendulum, PlanarTwoLink};
 use flexure_core::scalar::{Dual, Jet, Scalar};
 use flexure_core::virtual_system::{Blocks, ErrorState, Structure};
 
+mod common;
+use common::exponential;
+
 type Two = Matrix<f64, 2, 2>;
 
 const GAIN: Vector<f64, 2> = Vector([55.0, 30.0]);
@@ -77,18 +80,6 @@ fn turned_arm(angle: f64) -> Structure<f64, 2> {
 /// The blocks as one matrix of `D` = 4 `N` rows.
 fn flat<const N: usize, const D: usize>(blocks: &Blocks<f64, N>) -> Matrix<f64, D, D> {
     Matrix::from_fn(|i, j| blocks[i / N][j / N][(i % N, j % N)])
-}
-
-/// e^A by scaling and squaring with 20 Taylor terms: accurate to rounding for norms up to 1e5.
-fn exponential<const D: usize>(a: &Matrix<f64, D, D>) -> Matrix<f64, D, D> {
-    let squarings = 20;
-    let a = a.scaled(0.5_f64.powi(squarings));
-    let (mut sum, mut term) = (Matrix::identity(), Matrix::identity());
-    for k in 1..=20 {
-        term = (term * a).scaled(1.0 / f64::from(k));
-        sum = sum + term;
-    }
-    (0..squarings).fold(sum, |e, _| e * e)
 }
 
 /// The largest real part of an eigenvalue: the growth of e^(A t) at t = 2³⁰, by squaring and rescaling.

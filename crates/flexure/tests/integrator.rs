@@ -6,6 +6,9 @@ use flexure_core::linalg::{Matrix, Vector};
 use flexure_core::model::{Fjr, Links, Motion};
 use flexure_core::robots::{Body, JointKind, Pendulum, PlanarTwoLink, Tree};
 
+mod common;
+use common::exponential;
+
 /// The paper's arm: motor damping over motor inertia is 9000 1/s.
 fn quanser() -> Fjr<f64, PlanarTwoLink<f64>, 2> {
     Fjr {
@@ -26,18 +29,6 @@ fn joint(inertia: f64, motor: f64, stiffness: f64, damping: [f64; 2]) -> Fjr<f64
         link_damping: Vector([damping[0]]),
         motor_damping: Vector([damping[1]]),
     }
-}
-
-/// e^A by scaling and squaring with 20 Taylor terms: accurate to rounding for the norms used here.
-fn exponential<const N: usize>(a: &Matrix<f64, N, N>) -> Matrix<f64, N, N> {
-    let squarings = 20;
-    let a = a.scaled(0.5_f64.powi(squarings));
-    let (mut sum, mut term) = (Matrix::identity(), Matrix::identity());
-    for k in 1..=20 {
-        term = (term * a).scaled(1.0 / f64::from(k));
-        sum = sum + term;
-    }
-    (0..squarings).fold(sum, |e, _| e * e)
 }
 
 /// The exact motion of a linear joint under a constant torque after `t`.
