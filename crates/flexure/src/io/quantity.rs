@@ -13,6 +13,7 @@ enum Sign {
     Any,
     Positive,
     NonNegative,
+    NonZero,
 }
 
 /// A kind of number in a file.
@@ -37,6 +38,9 @@ impl Quantity {
     const fn non_negative(what: &'static str, unit: &'static str) -> Self {
         Self { sign: Sign::NonNegative, ..Self::any(what, unit) }
     }
+    const fn nonzero(what: &'static str, unit: &'static str) -> Self {
+        Self { sign: Sign::NonZero, ..Self::any(what, unit) }
+    }
     const fn plausible(self, low: f64, high: f64, doubt: &'static str) -> Self {
         Self { plausible: (low, high, doubt), ..self }
     }
@@ -60,6 +64,8 @@ impl Quantity {
             "must be > 0"
         } else if self.sign == Sign::NonNegative && x < 0.0 {
             "must be >= 0"
+        } else if self.sign == Sign::NonZero && x == 0.0 {
+            "must not be 0"
         } else if x == 0.0 || (low..=high).contains(&size) {
             return None;
         } else if !(TINY..=LARGEST).contains(&size) {
@@ -113,6 +119,9 @@ pub(super) const DAMPING: Quantity = Quantity::non_negative(
     "N m s/rad",
 )
 .plausible(TINY, 1e7, "is it on the motor side, or per rev/min?");
+pub(super) const GEAR_RATIO: Quantity =
+    Quantity::nonzero("gear ratio, motor turns per joint turn; negative if they turn in opposite senses", "")
+        .plausible(0.1, 1e5, "gears of arms lie between 1 and 500");
 pub(super) const TORQUE_LIMIT: Quantity =
     Quantity::positive("largest motor torque, link side of the gear", "N m");
 pub(super) const VELOCITY_LIMIT: Quantity = Quantity::positive("largest joint velocity", "rad/s");

@@ -25,6 +25,8 @@ pub struct Robot {
     pub link_damping: Vec<f64>,
     /// Motor damping D_m, ≥ 0 [N m s/rad].
     pub motor_damping: Vec<f64>,
+    /// Gear ratios, motor turns per joint turn (per metre for a prismatic joint); what couples rotors and links.
+    pub gear_ratio: Option<Vec<f64>>,
     /// Largest motor torque [N m].
     pub torque_limit: Option<Vec<f64>>,
     /// Largest joint velocity [rad/s].
@@ -90,6 +92,7 @@ fn robot(root: &Table<'_>, places: &Places) -> Option<Robot> {
     let motor_inertia = read("motor_inertia", &quantity::MOTOR_INERTIA);
     let link_damping = read("link_damping", &quantity::DAMPING);
     let motor_damping = read("motor_damping", &quantity::DAMPING);
+    let gear_ratio = limit("gear_ratio", &quantity::GEAR_RATIO);
     let torque_limit = limit("torque_limit", &quantity::TORQUE_LIMIT);
     let velocity_limit = limit("velocity_limit", &quantity::VELOCITY_LIMIT);
     let deflection_limit = limit("deflection_limit", &quantity::DEFLECTION_LIMIT);
@@ -102,6 +105,7 @@ fn robot(root: &Table<'_>, places: &Places) -> Option<Robot> {
         motor_inertia: motor_inertia?,
         link_damping: link_damping?,
         motor_damping: motor_damping?,
+        gear_ratio: gear_ratio?,
         torque_limit: torque_limit?,
         velocity_limit: velocity_limit?,
         deflection_limit: deflection_limit?,
@@ -116,6 +120,7 @@ const KEYS: &[&str] = &[
     "motor_inertia",
     "link_damping",
     "motor_damping",
+    "gear_ratio",
     "torque_limit",
     "velocity_limit",
     "deflection_limit",
