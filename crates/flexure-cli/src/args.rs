@@ -50,7 +50,15 @@ pub enum Command {
         #[arg(long, value_name = "FILE")]
         states: PathBuf,
     },
-    /// Validate robot and scenario files.
+    /// Draft a robot file from a URDF, with every number that is still to be supplied marked.
+    Import {
+        /// URDF file.
+        urdf: String,
+        /// Hold a joint still at a position, rad or m; may be given several times.
+        #[arg(long, value_name = "JOINT=POSITION", value_parser = lock)]
+        lock: Vec<(String, f64)>,
+    },
+    /// Validate robot and scenario files; show the joints of robots.
     Check {
         /// Files, or names of built-in robots and scenarios.
         #[arg(required = true, value_name = "FILE")]
@@ -77,4 +85,14 @@ pub enum Kind {
     Shaping,
     References,
     Controllers,
+}
+
+/// `JOINT=POSITION`.
+fn lock(text: &str) -> Result<(String, f64), String> {
+    let (name, position) =
+        text.rsplit_once('=').ok_or("write it as JOINT=POSITION, for instance finger=0.0")?;
+    match position.trim().parse() {
+        Ok(position) if f64::is_finite(position) => Ok((name.trim().to_owned(), position)),
+        _ => Err(format!("the position is '{position}', must be a number in rad or m")),
+    }
 }

@@ -21,6 +21,7 @@ fn main() -> ExitCode {
         Command::Eval { scenario, states } => commands::eval(&scenario, &states, json),
         Command::Model { robot, states } => commands::model(&robot, &states, json),
         Command::Check { files } => commands::check(&files, json),
+        Command::Import { urdf, lock } => commands::import(&urdf, &lock, json),
         Command::List { kind } => commands::list(kind, json),
     };
     match done {

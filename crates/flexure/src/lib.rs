@@ -5,6 +5,7 @@ pub use flexure_core as core;
 pub mod evaluate;
 pub mod experiment;
 pub mod io;
+pub mod overview;
 pub mod rates;
 pub mod reference;
 pub mod registry;

@@ -109,7 +109,7 @@ const ARM_CASES: &[Case] = &[
         "\"planar-2",
         "links.kind is 'planar-2-link', which is not known",
     ),
-    ("\"planar-two-link\"", "\"urdf\"", "\"urdf\"", "URDF import is not in this version"),
+    ("\"planar-two-link\"", "\"urdf\"", "mass = [1.5", "unknown key 'mass' in [links]"),
     ("kind = \"planar-two-link\"\n", "", "[links]", "missing key links.kind"),
     ("\"planar-two-link\"", "\"pendulum\"", "length", "unknown key 'length' in [links]"),
     ("name = \"arm\"\n", "", "gravity", "missing key name"),
@@ -296,12 +296,12 @@ fn sweep<T: std::fmt::Debug>(good: &str, cases: &[Case], read: impl Fn(&str) -> 
 
 #[test]
 fn bad_arms() {
-    sweep(ARM, ARM_CASES, |text| robot_from_text("arm.toml", text));
+    sweep(ARM, ARM_CASES, |text| robot_from_text("arm.toml", text, ".".as_ref()));
 }
 
 #[test]
 fn bad_trees() {
-    sweep(TREE, TREE_CASES, |text| robot_from_text("tree.toml", text));
+    sweep(TREE, TREE_CASES, |text| robot_from_text("tree.toml", text, ".".as_ref()));
 }
 
 #[test]
@@ -314,15 +314,19 @@ fn bad_scenarios() {
 fn independent_errors_come_together_and_name_the_nearest_key() {
     let text =
         ARM.replace("[9.0, 4.0]", "[-9.0, 0]").replace("[1.5, 0.9]", "[0, 1]").replace("com =", "con =");
-    let problems = robot_from_text("arm.toml", &text).unwrap_err();
+    let problems = robot_from_text("arm.toml", &text, ".".as_ref()).unwrap_err();
     assert_eq!(problems.iter().count(), 5, "{problems}");
     assert!(problems.iter().any(|problem| problem.hint().starts_with("did you mean 'com'?")));
 }
 
 #[test]
 fn after_bad_syntax_nothing_else_is_looked_at() {
-    let problems = robot_from_text("arm.toml", &ARM.replace("gravity =", "gravity").replace("[9.0", "[-9.0"))
-        .unwrap_err();
+    let problems = robot_from_text(
+        "arm.toml",
+        &ARM.replace("gravity =", "gravity").replace("[9.0", "[-9.0"),
+        ".".as_ref(),
+    )
+    .unwrap_err();
     assert!(
         problems.iter().all(|problem| problem.line_column().is_some_and(|(line, _)| line == 2)),
         "{problems}"
@@ -365,7 +369,9 @@ fn warned(good: &str, from: &str, to: &str, fragment: &str) {
             .unwrap_or_else(|problems| panic!("{problems}"))
             .warnings
     } else {
-        robot_from_text("r.toml", &text).unwrap_or_else(|problems| panic!("{problems}")).warnings
+        robot_from_text("r.toml", &text, ".".as_ref())
+            .unwrap_or_else(|problems| panic!("{problems}"))
+            .warnings
     };
     let said = |warning: &&Problem| format!("{warning} {}", warning.hint()).contains(fragment);
     let found = warnings.iter().find(said).unwrap_or_else(|| panic!("{to}: {warnings:?}"));

@@ -41,7 +41,7 @@ fn mangled_files_never_panic() {
     for (_, text) in ROBOTS.iter().chain(SCENARIOS) {
         for _ in 0..150 {
             let mangled = noise.mangled(text);
-            let robot = robot_from_text("m.toml", &mangled).map(drop);
+            let robot = robot_from_text("m.toml", &mangled, ".".as_ref()).map(drop);
             for result in [robot, scenario_from_text("m.toml", &mangled, Path::new("")).map(drop)] {
                 let Err(problems) = result else {
                     accepted += 1;

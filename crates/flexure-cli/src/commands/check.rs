@@ -1,7 +1,9 @@
 //! `flexure check`: are these files good?
 
 use flexure::io::{self, Checked, Problem, Problems};
+use flexure::overview::{JointRow, overview};
 use flexure::registry::supported;
+use flexure::report::joint_table;
 use serde::Serialize;
 
 use super::print;
@@ -25,6 +27,9 @@ struct Content {
     name: String,
     joints: usize,
     assumptions: usize,
+    /// Of a robot file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    robot: Option<Vec<JointRow>>,
 }
 
 #[derive(Serialize)]
@@ -42,7 +47,7 @@ pub fn check(files: &[String], json: bool) -> Result<(), Failure> {
         print::json(&verdicts)?;
     } else {
         for verdict in &verdicts {
-            if let Some(Content { kind, name, joints, assumptions }) = &verdict.content {
+            if let Some(Content { kind, name, joints, assumptions, robot }) = &verdict.content {
                 print::line(&format!(
                     "{}: {kind} {name}, {}, {}, {}",
                     verdict.file,
@@ -50,6 +55,9 @@ pub fn check(files: &[String], json: bool) -> Result<(), Failure> {
                     counted(*assumptions, "assumption"),
                     counted(verdict.warnings.len(), "warning"),
                 ))?;
+                if let Some(rows) = robot {
+                    print::line(&joint_table(rows))?;
+                }
             }
         }
     }
@@ -70,15 +78,8 @@ fn counted(n: usize, what: &str) -> String {
 }
 
 fn verdict(file: &str, json: bool) -> Verdict {
-    let (content, complaints): (_, Vec<Problem>) = match load(file) {
-        Ok(Checked::Robot(robot)) => {
-            let (joints, assumptions) = (robot.joints(), robot.assumptions().len());
-            (Some(Content { kind: "robot", name: robot.name, joints, assumptions }), robot.warnings)
-        }
-        Ok(Checked::Scenario(scenario)) => {
-            let (joints, assumptions) = (scenario.robot.joints(), scenario.assumptions.len());
-            (Some(Content { kind: "scenario", name: scenario.name, joints, assumptions }), scenario.warnings)
-        }
+    let (content, complaints) = match content(file) {
+        Ok(found) => found,
         Err(problems) => return bad(file, &problems, json),
     };
     if !json {
@@ -88,14 +89,22 @@ fn verdict(file: &str, json: bool) -> Verdict {
     Verdict { file: file.to_owned(), ok: true, content, warnings, errors: Vec::new() }
 }
 
-/// What is in the file, if this program can use it.
-fn load(file: &str) -> Result<Checked, Problems> {
-    let checked = io::check(file)?;
-    match &checked {
-        Checked::Robot(robot) => supported(robot)?,
-        Checked::Scenario(scenario) => supported(&scenario.robot)?,
-    }
-    Ok(checked)
+/// What is in the file, if this program can use it, and what is suspicious in it.
+fn content(file: &str) -> Result<(Option<Content>, Vec<Problem>), Problems> {
+    Ok(match io::check(file)? {
+        Checked::Robot(robot) => {
+            let rows = overview(&robot)?;
+            let (joints, assumptions) = (rows.len(), robot.assumptions().len());
+            let content = Content { kind: "robot", name: robot.name, joints, assumptions, robot: Some(rows) };
+            (Some(content), robot.warnings)
+        }
+        Checked::Scenario(scenario) => {
+            supported(&scenario.robot)?;
+            let (joints, assumptions) = (scenario.robot.joint_count(), scenario.assumptions.len());
+            let content = Content { kind: "scenario", name: scenario.name, joints, assumptions, robot: None };
+            (Some(content), scenario.warnings)
+        }
+    })
 }
 
 fn bad(file: &str, problems: &Problems, json: bool) -> Verdict {

@@ -11,6 +11,6 @@ use crate::failure::{Failure, say};
 pub fn eval(scenario: &str, states: &Path, json: bool) -> Result<(), Failure> {
     let scenario = load_scenario(scenario)?;
     say(&scenario.warnings);
-    let states = load_states(states, scenario.robot.joints())?;
+    let states = load_states(states, scenario.robot.joint_count())?;
     print::rows(&evaluate_law(&scenario, &states)?, json)
 }

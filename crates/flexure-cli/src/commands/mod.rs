@@ -2,6 +2,7 @@
 
 mod check;
 mod eval;
+mod import;
 mod list;
 mod model;
 mod print;
@@ -10,6 +11,7 @@ mod run;
 
 pub use check::check;
 pub use eval::eval;
+pub use import::import;
 pub use list::list;
 pub use model::model;
 pub use reproduce::reproduce;

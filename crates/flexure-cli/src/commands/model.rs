@@ -11,6 +11,6 @@ use crate::failure::{Failure, say};
 pub fn model(robot: &str, states: &Path, json: bool) -> Result<(), Failure> {
     let robot = load_robot(robot)?;
     say(&robot.warnings);
-    let states = load_states(states, robot.joints())?;
+    let states = load_states(states, robot.joint_count())?;
     print::rows(&evaluate_model(&robot, &states)?, json)
 }

@@ -27,6 +27,11 @@ pub fn rows(rows: &[impl Serialize], as_one: bool) -> Result<(), Failure> {
     Ok(out.flush()?)
 }
 
+/// Text that ends in a newline.
+pub fn text(text: &str) -> Result<(), Failure> {
+    Ok(write!(io::stdout(), "{text}")?)
+}
+
 /// A line of text.
 pub fn line(text: &str) -> Result<(), Failure> {
     Ok(writeln!(io::stdout(), "{text}")?)

@@ -20,7 +20,7 @@ pub fn check(path_or_name: &str) -> Result<Checked, Problems> {
     let is_robot = if builtin::is_name(path_or_name) {
         ROBOTS.iter().any(|(name, _)| *name == path_or_name)
     } else {
-        let text = source::read(path_or_name.as_ref())?.text;
+        let text = source::read(path_or_name.as_ref(), source::LIMIT)?.text;
         toml::de::DeTable::parse_recoverable(&text).0.get_ref().contains_key("links")
     };
     Ok(if is_robot {

@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
+use super::base::Base;
 use super::diagnostic::{Problem, Problems};
 use super::robot::{self, Robot};
-use super::scenario::{self, Base, Scenario};
+use super::scenario::{self, Scenario};
 use super::source::{self, Source};
 use super::suggest;
 
@@ -23,6 +24,9 @@ pub const SCENARIOS: &[(&str, &str)] = data!("scenarios":
     "two-link-tanh-smooth" "two-link-linear-smooth" "two-link-coupled-tanh-smooth"
     "pendulum-tanh" "panda-tanh-smooth");
 
+/// Files that built-in robots are made from: name and text.
+const FILES: &[(&str, &str)] = &[("panda.urdf", include_str!("../../../../robots/panda.urdf"))];
+
 /// Loads the robot file at a path, or the built-in robot of that name.
 ///
 /// A bare word without ending or folder is a name; anything else is a path.
@@ -30,7 +34,7 @@ pub const SCENARIOS: &[(&str, &str)] = data!("scenarios":
 /// # Errors
 /// With everything that is wrong.
 pub fn load_robot(path_or_name: &str) -> Result<Robot, Problems> {
-    robot(path_or_name, &Base(Some("".into())))
+    robot(path_or_name, &Base::Folder("".into()))
 }
 
 /// Loads the scenario file at a path, or the built-in scenario of that name.
@@ -42,24 +46,24 @@ pub fn load_robot(path_or_name: &str) -> Result<Robot, Problems> {
 pub fn load_scenario(path_or_name: &str) -> Result<Scenario, Problems> {
     if is_name(path_or_name) {
         let text = find(path_or_name, SCENARIOS, "scenario")?;
-        return scenario::read(&Source::new(path_or_name, text), &Base(None));
+        return scenario::read(&Source::new(path_or_name, text), &Base::BuiltIn);
     }
     let path = Path::new(path_or_name);
-    scenario::read(&source::read(path)?, &Base(Some(path.parent().unwrap_or(Path::new("")).to_owned())))
+    scenario::read(&source::read(path, source::LIMIT)?, &Base::of(path))
 }
 
 /// The robot at `path_or_name`, relative to `base`.
 pub(super) fn robot(path_or_name: &str, base: &Base) -> Result<Robot, Problems> {
     if is_name(path_or_name) {
         let text = find(path_or_name, ROBOTS, "robot")?;
-        return robot::read(&Source::new(path_or_name, text));
+        return robot::read(&Source::new(path_or_name, text), &Base::BuiltIn);
     }
-    let path = base.resolve(path_or_name).ok_or_else(|| {
-        let message =
-            format!("{} is a relative path in a file that is in no folder", suggest::quoted(path_or_name));
-        Problem::new("unreadable", message, "give the whole path or the name of a built-in robot")
-    })?;
-    robot::read(&source::read(&path)?)
+    robot::read(&base.read(path_or_name, source::LIMIT)?, &base.beside(path_or_name))
+}
+
+/// Text of the file that built-in robots know as `path`.
+pub(super) fn file(path: &str) -> Option<&'static str> {
+    FILES.iter().find(|(known, _)| *known == path).map(|&(_, text)| text)
 }
 
 pub(super) fn is_name(text: &str) -> bool {

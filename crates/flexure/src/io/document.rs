@@ -35,6 +35,23 @@ impl Log {
         }
     }
 
+    /// Whether more problems would go unreported.
+    pub fn is_full(&self) -> bool {
+        self.problems.borrow().len() >= MOST_PROBLEMS
+    }
+
+    /// Notes what another file's log finished with, and gives its value.
+    pub fn absorb<T>(&self, finished: Result<(T, Vec<Problem>), Problems>) -> Option<T> {
+        let (value, problems) = match finished {
+            Ok((value, warnings)) => (Some(value), warnings),
+            Err(problems) => (None, problems.into_iter().collect()),
+        };
+        for problem in problems {
+            self.push(problem);
+        }
+        value
+    }
+
     /// Notes an error at `span`.
     pub fn error(
         &self,
@@ -115,6 +132,13 @@ pub(super) fn parse<T>(
     read: impl FnOnce(&Table<'_>, &Places) -> Option<T>,
 ) -> Result<(T, Vec<Problem>), Problems> {
     let log = Log::new(source);
+    if source.text.trim_start().starts_with('<') {
+        let message = format!("this is XML, must be a {}", form.what);
+        let help = "a URDF has no springs and no motors: `flexure import robot.urdf > robot.toml` writes a robot file \
+                    to complete";
+        log.error(0..0, "wrong-kind", message, help);
+        return log.finish(None);
+    }
     let (root, errors) = DeTable::parse_recoverable(&source.text);
     // One slip in nested brackets is reported once for each of them.
     let same = |a: &Error, b: &Error| a.message() == b.message() && a.span() == b.span();

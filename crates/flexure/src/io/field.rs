@@ -1,12 +1,11 @@
 //! One value of a TOML document, with its path, its place and the log: the one mechanism that validates numbers.
 
-use std::ops::Range;
+use std::ops::Deref;
 
 use toml::de::{DeArray, DeValue};
 
-use super::diagnostic::Problem;
-use super::document::Log;
 use super::quantity::Quantity;
+use super::site::Site;
 use super::suggest;
 use super::table::Table;
 
@@ -14,10 +13,15 @@ use super::table::Table;
 #[derive(Clone, Debug)]
 pub(super) struct Field<'a> {
     pub value: &'a DeValue<'a>,
-    pub span: Range<usize>,
-    /// Dotted, like `joints.stiffness[1]`.
-    pub path: String,
-    pub log: &'a Log,
+    pub site: Site<'a>,
+}
+
+impl<'a> Deref for Field<'a> {
+    type Target = Site<'a>;
+
+    fn deref(&self) -> &Site<'a> {
+        &self.site
+    }
 }
 
 /// How many numbers a per-joint array has, and whose joints they are.
@@ -40,16 +44,6 @@ impl Joints {
 }
 
 impl<'a> Field<'a> {
-    /// Notes an error at this value.
-    pub fn error(&self, code: &'static str, message: impl Into<String>, help: impl Into<String>) {
-        self.log.error(self.span.clone(), code, message, help);
-    }
-
-    /// Notes a warning at this value.
-    pub fn warn(&self, code: &'static str, message: impl Into<String>, help: impl Into<String>) {
-        self.log.push(Problem::new(code, message, help).at(&self.log.source, self.span.clone()).warning());
-    }
-
     fn wrong_type(&self, expected: &str, help: impl Into<String>) {
         let found = match self.value {
             DeValue::String(_) => "text",
@@ -83,9 +77,7 @@ impl<'a> Field<'a> {
     fn entries(&self, array: &'a DeArray<'a>) -> impl Iterator<Item = Field<'a>> {
         array.iter().enumerate().map(|(i, entry)| Field {
             value: entry.get_ref(),
-            span: entry.span(),
-            path: format!("{}[{i}]", self.path),
-            log: self.log,
+            site: Site { span: entry.span(), path: format!("{}[{i}]", self.path), log: self.log },
         })
     }
 

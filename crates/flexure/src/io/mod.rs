@@ -8,22 +8,24 @@
 //!
 //! ```
 //! let scenario = flexure::io::load_scenario("two-link-tanh")?;
-//! assert_eq!(scenario.robot.joints(), 2);
+//! assert_eq!(scenario.robot.joint_count(), 2);
 //! assert!(scenario.assumptions.iter().any(|assumed| assumed.key == "joints.stiffness"));
 //!
-//! let problems = flexure::io::robot_from_text("arm.toml", "nam = 'arm'").unwrap_err();
+//! let problems = flexure::io::robot_from_text("arm.toml", "nam = 'arm'", ".".as_ref()).unwrap_err();
 //! assert!(problems.to_string().contains("nam"));
 //! # Ok::<(), flexure::io::Problems>(())
 //! ```
 
 mod any;
 mod atomic;
+mod base;
 mod builtin;
 mod controller;
 mod diagnostic;
 mod document;
 mod field;
 mod initial;
+mod joints;
 mod links;
 mod outputs;
 mod provenance;
@@ -32,10 +34,12 @@ mod reference;
 mod robot;
 mod samples;
 mod scenario;
+mod site;
 mod source;
 mod states;
 mod suggest;
 mod table;
+mod urdf;
 
 pub use any::{Checked, check};
 pub use atomic::{WriteError, write_atomic};
@@ -44,10 +48,12 @@ pub use controller::{Controller, Phi, SideGains};
 pub use diagnostic::{Problem, Problems};
 pub use document::Places;
 pub use initial::Initial;
-pub use links::{Body, JointKind, Links};
+pub use joints::Limits;
+pub use links::{Body, DriveDefaults, JointKind, Links, MovingJoint};
 pub use outputs::{prepare, write_experiment, write_report, write_trace};
 pub use provenance::Assumption;
 pub use reference::{Profile, Reference, Term};
 pub use robot::{Robot, robot_from_text};
 pub use scenario::{Hold, Scenario, scenario_from_text};
 pub use states::{StateFile, StateRow, States, load_states};
+pub use urdf::{Import, import};

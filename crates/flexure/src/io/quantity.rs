@@ -128,6 +128,11 @@ pub(super) const VELOCITY_LIMIT: Quantity = Quantity::positive("largest joint ve
 pub(super) const DEFLECTION_LIMIT: Quantity =
     Quantity::positive("largest deflection of the joint's spring", "rad")
         .plausible(TINY, FOUR_TURNS, DEGREES);
+pub(super) const FRICTION: Quantity = Quantity::non_negative("Coulomb friction", "N m");
+pub(super) const EFFORT: Quantity = Quantity::any("largest torque of the joint", "N m");
+pub(super) const SPEED: Quantity = Quantity::any("largest velocity of the joint", "rad/s");
+pub(super) const STOP: Quantity = Quantity::any("limit of the joint position", "rad");
+pub(super) const MULTIPLIER: Quantity = Quantity::any("multiplier of a joint that mimics another", "");
 pub(super) const DURATION: Quantity =
     Quantity::positive("duration", "s").plausible(1e-6, 1e6, "is it in milliseconds?");
 pub(super) const PERIOD: Quantity = Quantity::positive("control period", "s").plausible(

@@ -1,9 +1,9 @@
 //! `[reference]`: where the links shall be.
 
+use super::base::Base;
 use super::field::{Field, Joints};
 use super::quantity;
 use super::samples;
-use super::scenario::Base;
 use super::table::Table;
 
 /// A reference q_ld(t) as data.

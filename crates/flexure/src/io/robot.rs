@@ -1,10 +1,14 @@
 //! Robot files.
 
+use std::path::Path;
+
+use super::base::Base;
 use super::diagnostic::{Problem, Problems};
 use super::document::{self, Form, Places};
-use super::links::{self, Links};
+use super::joints::{self, Drives, Limits};
+use super::links::{self, Assembled, Links, MovingJoint};
 use super::provenance::{self, Assumption};
-use super::quantity::{self, Quantity};
+use super::quantity;
 use super::source::Source;
 use super::table::Table;
 
@@ -17,6 +21,8 @@ pub struct Robot {
     pub gravity: [f64; 3],
     /// The links.
     pub links: Links,
+    /// The moving joints, in the order of everything that is given per joint.
+    pub joints: Vec<MovingJoint>,
     /// Joint stiffness K, > 0 [N m/rad].
     pub stiffness: Vec<f64>,
     /// Motor inertia M_m, > 0 [kg m²].
@@ -27,12 +33,8 @@ pub struct Robot {
     pub motor_damping: Vec<f64>,
     /// Gear ratios, motor turns per joint turn (per metre for a prismatic joint); what couples rotors and links.
     pub gear_ratio: Option<Vec<f64>>,
-    /// Largest motor torque [N m].
-    pub torque_limit: Option<Vec<f64>>,
-    /// Largest joint velocity [rad/s].
-    pub velocity_limit: Option<Vec<f64>>,
-    /// Largest deflection |ζ| of the springs \[rad\].
-    pub deflection_limit: Option<Vec<f64>>,
+    /// What the joints must not exceed.
+    pub limits: Limits,
     /// Numbers that no source vouches for.
     pub assumed: Vec<Assumption>,
     /// What is suspicious in the file.
@@ -43,8 +45,8 @@ pub struct Robot {
 
 impl Robot {
     /// Number of moving joints.
-    pub fn joints(&self) -> usize {
-        self.links.joints()
+    pub fn joint_count(&self) -> usize {
+        self.joints.len()
     }
 
     /// Numbers that no source vouches for.
@@ -53,12 +55,12 @@ impl Robot {
     }
 }
 
-/// Reads a robot from `text`; `name` stands for the file in messages.
+/// Reads a robot from `text`; `name` stands for the file in messages, relative paths in it start from `folder`.
 ///
 /// # Errors
 /// With everything that is wrong.
-pub fn robot_from_text(name: &str, text: &str) -> Result<Robot, Problems> {
-    read(&Source::new(name, text))
+pub fn robot_from_text(name: &str, text: &str, folder: &Path) -> Result<Robot, Problems> {
+    read(&Source::new(name, text), &Base::Folder(folder.to_owned()))
 }
 
 const FORM: Form = Form {
@@ -68,60 +70,63 @@ const FORM: Form = Form {
     other: ("controller", "scenario file", "give the robot that robot = \"...\" in it names"),
 };
 
-pub(super) fn read(source: &Source) -> Result<Robot, Problems> {
-    let (mut robot, warnings) = document::parse(source, &FORM, robot)?;
+pub(super) fn read(source: &Source, base: &Base) -> Result<Robot, Problems> {
+    let (mut robot, warnings) = document::parse(source, &FORM, |root, places| robot(root, places, base))?;
     robot.warnings = warnings;
     Ok(robot)
 }
 
-fn robot(root: &Table<'_>, places: &Places) -> Option<Robot> {
+fn robot(root: &Table<'_>, places: &Places, base: &Base) -> Option<Robot> {
     let name = root.required("name", "what the robot is called").and_then(|field| field.text());
     let gravity = root.optional("gravity", |field| field.array(&quantity::GRAVITY, "x, y, z"));
-    let (links, count) =
-        root.required("links", "a table with the kind").map_or((None, None), |field| links::read(&field));
+    let (links, count) = root
+        .required("links", "a table with the kind")
+        .map_or((None, None), |field| links::read(&field, base));
     if let (Some(links), Some(Some(gravity))) = (&links, &gravity) {
-        links::check_gravity(links, gravity, root.get("gravity"));
+        links::check_gravity(&links.links, gravity, root.get("gravity"));
     }
-    let joints = links::per_joint(name.unwrap_or("the robot"), count);
-    let table = root.required("joints", "a table with stiffness, motor_inertia, link_damping, motor_damping");
-    let table = table.and_then(|field| field.table(KEYS));
-    let read = |key, quantity: &Quantity| table.as_ref()?.per_joint(key, &joints, quantity);
-    let limit =
-        |key, quantity: &Quantity| table.as_ref()?.optional(key, |field| field.per_joint(&joints, quantity));
-    let stiffness = read("stiffness", &quantity::STIFFNESS);
-    let motor_inertia = read("motor_inertia", &quantity::MOTOR_INERTIA);
-    let link_damping = read("link_damping", &quantity::DAMPING);
-    let motor_damping = read("motor_damping", &quantity::DAMPING);
-    let gear_ratio = limit("gear_ratio", &quantity::GEAR_RATIO);
-    let torque_limit = limit("torque_limit", &quantity::TORQUE_LIMIT);
-    let velocity_limit = limit("velocity_limit", &quantity::VELOCITY_LIMIT);
-    let deflection_limit = limit("deflection_limit", &quantity::DEFLECTION_LIMIT);
+    let per_joint = links::per_joint(name.unwrap_or("the robot"), count);
+    let drives = root
+        .required("joints", "a table with stiffness, motor_inertia, link_damping, motor_damping")
+        .and_then(|field| joints::read(&field, &per_joint, links.as_ref().map(|links| &*links.joints)));
     let assumed = provenance::assumptions(root, places);
+    let (links, drives, mut assumed) = (links?, drives?, assumed?);
+    assumed.extend(of_the_links(&links, &drives, places));
     Some(Robot {
         name: name?.to_owned(),
         gravity: gravity?.unwrap_or([0.0, 0.0, -9.81]),
-        links: links?,
-        stiffness: stiffness?,
-        motor_inertia: motor_inertia?,
-        link_damping: link_damping?,
-        motor_damping: motor_damping?,
-        gear_ratio: gear_ratio?,
-        torque_limit: torque_limit?,
-        velocity_limit: velocity_limit?,
-        deflection_limit: deflection_limit?,
-        assumed: assumed?,
+        links: links.links,
+        joints: links.joints,
+        stiffness: drives.stiffness,
+        motor_inertia: drives.motor_inertia,
+        link_damping: drives.link_damping,
+        motor_damping: drives.motor_damping,
+        gear_ratio: drives.gear_ratio,
+        limits: drives.limits,
+        assumed,
         warnings: Vec::new(),
         places: places.clone(),
     })
 }
 
-const KEYS: &[&str] = &[
-    "stiffness",
-    "motor_inertia",
-    "link_damping",
-    "motor_damping",
-    "gear_ratio",
-    "torque_limit",
-    "velocity_limit",
-    "deflection_limit",
-];
+/// What is assumed where the file of the links says less, or more, than the model needs.
+fn of_the_links(links: &Assembled, drives: &Drives, places: &Places) -> Vec<Assumption> {
+    let assumption = |key: &str, values: Vec<f64>, note: &str| Assumption {
+        key: key.to_owned(),
+        value: format!("{values:?}"),
+        note: note.to_owned(),
+        file: places.file().to_owned(),
+    };
+    let friction: Vec<_> = links.joints.iter().map(|joint| joint.drive.friction.unwrap_or(0.0)).collect();
+    let damping = drives.damping_of_links.then(|| {
+        assumption(
+            "joints.link_damping",
+            drives.link_damping.clone(),
+            "damping of the URDF, which does not say on which side",
+        )
+    });
+    let friction = friction.iter().any(|&x| x != 0.0).then(|| {
+        assumption("links.file", friction, "Coulomb friction of the URDF in N m, which the model leaves out")
+    });
+    damping.into_iter().chain(friction).collect()
+}

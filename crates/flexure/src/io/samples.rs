@@ -2,13 +2,12 @@
 
 use std::ops::Range;
 
-use super::diagnostic::Problem;
+use super::base::Base;
 use super::document::Log;
 use super::field::{Field, Joints};
 use super::quantity::{self, Quantity};
 use super::reference::Reference;
-use super::scenario::Base;
-use super::source::{self, Source};
+use super::source::{LIMIT, Source};
 use super::suggest;
 use super::table::Table;
 
@@ -19,7 +18,7 @@ pub(super) fn read(table: &Table<'_>, joints: &Joints, base: &Base, end: f64) ->
     let field =
         table.required("file", "path of a CSV file, relative to the scenario, with the header t,q1,q2,…")?;
     let path = field.text()?;
-    let source = match base.resolve(path).map_or_else(|| Err(no_folder(path)), |path| source::read(&path)) {
+    let source = match base.read(path, LIMIT) {
         Ok(source) => source,
         Err(problem) => {
             field.log.push(problem.or_at(&field.log.source, field.span.clone()));
@@ -28,27 +27,10 @@ pub(super) fn read(table: &Table<'_>, joints: &Joints, base: &Base, end: f64) ->
     };
     let log = Log::new(&source);
     let rows = parse(&log, joints);
-    let (rows, warnings) = match log.finish(rows) {
-        Ok(found) => found,
-        Err(problems) => {
-            for problem in problems {
-                field.log.push(problem);
-            }
-            return None;
-        }
-    };
-    for warning in warnings {
-        field.log.push(warning);
-    }
+    let rows = field.log.absorb(log.finish(rows))?;
     check_span(&field, &rows, end)?;
     let (t, q) = rows.into_iter().unzip();
     Some(Reference::Samples { t, q })
-}
-
-fn no_folder(path: &str) -> Problem {
-    let message =
-        format!("{} is a relative path in a scenario that is not in a folder", suggest::quoted(path));
-    Problem::new("unreadable", message, "give the whole path, or save the scenario to a file")
 }
 
 /// One sample: its time and the positions.

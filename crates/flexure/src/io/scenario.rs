@@ -1,7 +1,8 @@
 //! Scenario files.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use super::base::Base;
 use super::builtin;
 use super::controller::{self, Controller};
 use super::diagnostic::{Problem, Problems};
@@ -64,25 +65,12 @@ pub enum Hold {
     Continuous,
 }
 
-/// The folder that relative paths start from; none for text that is in no file.
-#[derive(Clone, Debug)]
-pub(super) struct Base(pub Option<PathBuf>);
-
-impl Base {
-    pub fn resolve(&self, path: &str) -> Option<PathBuf> {
-        match &self.0 {
-            Some(folder) => Some(folder.join(path)),
-            None => Path::new(path).is_absolute().then(|| path.into()),
-        }
-    }
-}
-
 /// Reads a scenario from `text`; `name` stands for the file in messages, relative paths in it start from `folder`.
 ///
 /// # Errors
 /// With everything that is wrong, in the robot's file as well.
 pub fn scenario_from_text(name: &str, text: &str, folder: &Path) -> Result<Scenario, Problems> {
-    read(&Source::new(name, text), &Base(Some(folder.to_owned())))
+    read(&Source::new(name, text), &Base::Folder(folder.to_owned()))
 }
 
 const FORM: Form = Form {
@@ -108,7 +96,7 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> 
     let robot = robot.and_then(|field| read_robot(&field, base));
     let joints = links::per_joint(
         robot.as_ref().map_or("the robot", |robot| &robot.name),
-        robot.as_ref().map(Robot::joints),
+        robot.as_ref().map(Robot::joint_count),
     );
     let times = times(root);
     let hold = root.optional("hold", |field| {

@@ -10,8 +10,8 @@ use miette::{MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanConten
 
 use super::diagnostic::Problem;
 
-/// Largest file that is read \[bytes\].
-const LIMIT: u64 = 16 << 20;
+/// Largest file of tables that is read \[bytes\].
+pub(super) const LIMIT: u64 = 16 << 20;
 
 /// A file's name and text, or a part of it from some line on; cheap to clone.
 #[derive(Clone, Debug)]
@@ -112,8 +112,8 @@ fn harmless(text: &str) -> String {
         .collect()
 }
 
-/// Reads the text file at `path`.
-pub(super) fn read(path: &Path) -> Result<Source, Problem> {
+/// Reads the text file at `path`, of at most `limit` bytes.
+pub(super) fn read(path: &Path, limit: u64) -> Result<Source, Problem> {
     let name = path.display();
     let unreadable = |error: std::io::Error| {
         Problem::new(
@@ -125,12 +125,12 @@ pub(super) fn read(path: &Path) -> Result<Source, Problem> {
     };
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(unreadable)?;
-    file.take(LIMIT + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-    if bytes.len() as u64 > LIMIT {
+    file.take(limit + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    if bytes.len() as u64 > limit {
         return Err(Problem::new(
             "huge",
-            format!("{name} is larger than {} MiB", LIMIT >> 20),
-            "robot, scenario and sample files are small; is it the right file?",
+            format!("{name} is larger than {} MiB", limit >> 20),
+            "files of this kind are smaller; is it the right file?",
         ));
     }
     let text = String::from_utf8(bytes).map_err(|error| {

@@ -3,6 +3,9 @@
 /// Names listed in a hint.
 const MOST: usize = 24;
 
+/// Names that the given one is compared with: a hint must not take longer than the file.
+const MOST_COMPARED: usize = 256;
+
 /// `did you mean 'x'? known: x, y, z`, as far as it applies.
 pub(super) fn hint<'a>(given: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
     let mut list = known.clone().take(MOST).collect::<Vec<_>>().join(", ");
@@ -23,6 +26,7 @@ fn nearest<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a 
     }
     let plain = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
     let (distance, name) = known
+        .take(MOST_COMPARED)
         .map(|name| (strsim::osa_distance(&plain(given), &plain(name)), name))
         .min_by_key(|&(distance, _)| distance)?;
     (distance <= (length / 3).max(1)).then_some(name)
@@ -35,6 +39,26 @@ pub(super) fn quoted(text: &str) -> String {
         shown.push('…');
     }
     format!("'{shown}'")
+}
+
+/// `name` as a key of TOML: quoted unless it is bare.
+pub(super) fn key(name: &str) -> String {
+    let bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    if !name.is_empty() && name.chars().all(bare) { name.to_owned() } else { text(name) }
+}
+
+/// `text` as a string of TOML.
+pub(super) fn text(text: &str) -> String {
+    let mut quoted = String::from("\"");
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => quoted.extend(['\\', c]),
+            c if c.is_control() => quoted.push_str(&format!("\\u{:04X}", u32::from(c))),
+            c => quoted.push(c),
+        }
+    }
+    quoted.push('"');
+    quoted
 }
 
 #[cfg(test)]

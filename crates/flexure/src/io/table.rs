@@ -2,11 +2,13 @@
 
 use std::ops::Range;
 
-use toml::de::DeTable;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
 
 use super::document::Log;
 use super::field::{Field, Joints};
 use super::quantity::Quantity;
+use super::site::Site;
 use super::suggest;
 
 /// A table, and the log that its problems go to.
@@ -27,7 +29,13 @@ impl<'a> Table<'a> {
 
     /// Notes every key that is not in `known`.
     pub fn refuse_unknown(&self, known: &[&str]) {
-        for key in self.entries.keys().filter(|key| !known.contains(&&**key.get_ref())) {
+        self.refuse_unknown_but(known, &[]);
+    }
+
+    /// Notes every key that is neither in `known` nor in `more`, which hints do not speak of.
+    pub fn refuse_unknown_but(&self, known: &[&str], more: &[&str]) {
+        let is_known = |key: &str| known.contains(&key) || more.contains(&key);
+        for key in self.entries.keys().filter(|key| !is_known(key.get_ref())) {
             let message = match self.path.as_str() {
                 "" => format!("unknown key {}", suggest::quoted(key.get_ref())),
                 path => format!("unknown key {} in [{path}]", suggest::quoted(key.get_ref())),
@@ -51,16 +59,21 @@ impl<'a> Table<'a> {
         if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
     }
 
+    fn field(&self, key: &str, value: &'a Spanned<DeValue<'a>>) -> Field<'a> {
+        let site = Site { span: value.span(), path: self.key(key), log: self.log };
+        Field { value: value.get_ref(), site }
+    }
+
     pub fn get(&self, key: &str) -> Option<Field<'a>> {
         let value = self.entries.get(key)?;
-        Some(Field { value: value.get_ref(), span: value.span(), path: self.key(key), log: self.log })
+        Some(self.field(key, value))
     }
 
     /// Every key with its value.
     pub fn fields(&self) -> impl Iterator<Item = (&'a str, Field<'a>)> {
         self.entries.iter().map(|(key, value)| {
             let key: &'a str = key.get_ref();
-            (key, Field { value: value.get_ref(), span: value.span(), path: self.key(key), log: self.log })
+            (key, self.field(key, value))
         })
     }
 

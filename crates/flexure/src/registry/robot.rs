@@ -49,7 +49,7 @@ pub fn with_robot<V: RobotVisitor>(data: &io::Robot, visitor: V) -> Result<V::Ou
 /// # Errors
 /// For a robot with more than [`MAX_JOINTS`] moving joints.
 pub fn supported(data: &io::Robot) -> Result<(), io::Problems> {
-    if data.joints() > MAX_JOINTS { Err(too_many(data, data.joints())) } else { Ok(()) }
+    if data.joint_count() > MAX_JOINTS { Err(too_many(data, data.joint_count())) } else { Ok(()) }
 }
 
 fn too_many(data: &io::Robot, joints: usize) -> io::Problems {

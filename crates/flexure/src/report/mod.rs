@@ -21,4 +21,4 @@ pub use comparison::comparison;
 pub use figure::{FigureOptions, four_panel};
 pub use html::{Assumption, Report, RunReport, html};
 pub use raster::{RasterError, png};
-pub use table::summary_table;
+pub use table::{joint_table, summary_table};

@@ -1,10 +1,11 @@
-//! The summary of several runs for the terminal.
+//! Tables for the terminal: the summary of several runs, the joints of a robot.
 
 use comfy_table::{
     Cell, CellAlignment, ContentArrangement, LineStyle, Row, Table, presets::UTF8_HORIZONTAL_ONLY,
 };
 
-use super::number::{NONE, engineering};
+use super::number::{NONE, engineering, short};
+use crate::overview::JointRow;
 use crate::summary::Summary;
 
 /// Columns of a terminal that the table is laid out for.
@@ -30,19 +31,70 @@ pub fn summary_table(summaries: &[Summary]) -> String {
     let proved = summaries.iter().any(|summary| summary.rate_certified.is_some());
     let columns: Vec<Column> =
         NUMBERS.into_iter().chain(limited.then_some(AT_LIMIT)).chain(proved.then_some(PROVED)).collect();
+    let mut table = headed(["run", "φ"].into_iter().chain(columns.iter().map(|(title, _)| *title)));
+    for summary in summaries {
+        table.add_row(row(summary, &columns));
+    }
+    table.to_string()
+}
+
+/// An empty table with these column titles.
+fn headed<'a>(titles: impl Iterator<Item = &'a str>) -> Table {
     let mut table = Table::new();
     table
         .load_style(UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()))
         .set_content_arrangement(ContentArrangement::Dynamic)
         .set_width(WIDTH);
-    let titles = ["run", "φ"].into_iter().chain(columns.iter().map(|(title, _)| *title));
     let centred = |title| Cell::new(title).set_alignment(CellAlignment::Center);
     table.set_header(titles.map(centred).collect::<Vec<_>>());
     table.column_iter_mut().for_each(|column| {
         column.set_padding((1, 0));
     });
-    for summary in summaries {
-        table.add_row(row(summary, &columns));
+    table
+}
+
+/// A column about a joint: three lines of heading, and what stands in it.
+type JointColumn = (&'static str, fn(&JointRow) -> Option<String>);
+
+const JOINT_NUMBERS: [JointColumn; 11] = [
+    ("K\n\n[N m/rad]", |joint| Some(short(joint.stiffness, 5))),
+    ("M_m\n\n[kg m²]", |joint| Some(short(joint.motor_inertia, 4))),
+    ("M_l at\nq = 0\n[kg m²]", |joint| Some(short(joint.link_inertia, 4))),
+    ("reso-\nnance\n[Hz]", |joint| Some(short(joint.resonance, 3))),
+    ("D_l\n[N m\ns/rad]", |joint| Some(short(joint.link_damping, 4))),
+    ("D_m\n[N m\ns/rad]", |joint| Some(short(joint.motor_damping, 4))),
+    ("gear\n\n", |joint| Some(short(joint.gear_ratio?, 4))),
+    ("max\n|u_m|\n[N m]", |joint| Some(short(joint.torque_limit?, 4))),
+    ("max\n|dq|\n[rad/s]", |joint| Some(short(joint.velocity_limit?, 4))),
+    ("max\n|ζ|\n[rad]", |joint| Some(short(joint.deflection_limit?, 4))),
+    ("q_l from … to\n\n[rad]", |joint| {
+        let end = |limit: Option<f64>| limit.map_or(NONE.to_owned(), |limit| short(limit, 4));
+        joint.position_lower.or(joint.position_upper)?;
+        Some(format!("{} … {}", end(joint.position_lower), end(joint.position_upper)))
+    }),
+];
+
+/// One row a joint, at most 100 columns wide, without colours. What no joint has has no column; what carries a joint is
+/// named where it is not the joint above.
+pub fn joint_table(joints: &[JointRow]) -> String {
+    let columns: Vec<JointColumn> = JOINT_NUMBERS
+        .into_iter()
+        .filter(|(_, show)| joints.iter().any(|joint| show(joint).is_some()))
+        .collect();
+    let mut table = headed(["joint"].into_iter().chain(columns.iter().map(|(title, _)| *title)));
+    for (i, joint) in joints.iter().enumerate() {
+        let above = i.checked_sub(1).map(|above| &joints[above].name);
+        let mut name = joint.name.clone();
+        if joint.parent.as_ref() != above {
+            name = format!("{name}\non {}", joint.parent.as_deref().unwrap_or("the base"));
+        }
+        if joint.kind != "revolute" {
+            name = format!("{name}\n({})", joint.kind);
+        }
+        let numbers = columns.iter().map(|(_, show)| {
+            Cell::new(show(joint).unwrap_or(NONE.to_owned())).set_alignment(CellAlignment::Right)
+        });
+        table.add_row(Row::from(std::iter::once(Cell::new(name)).chain(numbers).collect::<Vec<_>>()));
     }
     table.to_string()
 }

@@ -66,7 +66,7 @@ impl RobotVisitor for Simulate<'_> {
             tolerance: TOLERANCE,
         };
         let command = |t: f64, x: &Motion<f64, N>| law.command(&robot, x, &reference.at(t), &Input::ZERO);
-        let mut recorder = Recorder::new(scenario.robot.torque_limit.as_deref().map(vector));
+        let mut recorder = Recorder::new(vector(&scenario.robot.limits.torque));
         let mut observe = |instant: &Instant<'_, N>| {
             let rates = BlockRates::at(&robot, &law, &instant.motion.q_l, instant.command);
             recorder.record(&robot, instant, &rates);

@@ -14,7 +14,7 @@ pub const SETTLED: f64 = 1e-3;
 pub(super) struct Recorder<const N: usize> {
     trace: Trace,
     row: Vec<f64>,
-    torque_limit: Option<Vector<f64, N>>,
+    torque_limit: Vector<f64, N>,
     figures: Figures<N>,
 }
 
@@ -68,7 +68,7 @@ const SCALARS: [(&str, &str); 5] =
     [("hamiltonian", "J"), ("supplied", "J"), ("dissipated", "J"), ("energy_residual", "J"), ("rate", "1/s")];
 
 impl<const N: usize> Recorder<N> {
-    pub(super) fn new(torque_limit: Option<Vector<f64, N>>) -> Self {
+    pub(super) fn new(torque_limit: Vector<f64, N>) -> Self {
         let joints =
             |(name, unit): (&str, &'static str)| (1..=N).map(move |k| (format!("{name}{k}"), unit)).collect();
         let vectors: Vec<Vec<(String, &'static str)>> = SIGNALS.into_iter().map(joints).collect();
@@ -123,7 +123,7 @@ impl<const N: usize> Recorder<N> {
 
         let figures = &mut self.figures;
         let (error, torque) = (largest(&command.e_l.map(f64::abs)), largest(&command.u_m.map(f64::abs)));
-        let limited = self.torque_limit.is_some_and(|limit| (0..N).any(|k| command.u_m[k].abs() >= limit[k]));
+        let limited = (0..N).any(|k| command.u_m[k].abs() >= self.torque_limit[k]);
         figures.instants += 1;
         figures.max_abs_e_l = figures.max_abs_e_l.max(error);
         figures.final_abs_e_l = error;

@@ -3,8 +3,8 @@
 use flexure_core::linalg::{Matrix, Vector};
 
 use super::rigid::Pose;
-use crate::io::field::Field;
 use crate::io::quantity;
+use crate::io::site::Site;
 use crate::io::table::Table;
 
 /// What rounding in a file with few digits may take away, relative to the largest principal inertia.
@@ -15,20 +15,25 @@ pub(super) fn read(table: &Table<'_>) -> Option<Matrix<f64, 3, 3>> {
     let names = "ixx, ixy, ixz, iyy, iyz, izz";
     let six = table.array("inertia", &quantity::BODY_INERTIA, names);
     let rpy = table.array_or("inertia_rpy", &quantity::ORIENTATION, "roll, pitch, yaw");
-    let [xx, xy, xz, yy, yz, zz] = six?;
+    checked(&table.get("inertia")?.site, six?, rpy?)
+}
+
+/// The inertia (ixx, ixy, ixz, iyy, iyz, izz) in axes turned by `rpy`, unless no body can have it.
+pub(in crate::io) fn checked(site: &Site<'_>, six: [f64; 6], rpy: [f64; 3]) -> Option<Matrix<f64, 3, 3>> {
+    let [xx, xy, xz, yy, yz, zz] = six;
     let inertia = Matrix([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]);
-    check(&table.get("inertia")?, &inertia)?;
-    let axes = Pose::new([0.0; 3], rpy?).rotation;
+    check(site, &inertia)?;
+    let axes = Pose::new([0.0; 3], rpy).rotation;
     Some(axes * inertia * axes.transpose())
 }
 
 /// Notes an error if no body has this inertia, and a warning if no body made of matter has it.
-fn check(field: &Field<'_>, inertia: &Matrix<f64, 3, 3>) -> Option<()> {
+fn check(site: &Site<'_>, inertia: &Matrix<f64, 3, 3>) -> Option<()> {
     let [a, b, c] = principal(inertia);
     let listed = format!("principal inertias {a:.3e}, {b:.3e}, {c:.3e} kg m^2");
     if a < -SLACK * c.abs() {
-        let message = format!("{} is indefinite: {listed}, must be >= 0", field.path);
-        field.error(
+        let message = format!("{} is indefinite: {listed}, must be >= 0", site.path);
+        site.error(
             "inertia",
             message,
             "the order is ixx, ixy, ixz, iyy, iyz, izz; check the signs of the products",
@@ -38,9 +43,9 @@ fn check(field: &Field<'_>, inertia: &Matrix<f64, 3, 3>) -> Option<()> {
     if a + b < c * (1.0 - SLACK) {
         let message = format!(
             "{} belongs to no rigid body: {listed}; the largest exceeds the sum of the others",
-            field.path
+            site.path
         );
-        field.warn("inertia", message, "is it about the centre of mass, as it must be?");
+        site.warn("inertia", message, "is it about the centre of mass, as it must be?");
     }
     Some(())
 }

@@ -2,25 +2,21 @@
 
 use flexure_core::linalg::{Matrix, Vector};
 
-use super::JointKind;
+use super::assembly::Joint;
 use super::inertia;
 use super::rigid::{Pose, Rigid};
+use super::{JointKind, MovingJoint};
 use crate::io::field::Field;
 use crate::io::quantity;
+use crate::io::site::Site;
 use crate::io::table::Table;
 
-/// A joint as the file gives it.
-pub(super) struct Joint<'a> {
-    /// The whole entry, for what is wrong with it as such.
-    pub field: Field<'a>,
+/// A joint as the file gives it: its parent not yet found.
+pub(super) struct Entry<'a> {
     pub name: &'a str,
     /// The parent's name, and where it stands; none for the base.
     pub parent: Option<(&'a str, Field<'a>)>,
-    /// How it moves and about what; none if it is fixed.
-    pub motion: Option<(JointKind, [f64; 3])>,
-    /// Joint frame in the parent's frame.
-    pub pose: Pose,
-    pub body: Rigid,
+    pub joint: Joint<'a>,
 }
 
 const KINDS: &[(&str, Option<JointKind>)] =
@@ -31,7 +27,7 @@ const FIXED_KEYS: &[&str] =
 const MOVING_KEYS: &[&str] =
     &["name", "parent", "kind", "xyz", "rpy", "mass", "com", "inertia", "inertia_rpy", "axis"];
 
-pub(super) fn read<'a>(field: &Field<'a>) -> Option<Joint<'a>> {
+pub(super) fn read<'a>(field: &Field<'a>) -> Option<Entry<'a>> {
     let table = field.any_table()?;
     let kind = table.choice("kind", KINDS);
     table.refuse_unknown(if kind == Some(None) { FIXED_KEYS } else { MOVING_KEYS });
@@ -41,39 +37,38 @@ pub(super) fn read<'a>(field: &Field<'a>) -> Option<Joint<'a>> {
     let rpy = table.array_or("rpy", &quantity::ORIENTATION, "roll, pitch, yaw");
     let axis = axis(&table);
     let body = body(&table);
+    let name = name?;
     let motion = match kind? {
         None => None,
-        Some(kind) => Some((kind, axis?)),
+        Some(kind) => Some((MovingJoint::new(name, kind), axis?)),
     };
-    Some(Joint {
-        field: field.clone(),
-        name: name?,
-        parent: parent?,
-        motion,
-        pose: Pose::new(xyz?, rpy?),
-        body: body?,
-    })
+    let site = Site { path: format!("{} ({name})", field.path), ..field.site.clone() };
+    let joint = Joint { site, parent: None, motion, pose: Pose::new(xyz?, rpy?), body: body? };
+    Some(Entry { name, parent: parent?, joint })
 }
 
 /// The unit vector along `axis`; z without the key.
 fn axis(table: &Table<'_>) -> Option<[f64; 3]> {
     let Some(field) = table.get("axis") else { return Some([0.0, 0.0, 1.0]) };
-    let axis: [f64; 3] = field.array(&quantity::AXIS, "x, y, z")?;
+    unit(&field, field.array(&quantity::AXIS, "x, y, z")?)
+}
+
+/// The direction of `axis`; notes an error if it has none.
+pub(in crate::io) fn unit(site: &Site<'_>, axis: [f64; 3]) -> Option<[f64; 3]> {
     let norm = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
     if norm == 0.0 {
-        field.error(
-            "axis",
-            format!("{} is zero, must be a direction", field.path),
-            "the z axis is [0, 0, 1]",
-        );
+        site.error("axis", format!("{} is zero, must be a direction", site.path), "the z axis is [0, 0, 1]");
         return None;
     }
-    if (norm - 1.0).abs() > 1e-9 {
-        let message = format!("{} has length {norm}, is taken as a direction", field.path);
-        field.warn("axis", message, "write a unit vector");
+    if (norm - 1.0).abs() > ROUGH {
+        let message = format!("{} has length {norm}, is taken as a direction", site.path);
+        site.warn("axis", message, "write a unit vector");
     }
     Some(axis.map(|x| x / norm))
 }
+
+/// By how much a unit vector written with a few digits may miss length one.
+const ROUGH: f64 = 1e-4;
 
 /// Mass, and unless it is zero centre of mass and inertia.
 fn body(table: &Table<'_>) -> Option<Rigid> {

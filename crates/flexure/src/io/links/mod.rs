@@ -1,12 +1,15 @@
 //! The links of a robot: `[links]` of a robot file.
 
-mod inertia;
-mod joint;
-mod rigid;
+pub(super) mod assembly;
+pub(super) mod inertia;
+pub(super) mod joint;
+pub(super) mod rigid;
 mod tree;
+mod urdf;
 
 pub use flexure_core::robots::{Body, JointKind};
 
+use super::base::Base;
 use super::field::{Field, Joints};
 use super::quantity::{self, Quantity};
 use super::table::Table;
@@ -49,48 +52,96 @@ impl Links {
     }
 }
 
-/// A kind of links: its keys and its reader. One line adds one.
-type Reader = (&'static [&'static str], fn(&Table<'_>) -> Option<Links>);
+/// A moving joint by name, and what the file of the links says of its drive.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MovingJoint {
+    /// Name.
+    pub name: String,
+    /// How it moves.
+    pub kind: JointKind,
+    /// Defaults for its drive.
+    pub drive: DriveDefaults,
+}
+
+/// What a URDF may say of a joint beside its geometry; none of it if the links stand in the robot file.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DriveDefaults {
+    /// Viscous damping [N m s/rad].
+    pub damping: Option<f64>,
+    /// Coulomb friction [N m]; no part of the model.
+    pub friction: Option<f64>,
+    /// Largest torque [N m].
+    pub torque_limit: Option<f64>,
+    /// Largest velocity [rad/s].
+    pub velocity_limit: Option<f64>,
+    /// Smallest position \[rad\].
+    pub position_lower: Option<f64>,
+    /// Largest position \[rad\].
+    pub position_upper: Option<f64>,
+}
+
+impl MovingJoint {
+    pub(super) fn new(name: impl Into<String>, kind: JointKind) -> Self {
+        Self { name: name.into(), kind, drive: DriveDefaults::default() }
+    }
+
+    /// `count` revolute joints called joint1, joint2, …
+    fn numbered(count: usize) -> Vec<Self> {
+        (1..=count).map(|i| Self::new(format!("joint{i}"), JointKind::Revolute)).collect()
+    }
+}
+
+/// What a reader of links found.
+pub(super) struct Assembled {
+    pub links: Links,
+    /// In the order of all per-joint numbers.
+    pub joints: Vec<MovingJoint>,
+}
+
+impl Assembled {
+    fn closed_form(links: Links) -> Self {
+        let joints = MovingJoint::numbered(links.joints());
+        Self { links, joints }
+    }
+}
+
+/// A kind of links: its keys and its reader, which is told what paths are relative to. One line adds one.
+type Reader = (&'static [&'static str], fn(&Table<'_>, &Base) -> Option<Assembled>);
 
 const KINDS: &[(&str, Reader)] = &[
     ("planar-two-link", (&["kind", "mass", "length", "com", "inertia"], planar_two_link)),
     ("pendulum", (&["kind", "mass", "com", "inertia"], pendulum)),
     ("tree", (&["kind", "joint"], tree::read)),
-    ("urdf", (&["kind", "file", "locked"], urdf)),
+    ("urdf", (&["kind", "file", "locked"], urdf::read)),
 ];
 
 /// Reads `[links]`; the number of moving joints also if only the numbers in it are bad.
-pub(super) fn read(field: &Field<'_>) -> (Option<Links>, Option<usize>) {
+pub(super) fn read(field: &Field<'_>, base: &Base) -> (Option<Assembled>, Option<usize>) {
     let Some(table) = field.any_table() else { return (None, None) };
     let Some((known, reader)) = table.choice("kind", KINDS) else { return (None, None) };
     table.refuse_unknown(known);
-    let links = reader(&table);
-    let count = links.as_ref().map(Links::joints).or_else(|| match table.get("kind")?.text()? {
-        "planar-two-link" => Some(2),
-        "pendulum" => Some(1),
-        _ => None,
-    });
+    let links = reader(&table, base);
+    let count =
+        links.as_ref().map(|found| found.joints.len()).or_else(|| match table.get("kind")?.text()? {
+            "planar-two-link" => Some(2),
+            "pendulum" => Some(1),
+            _ => None,
+        });
     (links, count)
 }
 
-fn planar_two_link(table: &Table<'_>) -> Option<Links> {
+fn planar_two_link(table: &Table<'_>, _: &Base) -> Option<Assembled> {
     let read = |key, quantity: &Quantity| table.array(key, quantity, "one per link");
     let (mass, length) = (read("mass", &quantity::MASS), read("length", &quantity::LENGTH));
     let (com, inertia) = (read("com", &quantity::POSITION), read("inertia", &quantity::INERTIA));
-    Some(Links::PlanarTwoLink { mass: mass?, length: length?, com: com?, inertia: inertia? })
+    let links = Links::PlanarTwoLink { mass: mass?, length: length?, com: com?, inertia: inertia? };
+    Some(Assembled::closed_form(links))
 }
 
-fn pendulum(table: &Table<'_>) -> Option<Links> {
+fn pendulum(table: &Table<'_>, _: &Base) -> Option<Assembled> {
     let (mass, com) = (table.number("mass", &quantity::MASS), table.number("com", &quantity::POSITION));
     let inertia = table.number("inertia", &quantity::INERTIA);
-    Some(Links::Pendulum { mass: mass?, com: com?, inertia: inertia? })
-}
-
-fn urdf(table: &Table<'_>) -> Option<Links> {
-    let help =
-        "write the links as kind = \"tree\"; robots/panda.toml was made from a URDF by tools/urdf_to_tree.py";
-    table.get("kind")?.error("unsupported", "links.kind is 'urdf': URDF import is not in this version", help);
-    None
+    Some(Assembled::closed_form(Links::Pendulum { mass: mass?, com: com?, inertia: inertia? }))
 }
 
 /// Notes an error if gravity has a part that the closed form leaves out.

@@ -4,7 +4,7 @@ use flexure_core::linalg::{Matrix, Vector};
 
 /// A frame in another: turned by `rotation`, then shifted by `translation` \[m\].
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pose {
+pub(in crate::io) struct Pose {
     pub rotation: Matrix<f64, 3, 3>,
     pub translation: Vector<f64, 3>,
 }
@@ -24,6 +24,19 @@ impl Pose {
         Self { rotation: yaw * pitch * roll, translation: Vector(xyz) }
     }
 
+    /// Turned by `angle` [rad] about the unit vector `axis` (Rodrigues).
+    pub fn turned(axis: [f64; 3], angle: f64) -> Self {
+        let ((sin, cos), [x, y, z]) = (angle.sin_cos(), axis);
+        let cross = Matrix([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]);
+        let rotation = Matrix::identity() + cross.scaled(sin) + (cross * cross).scaled(1.0 - cos);
+        Self { rotation, translation: Vector::ZERO }
+    }
+
+    /// Shifted by `distance` \[m\] along the unit vector `axis`.
+    pub fn slid(axis: [f64; 3], distance: f64) -> Self {
+        Self { rotation: Matrix::identity(), translation: Vector(axis).scaled(distance) }
+    }
+
     /// The frame that is `inner` in this one.
     pub fn then(&self, inner: &Self) -> Self {
         Self { rotation: self.rotation * inner.rotation, translation: self.of(inner.translation) }
@@ -37,7 +50,7 @@ impl Pose {
 
 /// A rigid body in some frame.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rigid {
+pub(in crate::io) struct Rigid {
     /// Mass \[kg\].
     pub mass: f64,
     /// Centre of mass \[m\].
@@ -47,6 +60,9 @@ pub(super) struct Rigid {
 }
 
 impl Rigid {
+    /// A body without mass.
+    pub const NOTHING: Self = Self { mass: 0.0, com: Vector::ZERO, inertia: Matrix::ZERO };
+
     /// The body seen from the frame in which its own frame stands at `pose`.
     pub fn seen_from(&self, pose: &Pose) -> Self {
         let inertia = pose.rotation * self.inertia * pose.rotation.transpose();

@@ -1,0 +1,38 @@
+//! `<link>`: its body.
+
+use flexure_core::linalg::Vector;
+
+use super::node::Node;
+use crate::io::links::inertia;
+use crate::io::links::rigid::Rigid;
+use crate::io::quantity;
+
+/// The body of a link in the frame of the joint that carries it; nothing without `<inertial>`.
+pub(super) fn body(link: &Node<'_>) -> Option<Rigid> {
+    let Some(inertial) = link.child("inertial")? else { return Some(Rigid::NOTHING) };
+    let (com, rpy) = origin(&inertial)?;
+    let mass = inertial
+        .required_child("mass", "mass in kg: <mass value=\"…\"/>")
+        .and_then(|node| node.number("value", &quantity::BODY_MASS));
+    let inertia =
+        inertial.required_child("inertia", "inertia about the centre of mass in kg m^2").and_then(|node| {
+            let six = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"]
+                .map(|name| node.number(name, &quantity::BODY_INERTIA));
+            let [Some(xx), Some(xy), Some(xz), Some(yy), Some(yz), Some(zz)] = six else { return None };
+            inertia::checked(&node.site, [xx, xy, xz, yy, yz, zz], rpy)
+        });
+    Some(Rigid { mass: mass?, com: Vector(com), inertia: inertia? })
+}
+
+/// `<origin xyz rpy>` of a node; zeros without it.
+pub(super) fn origin(node: &Node<'_>) -> Option<([f64; 3], [f64; 3])> {
+    let Some(origin) = node.child("origin")? else { return Some(([0.0; 3], [0.0; 3])) };
+    if origin.has("quat_xyzw") {
+        let message = format!("{} has a quaternion, which is not read", origin.site.path);
+        origin.site.error("unsupported", message, "write the orientation as rpy, in rad");
+        return None;
+    }
+    let xyz = origin.numbers("xyz", &quantity::POSITION, "x, y, z", [0.0; 3]);
+    let rpy = origin.numbers("rpy", &quantity::ORIENTATION, "roll, pitch, yaw", [0.0; 3]);
+    Some((xyz?, rpy?))
+}

@@ -1,0 +1,264 @@
+//! The tree that links and joints make: every link carried by one joint, but for the root.
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::joint::{self, Connection, Joint, Kind};
+use super::link;
+use super::node::Node;
+use super::xml::Element;
+use crate::io::document::Log;
+use crate::io::links::assembly::{self, assemble};
+use crate::io::links::rigid::{Pose, Rigid};
+use crate::io::links::{Assembled, DriveDefaults, JointKind, MovingJoint};
+use crate::io::site::Site;
+use crate::io::suggest;
+
+/// Names of root links listed in a message.
+const MOST_NAMED: usize = 4;
+
+/// A robot as its URDF describes it.
+pub(in crate::io) struct Urdf<'a> {
+    /// The whole.
+    pub site: Site<'a>,
+    pub name: Option<&'a str>,
+    /// Depth first, in the order of the file: parents before children.
+    pub joints: Vec<Joint<'a>>,
+}
+
+/// Joints that are held still, and where [rad or m].
+pub(in crate::io) type Locks<'a> = BTreeMap<&'a str, f64>;
+
+/// Links and joints in the order of the file.
+struct Parts<'a> {
+    links: Vec<(&'a str, Site<'a>, Rigid)>,
+    connections: Vec<Connection<'a>>,
+}
+
+pub(super) fn read<'a>(root: &'a Element<'a>, log: &'a Log) -> Option<Urdf<'a>> {
+    let site = Site { span: root.span.clone(), path: "robot".to_owned(), log };
+    let node = Node { element: root, site };
+    let name = if node.has("name") { Some(node.text("name", "")?.0) } else { None };
+    let parts = parts(root, log)?;
+    let joints = ordered(parts, &node.site)?;
+    Some(Urdf { site: node.site, name, joints })
+}
+
+/// Every link and joint; all that is wrong with any of them is noted.
+fn parts<'a>(root: &'a Element<'a>, log: &'a Log) -> Option<Parts<'a>> {
+    let mut parts = Parts { links: Vec::new(), connections: Vec::new() };
+    let mut names = HashMap::new();
+    let mut sound = Some(());
+    for element in &root.children {
+        let is_link = element.name == "link";
+        if !is_link && element.name != "joint" {
+            continue;
+        }
+        if log.is_full() {
+            return None;
+        }
+        let Some((name, node)) = Node::named(element, log) else {
+            sound = None;
+            continue;
+        };
+        if names.insert((is_link, name), ()).is_some() {
+            node.site.error("duplicate", format!("{} stands twice", node.site.path), "names must differ");
+            sound = None;
+        } else if is_link {
+            match link::body(&node) {
+                Some(body) => parts.links.push((name, node.site, body)),
+                None => sound = None,
+            }
+        } else {
+            match joint::read(name, &node) {
+                Some(connection) => parts.connections.push(connection),
+                None => sound = None,
+            }
+        }
+    }
+    sound.map(|()| parts)
+}
+
+/// The joints depth first from the root link; notes an error if they make no tree.
+fn ordered<'a>(parts: Parts<'a>, robot: &Site<'a>) -> Option<Vec<Joint<'a>>> {
+    let Parts { links, connections } = parts;
+    let index: HashMap<&str, usize> = links.iter().enumerate().map(|(i, (name, ..))| (*name, i)).collect();
+    let find = |(name, site): &(&str, Site<'_>)| {
+        let found = index.get(name).copied();
+        if found.is_none() {
+            let message = format!("{} is {}, which is no link of the file", site.path, suggest::quoted(name));
+            site.error("unknown-name", message, suggest::hint(name, links.iter().map(|(name, ..)| *name)));
+        }
+        found
+    };
+    // Per link: the joints that it carries, and the one that carries it.
+    let mut carries: Vec<Vec<usize>> = vec![Vec::new(); links.len()];
+    let mut carrier: Vec<Option<usize>> = vec![None; links.len()];
+    let mut children = Vec::new();
+    let mut sound = true;
+    for (i, connection) in connections.iter().enumerate() {
+        if robot.log.is_full() {
+            return None;
+        }
+        let (Some(parent), Some(child)) = (find(&connection.parent), find(&connection.child)) else {
+            sound = false;
+            continue;
+        };
+        if let Some(other) = carrier[child] {
+            let (name, site) = &connection.child;
+            let message = format!(
+                "{}: link {} is the child of joint {} already",
+                connection.joint.site.path,
+                suggest::quoted(name),
+                suggest::quoted(connections[other].joint.name)
+            );
+            site.error("not-a-tree", message, "closed chains are not modelled: cut one of the joints");
+            sound = false;
+            continue;
+        }
+        carrier[child] = Some(i);
+        carries[parent].push(i);
+        children.push(child);
+    }
+    if !sound {
+        return None;
+    }
+    let root = root(&links, &carrier, robot)?;
+
+    // Without recursion: joints still to be visited, with the joint that carries them.
+    let mut order = Vec::new();
+    let mut pending: Vec<(usize, Option<usize>)> = carries[root].iter().rev().map(|&i| (i, None)).collect();
+    while let Some((i, parent)) = pending.pop() {
+        let own = order.len();
+        order.push((i, parent));
+        pending.extend(carries[children[i]].iter().rev().map(|&next| (next, Some(own))));
+    }
+    if order.len() < connections.len() {
+        let mut reached = vec![false; connections.len()];
+        order.iter().for_each(|&(i, _)| reached[i] = true);
+        let stray = reached.iter().position(|reached| !reached).unwrap_or(0);
+        let site = &connections[stray].joint.site;
+        let message = format!("{} is part of a cycle: it hangs on its own child", site.path);
+        site.error("not-a-tree", message, "closed chains are not modelled: cut one of the joints");
+        return None;
+    }
+    let mut joints: Vec<Option<Joint<'a>>> =
+        connections.into_iter().map(|connection| Some(connection.joint)).collect();
+    order
+        .into_iter()
+        .map(|(i, parent)| Some(Joint { parent, body: links[children[i]].2, ..joints[i].take()? }))
+        .collect()
+}
+
+/// The one link that no joint carries.
+fn root(links: &[(&str, Site<'_>, Rigid)], carrier: &[Option<usize>], robot: &Site<'_>) -> Option<usize> {
+    let roots: Vec<usize> = (0..links.len()).filter(|&i| carrier[i].is_none()).collect();
+    match roots.as_slice() {
+        [root] => Some(*root),
+        [] if links.is_empty() => {
+            robot.error(
+                "empty",
+                "the robot has no link",
+                "is it a URDF? xacro files have to be expanded first",
+            );
+            None
+        }
+        [] => {
+            let message = "no link is the root: every link is the child of a joint";
+            robot.error("not-a-tree", message, "the joints make a cycle; cut one of them");
+            None
+        }
+        [_, second, ..] => {
+            let mut names: Vec<_> =
+                roots.iter().take(MOST_NAMED).map(|&i| suggest::quoted(links[i].0)).collect();
+            if roots.len() > MOST_NAMED {
+                names.push("…".to_owned());
+            }
+            let message =
+                format!("{} links are the child of no joint, must be one: {}", roots.len(), names.join(", "));
+            links[*second].1.error("not-a-tree", message, "connect the others, or remove them");
+            None
+        }
+    }
+}
+
+impl<'a> Urdf<'a> {
+    /// The moving bodies, with the joints in `locks` and those that mimic them held still.
+    pub fn assemble(self, locks: &Locks<'_>) -> Option<Assembled> {
+        let held = self.held(locks)?;
+        let site = self.site;
+        let joints = self.joints.into_iter().zip(held).map(|(joint, held)| fixed_or_moving(joint, held));
+        assemble(joints.collect(), || {
+            site.error("immovable", "no joint of the robot moves", "at least one joint must stay unlocked");
+        })
+    }
+
+    /// Where each joint is held still, if it is; notes an error at one that mimics a joint that moves.
+    fn held(&self, locks: &Locks<'_>) -> Option<Vec<Option<f64>>> {
+        let mut sound = Some(());
+        let index = self.indices();
+        let held = self.joints.iter().map(|joint| {
+            let held = self.follow(joint, locks, &index);
+            if let (None, Some(mimic)) = (held, &joint.mimic) {
+                let message = format!(
+                    "{} mimics joint {}: joints that move together are not modelled",
+                    joint.site.path,
+                    suggest::quoted(mimic.of)
+                );
+                let help = format!("hold both still: links.locked = {{ {} = 0.0 }}", suggest::key(mimic.of));
+                mimic.site.error("mimic", message, help);
+                sound = None;
+            }
+            held
+        });
+        let held = held.collect();
+        sound.map(|()| held)
+    }
+
+    /// Where `joint` is held, through as many joints as mimic each other.
+    fn follow(&self, joint: &Joint<'_>, locks: &Locks<'_>, index: &HashMap<&str, usize>) -> Option<f64> {
+        let (mut scale, mut shift, mut joint) = (1.0, 0.0, joint);
+        for _ in 0..self.joints.len() {
+            if let Some(position) = locks.get(joint.name) {
+                return Some(scale * position + shift);
+            }
+            let mimic = joint.mimic.as_ref()?;
+            (scale, shift) = (scale * mimic.multiplier, shift + scale * mimic.offset);
+            joint = &self.joints[*index.get(mimic.of)?];
+        }
+        None
+    }
+
+    fn indices(&self) -> HashMap<&str, usize> {
+        self.joints.iter().enumerate().map(|(i, joint)| (joint.name, i)).collect()
+    }
+
+    /// The joints to lock so that none that moves mimics another: the ones that are mimicked in the end.
+    pub fn mimicked(&self, locks: &Locks<'_>) -> Vec<(&'a str, DriveDefaults)> {
+        let index = self.indices();
+        let mut masters = BTreeMap::new();
+        for joint in self.joints.iter().filter(|joint| self.follow(joint, locks, &index).is_none()) {
+            let mut last = joint;
+            for _ in 0..self.joints.len() {
+                let Some(next) = last.mimic.as_ref().and_then(|mimic| index.get(mimic.of)) else { break };
+                last = &self.joints[*next];
+            }
+            if !std::ptr::eq(last, joint) {
+                masters.insert(last.name, last.drive);
+            }
+        }
+        masters.into_iter().collect()
+    }
+}
+
+fn fixed_or_moving(joint: Joint<'_>, held: Option<f64>) -> assembly::Joint<'_> {
+    let Joint { site, name, kind, parent, pose, axis, drive, body, .. } = joint;
+    let (motion, pose) = match (kind, held) {
+        (Kind::Fixed, _) => (None, pose),
+        (Kind::Moving(JointKind::Revolute), Some(q)) => (None, pose.then(&Pose::turned(axis, q))),
+        (Kind::Moving(JointKind::Prismatic), Some(q)) => (None, pose.then(&Pose::slid(axis, q))),
+        (Kind::Moving(kind), None) => {
+            (Some((MovingJoint { name: name.to_owned(), kind, drive }, axis)), pose)
+        }
+    };
+    assembly::Joint { site, parent, motion, pose, body }
+}
