@@ -133,7 +133,7 @@ pub(super) fn parse<T>(
 ) -> Result<(T, Vec<Problem>), Problems> {
     let log = Log::new(source);
     if source.text.trim_start().starts_with('<') {
-        let message = format!("this is XML, must be a {}", form.what);
+        let message = format!("this is XML; a {} is TOML", form.what);
         let help = "a URDF has no springs and no motors: `flexure import robot.urdf > robot.toml` writes a robot file \
                     to complete";
         log.error(0..0, "wrong-kind", message, help);

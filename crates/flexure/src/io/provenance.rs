@@ -56,7 +56,9 @@ fn named_by(key: &str, field: &Field<'_>, places: &Places) -> Option<(String, St
     let ending = format!(".{key}");
     let mut matches: Vec<_> = paths().filter(|(path, _)| path == key).collect();
     if matches.is_empty() {
-        matches = paths().filter(|(path, _)| path.ends_with(&ending)).collect();
+        // A number of one joint is found like the one of all joints.
+        matches = paths().map(|(path, text)| (without_joint(&path), text)).collect();
+        matches.retain(|(path, _)| path == key || path.ends_with(&ending));
     }
     let Some((first, text)) = matches.first().cloned() else {
         let known: BTreeSet<String> = paths().map(|(path, _)| path).collect();
@@ -79,4 +81,12 @@ fn named_by(key: &str, field: &Field<'_>, places: &Places) -> Option<(String, St
 /// `links.joint[2].mass` → `links.joint.mass`.
 fn without_indices(path: &str) -> String {
     path.split('[').map(|part| part.split_once(']').map_or(part, |(_, rest)| rest)).collect()
+}
+
+/// `joints.elbow.stiffness` → `joints.stiffness`.
+fn without_joint(path: &str) -> String {
+    match (path.strip_prefix("joints."), path.rsplit_once('.')) {
+        (Some(_), Some((_, key))) => format!("joints.{key}"),
+        _ => path.to_owned(),
+    }
 }

@@ -58,7 +58,10 @@ impl Quantity {
             Problem::new(code, format!("{name} is {}{unit}, {objection}", shortest(x)), hint)
         };
         let size = x.abs();
-        let required = if !x.is_finite() {
+        let required = if x.is_nan() {
+            let hint = format!("{}; nan stands where it is still to be supplied", self.described());
+            return Some(problem("missing-number", "must be a number", hint));
+        } else if !x.is_finite() {
             return Some(problem("not-finite", "must be a finite number", self.described()));
         } else if self.sign == Sign::Positive && x <= 0.0 {
             "must be > 0"
@@ -82,7 +85,13 @@ impl Quantity {
 /// `x` in the shorter of its two notations.
 pub(super) fn shortest(x: f64) -> String {
     let (plain, scientific) = (format!("{x}"), format!("{x:e}"));
-    if plain.len() <= scientific.len() + 2 { plain } else { scientific }
+    if x.is_nan() {
+        "nan".to_owned()
+    } else if plain.len() <= scientific.len() + 2 {
+        plain
+    } else {
+        scientific
+    }
 }
 
 /// Four turns: nobody writes larger joint angles in radians.

@@ -1,6 +1,6 @@
 //! Rotational inertias as a file gives them, and whether a body can have them.
 
-use flexure_core::linalg::{Matrix, Vector};
+use flexure_core::linalg::Matrix;
 
 use super::rigid::Pose;
 use crate::io::quantity;
@@ -9,6 +9,9 @@ use crate::io::table::Table;
 
 /// What rounding in a file with few digits may take away, relative to the largest principal inertia.
 const SLACK: f64 = 1e-9;
+
+/// Inertias smaller than this are nothing [kg m²]: a milligram at a tenth of a millimetre has more.
+const DUST: f64 = 1e-15;
 
 /// Reads `inertia` (ixx, ixy, ixz, iyy, iyz, izz) with `inertia_rpy`, the orientation of its axes.
 pub(super) fn read(table: &Table<'_>) -> Option<Matrix<f64, 3, 3>> {
@@ -31,7 +34,7 @@ pub(in crate::io) fn checked(site: &Site<'_>, six: [f64; 6], rpy: [f64; 3]) -> O
 fn check(site: &Site<'_>, inertia: &Matrix<f64, 3, 3>) -> Option<()> {
     let [a, b, c] = principal(inertia);
     let listed = format!("principal inertias {a:.3e}, {b:.3e}, {c:.3e} kg m^2");
-    if a < -SLACK * c.abs() {
+    if a < -SLACK * c.abs() - DUST {
         let message = format!("{} is indefinite: {listed}, must be >= 0", site.path);
         site.error(
             "inertia",
@@ -40,7 +43,7 @@ fn check(site: &Site<'_>, inertia: &Matrix<f64, 3, 3>) -> Option<()> {
         );
         return None;
     }
-    if a + b < c * (1.0 - SLACK) {
+    if a + b < c * (1.0 - SLACK) - DUST {
         let message = format!(
             "{} belongs to no rigid body: {listed}; the largest exceeds the sum of the others",
             site.path
@@ -50,37 +53,34 @@ fn check(site: &Site<'_>, inertia: &Matrix<f64, 3, 3>) -> Option<()> {
     Some(())
 }
 
-/// Eigenvalues in ascending order, by the trigonometric formula.
+/// Eigenvalues in ascending order, by cyclic Jacobi rotations: accurate also where two are equal.
 fn principal(inertia: &Matrix<f64, 3, 3>) -> [f64; 3] {
-    let scale = inertia.0.iter().flatten().fold(0.0_f64, |largest, x| largest.max(x.abs()));
-    if scale == 0.0 {
-        return [0.0; 3];
+    let mut a = *inertia;
+    for (p, q) in [(0, 1), (0, 2), (1, 2)].into_iter().cycle().take(3 * SWEEPS) {
+        let off = a[(p, q)];
+        if off != 0.0 {
+            let theta = (a[(q, q)] - a[(p, p)]) / (2.0 * off);
+            let tangent = theta.signum() / (theta.abs() + theta.hypot(1.0));
+            let cos = tangent.hypot(1.0).recip();
+            let mut turn = Matrix::identity();
+            (turn[(p, p)], turn[(q, q)]) = (cos, cos);
+            (turn[(p, q)], turn[(q, p)]) = (tangent * cos, -tangent * cos);
+            a = turn.transpose() * a * turn;
+        }
     }
-    let a = inertia.scaled(scale.recip());
-    let mean = (a[(0, 0)] + a[(1, 1)] + a[(2, 2)]) / 3.0;
-    let deviator: Matrix<f64, 3, 3> = Matrix::from_fn(|i, j| a[(i, j)] - if i == j { mean } else { 0.0 });
-    let spread = (deviator.0.iter().flatten().map(|x| x * x).sum::<f64>() / 6.0).sqrt();
-    if spread < 1e-150 {
-        return [mean * scale; 3];
-    }
-    let d = deviator.scaled(spread.recip());
-    let [x, y, z] = [0, 1, 2].map(|i| d.row(i));
-    let half_determinant = 0.5 * x.dot(&cross(&y, &z));
-    let angle = half_determinant.clamp(-1.0, 1.0).acos() / 3.0;
-    let third = std::f64::consts::TAU / 3.0;
-    let mut values =
-        [angle, angle + third, angle - third].map(|phi| scale * (mean + 2.0 * spread * phi.cos()));
+    let mut values = [a[(0, 0)], a[(1, 1)], a[(2, 2)]];
     values.sort_by(f64::total_cmp);
     values
 }
 
-fn cross(a: &Vector<f64, 3>, b: &Vector<f64, 3>) -> Vector<f64, 3> {
-    Vector([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
-}
+/// Jacobi rotations converge quadratically: six sweeps of a 3 × 3 matrix are more than enough.
+const SWEEPS: usize = 6;
 
 #[cfg(test)]
 mod tests {
-    use super::{Matrix, Pose, Vector, principal};
+    use flexure_core::linalg::Vector;
+
+    use super::{Matrix, Pose, principal};
 
     /// Turning the axes of diag(1, 2, 4) leaves its eigenvalues.
     #[test]
@@ -90,6 +90,9 @@ mod tests {
         for (found, exact) in principal(&turned).into_iter().zip([1.0, 2.0, 4.0]) {
             assert!((found - exact).abs() < 1e-14, "{found} for {exact}"); // 100 flops × ε × 4
         }
-        assert!(principal(&Matrix::identity()).iter().all(|value| (value - 1.0).abs() < 1e-15));
+        let disc = axes * Matrix::diagonal(&Vector([0.0, 3.0, 0.0])) * axes.transpose();
+        for (found, exact) in principal(&disc).into_iter().zip([0.0, 0.0, 3.0]) {
+            assert!((found - exact).abs() < 1e-14, "{found} for {exact}");
+        }
     }
 }

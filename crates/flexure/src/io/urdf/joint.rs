@@ -5,7 +5,7 @@ use super::node::Node;
 use crate::io::links::joint::unit;
 use crate::io::links::rigid::{Pose, Rigid};
 use crate::io::links::{DriveDefaults, JointKind};
-use crate::io::quantity::{self, Quantity};
+use crate::io::quantity;
 use crate::io::site::Site;
 use crate::io::suggest;
 
@@ -133,8 +133,19 @@ fn drive(node: &Node<'_>, has_stops: bool) -> Option<DriveDefaults> {
         drive.friction = dynamics.optional_number("friction", &quantity::FRICTION)?.filter(|&x| x > 0.0);
     }
     if let Some(limit) = node.child("limit")? {
-        drive.torque_limit = largest(&limit, "effort", &quantity::EFFORT)?;
-        drive.velocity_limit = largest(&limit, "velocity", &quantity::SPEED)?;
+        let effort = limit.optional_number("effort", &quantity::EFFORT);
+        let velocity = limit.optional_number("velocity", &quantity::SPEED);
+        let (effort, velocity) = (effort?, velocity?);
+        drive.torque_limit = effort.filter(|&x| x > 0.0);
+        drive.velocity_limit = velocity.filter(|&x| x > 0.0);
+        let unknown: Vec<_> = [("effort", effort), ("velocity", velocity)]
+            .iter()
+            .filter_map(|(name, x)| x.filter(|&x| x <= 0.0).map(|x| format!("{name} {x}")))
+            .collect();
+        if !unknown.is_empty() {
+            let message = format!("{}: {} is taken as no limit", limit.site.path, unknown.join(", "));
+            limit.site.warn("limits", message, "limits are > 0; give them in [joints] of the robot file");
+        }
         let lower = limit.optional_number("lower", &quantity::STOP);
         let upper = limit.optional_number("upper", &quantity::STOP);
         let (lower, upper) = (lower?, upper?);
@@ -157,15 +168,4 @@ fn drive(node: &Node<'_>, has_stops: bool) -> Option<DriveDefaults> {
         }
     }
     Some(drive)
-}
-
-/// A largest value; none if it is absent or, as in many files, not positive for "not known".
-#[expect(clippy::option_option, reason = "bad, absent and good are three cases")]
-fn largest(limit: &Node<'_>, name: &str, quantity: &Quantity) -> Option<Option<f64>> {
-    let value = limit.optional_number(name, quantity)?;
-    if let Some(value) = value.filter(|&value| value <= 0.0) {
-        let message = format!("{} {name} is {value}, must be > 0: taken as no limit", limit.site.path);
-        limit.site.warn("limits", message, "give the limit in [joints] of the robot file");
-    }
-    Some(value.filter(|&value| value > 0.0))
 }

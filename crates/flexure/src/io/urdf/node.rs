@@ -6,6 +6,9 @@ use crate::io::quantity::Quantity;
 use crate::io::site::Site;
 use crate::io::suggest;
 
+/// What a drawing program writes for zero is smaller than this.
+const DUST: f64 = 1e-30;
+
 /// An element in its context.
 ///
 /// Every reader returns `None` after it has noted what is wrong.
@@ -126,6 +129,7 @@ impl Site<'_> {
     fn parse(&self, word: &str, quantity: &Quantity) -> Option<f64> {
         let word = word.trim();
         match word.parse::<f64>() {
+            Ok(x) if x.abs() < DUST => Some(0.0),
             Ok(x) if x.is_finite() => self.log.accept(&self.path, x, quantity, self.span.clone()),
             Ok(_) => {
                 let message = format!("{} is {}, must be a finite number", self.path, suggest::quoted(word));

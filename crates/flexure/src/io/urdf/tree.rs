@@ -199,13 +199,19 @@ impl<'a> Urdf<'a> {
         let held = self.joints.iter().map(|joint| {
             let held = self.follow(joint, locks, &index);
             if let (None, Some(mimic)) = (held, &joint.mimic) {
-                let message = format!(
-                    "{} mimics joint {}: joints that move together are not modelled",
-                    joint.site.path,
-                    suggest::quoted(mimic.of)
+                let known = index.contains_key(mimic.of);
+                let objection = if known {
+                    "joints that move together are not modelled"
+                } else {
+                    "there is no such joint"
+                };
+                let (path, of) = (&joint.site.path, suggest::quoted(mimic.of));
+                let lock = suggest::key(if known { mimic.of } else { joint.name });
+                mimic.site.error(
+                    "mimic",
+                    format!("{path} mimics joint {of}: {objection}"),
+                    format!("hold it still: links.locked = {{ {lock} = 0.0 }} in the robot file"),
                 );
-                let help = format!("hold both still: links.locked = {{ {} = 0.0 }}", suggest::key(mimic.of));
-                mimic.site.error("mimic", message, help);
                 sound = None;
             }
             held
@@ -232,7 +238,8 @@ impl<'a> Urdf<'a> {
         self.joints.iter().enumerate().map(|(i, joint)| (joint.name, i)).collect()
     }
 
-    /// The joints to lock so that none that moves mimics another: the ones that are mimicked in the end.
+    /// The joints to lock so that none that moves mimics another: the ones that are mimicked in the end, and those that
+    /// mimic what is not there.
     pub fn mimicked(&self, locks: &Locks<'_>) -> Vec<(&'a str, DriveDefaults)> {
         let index = self.indices();
         let mut masters = BTreeMap::new();
@@ -242,7 +249,7 @@ impl<'a> Urdf<'a> {
                 let Some(next) = last.mimic.as_ref().and_then(|mimic| index.get(mimic.of)) else { break };
                 last = &self.joints[*next];
             }
-            if !std::ptr::eq(last, joint) {
+            if last.mimic.is_some() || !std::ptr::eq(last, joint) {
                 masters.insert(last.name, last.drive);
             }
         }
