@@ -22,7 +22,7 @@ pub const ROBOTS: &[(&str, &str)] = data!("robots":
 pub const SCENARIOS: &[(&str, &str)] = data!("scenarios":
     "two-link-tanh" "two-link-linear" "two-link-coupled-tanh"
     "two-link-tanh-smooth" "two-link-linear-smooth" "two-link-coupled-tanh-smooth"
-    "pendulum-tanh" "panda-tanh-smooth");
+    "pendulum-tanh" "panda-tanh-smooth" "planar-2r-tanh" "planar-3r-tanh" "tomei-3r-tanh" "tomei-3r-5kg-tanh");
 
 /// Loads the robot file at a path, or the built-in robot of that name.
 ///
