@@ -86,7 +86,9 @@ fn numbers(value: &DeValue<'_>, path: &str, found: &mut BTreeSet<String>) {
         DeValue::Integer(_) | DeValue::Float(_) => drop(found.insert(path.to_owned())),
         DeValue::Array(entries) => entries.iter().for_each(|entry| numbers(entry.get_ref(), path, found)),
         DeValue::Table(table) => {
-            table.iter().for_each(|(key, value)| numbers(value.get_ref(), &inside(key.get_ref()), found))
+            for (key, value) in table {
+                numbers(value.get_ref(), &inside(key.get_ref()), found);
+            }
         }
         _ => (),
     }
