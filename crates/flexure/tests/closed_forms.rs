@@ -130,12 +130,11 @@ fn planar(q: &[f64], links: &[[f64; 4]], g: f64) -> (Vec<Vec<f64>>, Vec<f64>) {
     let mut mass = vec![vec![0.0; n]; n];
     let mut gravity = vec![0.0; n];
     for (k, &[m, _, _, inertia]) in links.iter().enumerate() {
-        for i in 0..=k {
-            let (xi, zi) = slope(k, i);
-            gravity[i] += m * g * zi;
-            for j in 0..=k {
-                let (xj, zj) = slope(k, j);
-                mass[i][j] += m * (xi * xj + zi * zj) + inertia;
+        let slopes: Vec<_> = (0..=k).map(|i| slope(k, i)).collect();
+        for ((&(xi, zi), row), torque) in slopes.iter().zip(&mut mass).zip(&mut gravity) {
+            *torque += m * g * zi;
+            for (&(xj, zj), entry) in slopes.iter().zip(row) {
+                *entry += m * (xi * xj + zi * zj) + inertia;
             }
         }
     }
