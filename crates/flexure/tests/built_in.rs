@@ -1,6 +1,9 @@
 //! The built-in robots carry the numbers of their sources.
 
-use flexure::io::{Body, Links, load_robot, load_scenario};
+use std::collections::BTreeSet;
+
+use flexure::io::{Body, Links, ROBOTS, load_robot, load_scenario};
+use toml::de::{DeTable, DeValue};
 
 /// Sum of the masses of panda.urdf but for the base link, which does not move.
 const PANDA_MOVING_MASS: f64 =
@@ -74,4 +77,51 @@ fn files_on_disk_are_read_like_built_in_ones() {
     let scenario = load_scenario(&format!("{root}scenarios/two-link-tanh.toml")).unwrap();
     assert_eq!((scenario.name.as_str(), scenario.smooth_start), ("two-link-tanh", None));
     assert_eq!(load_scenario("two-link-tanh-smooth").unwrap().smooth_start, Some(2.0));
+}
+
+/// Dotted keys of the numbers in `value`, entries of a list of tables together: `links.joint.mass`.
+fn numbers(value: &DeValue<'_>, path: &str, found: &mut BTreeSet<String>) {
+    let inside = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
+    match value {
+        DeValue::Integer(_) | DeValue::Float(_) => drop(found.insert(path.to_owned())),
+        DeValue::Array(entries) => entries.iter().for_each(|entry| numbers(entry.get_ref(), path, found)),
+        DeValue::Table(table) => {
+            for (key, value) in table {
+                numbers(value.get_ref(), &inside(key.get_ref()), found);
+            }
+        }
+        _ => (),
+    }
+}
+
+/// The numbers of a robot file that no line of `[sources]` names, by a last part or as part of a table.
+fn without_source(text: &str) -> Vec<String> {
+    let file = DeTable::parse(text).unwrap().into_inner();
+    let sources: Vec<_> =
+        file["sources"].get_ref().as_table().unwrap().keys().map(ToString::to_string).collect();
+    let mut found = BTreeSet::new();
+    numbers(&DeValue::Table(file), "", &mut found);
+    let covered = |number: &String| {
+        sources.iter().any(|key| {
+            number == key || number.ends_with(&format!(".{key}")) || number.starts_with(&format!("{key}."))
+        })
+    };
+    found.into_iter().filter(|number| !covered(number)).collect()
+}
+
+#[test]
+fn every_number_of_a_built_in_robot_has_a_source() {
+    for (name, text) in ROBOTS {
+        assert_eq!(without_source(text), [""; 0], "{name}");
+    }
+    // A line taken away is missed, in a tree and in a closed form.
+    for (name, line, key) in [
+        ("planar-2r", "\"links.joint.com\" = ", "links.joint.com"),
+        ("quanser-2dof", "stiffness = \"", "joints.stiffness"),
+        ("panda", "gravity = \"", "gravity"),
+    ] {
+        let text = ROBOTS.iter().find(|(known, _)| *known == name).unwrap().1;
+        let kept: Vec<_> = text.lines().filter(|each| !each.starts_with(line)).collect();
+        assert_eq!(without_source(&kept.join("\n")), [key]);
+    }
 }

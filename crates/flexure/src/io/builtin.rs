@@ -16,13 +16,14 @@ macro_rules! data {
 }
 
 /// Built-in robots: name and text of the file.
-pub const ROBOTS: &[(&str, &str)] = data!("robots": "quanser-2dof" "pendulum-1dof" "panda");
+pub const ROBOTS: &[(&str, &str)] = data!("robots":
+    "quanser-2dof" "pendulum-1dof" "panda" "planar-2r" "planar-3r" "tomei-3r" "tomei-3r-5kg");
 
 /// Built-in scenarios: name and text of the file.
 pub const SCENARIOS: &[(&str, &str)] = data!("scenarios":
     "two-link-tanh" "two-link-linear" "two-link-coupled-tanh"
     "two-link-tanh-smooth" "two-link-linear-smooth" "two-link-coupled-tanh-smooth"
-    "pendulum-tanh" "panda-tanh-smooth");
+    "pendulum-tanh" "panda-tanh-smooth" "planar-2r-tanh" "planar-3r-tanh" "tomei-3r-tanh" "tomei-3r-5kg-tanh");
 
 /// Files that built-in robots are made from: name and text.
 const FILES: &[(&str, &str)] = &[("panda.urdf", include_str!("../../../../robots/panda.urdf"))];
