@@ -13,7 +13,7 @@ use super::source::Source;
 use super::table::Table;
 
 /// Problems beyond these are not reported: nobody reads them.
-const MOST_PROBLEMS: usize = 64;
+const MOST_PROBLEMS: usize = 24;
 
 /// Where problems are noted while a file is read.
 #[derive(Debug)]

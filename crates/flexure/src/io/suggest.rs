@@ -4,7 +4,7 @@
 const MOST: usize = 24;
 
 /// Names that the given one is compared with: a hint must not take longer than the file.
-const MOST_COMPARED: usize = 256;
+const MOST_COMPARED: usize = 128;
 
 /// `did you mean 'x'? known: x, y, z`, as far as it applies.
 pub(super) fn hint<'a>(given: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {

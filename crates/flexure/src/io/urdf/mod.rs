@@ -14,7 +14,7 @@ pub use sidecar::{Import, import};
 pub(super) use tree::{Locks, Urdf};
 
 /// Largest URDF that is read \[bytes\].
-pub(super) const LIMIT: u64 = 4 << 20;
+pub(super) const LIMIT: u64 = 2 << 20;
 
 use super::document::Log;
 

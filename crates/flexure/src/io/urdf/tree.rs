@@ -16,6 +16,9 @@ use crate::io::suggest;
 /// Names of root links listed in a message.
 const MOST_NAMED: usize = 4;
 
+/// Joints that mimic each other in a row are followed this far; a cycle of them has no end.
+const LONGEST_MIMICRY: usize = 16;
+
 /// A robot as its URDF describes it.
 pub(in crate::io) struct Urdf<'a> {
     /// The whole.
@@ -223,7 +226,7 @@ impl<'a> Urdf<'a> {
     /// Where `joint` is held, through as many joints as mimic each other.
     fn follow(&self, joint: &Joint<'_>, locks: &Locks<'_>, index: &HashMap<&str, usize>) -> Option<f64> {
         let (mut scale, mut shift, mut joint) = (1.0, 0.0, joint);
-        for _ in 0..self.joints.len() {
+        for _ in 0..LONGEST_MIMICRY {
             if let Some(position) = locks.get(joint.name) {
                 return Some(scale * position + shift);
             }
@@ -245,7 +248,7 @@ impl<'a> Urdf<'a> {
         let mut masters = BTreeMap::new();
         for joint in self.joints.iter().filter(|joint| self.follow(joint, locks, &index).is_none()) {
             let mut last = joint;
-            for _ in 0..self.joints.len() {
+            for _ in 0..LONGEST_MIMICRY {
                 let Some(next) = last.mimic.as_ref().and_then(|mimic| index.get(mimic.of)) else { break };
                 last = &self.joints[*next];
             }

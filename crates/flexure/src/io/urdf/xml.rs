@@ -16,7 +16,7 @@ use crate::io::suggest;
 const DEEPEST: usize = 64;
 
 /// Elements kept beyond this number are no robot.
-const MOST_ELEMENTS: usize = 50_000;
+const MOST_ELEMENTS: usize = 20_000;
 
 /// Attributes of one element beyond this number are no URDF.
 const MOST_ATTRIBUTES: usize = 64;
