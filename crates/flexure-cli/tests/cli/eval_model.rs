@@ -189,7 +189,8 @@ fn a_result_that_is_not_finite_is_refused_at_its_state() {
         let outcome = place.fed(&[&command[..], &["--states", "-"]].concat(), format!("{good}\n\n{huge}\n"));
         outcome.refused(&["standard input:3:1", "must be finite"]);
     }
-    let huge = good.replace('}', r#", "ddq_l": [0, 0], "d3q_l": [1e308, 1e308]}"#);
+    // Products of these in the rate of the torque, and nowhere else, are beyond 1e308.
+    let huge = r#"{"q_l": [0, 1], "q_m": [0, 0], "dq_l": [1e150, 0], "dq_m": [0, 0], "ddq_l": [1e200, 0], "d3q_l": [0, 0]}"#;
     let outcome = place.fed(&["model", "quanser-2dof", "--states", "-"], format!("{good}\n{huge}\n"));
     outcome.refused(&["standard input:2:1", "dtau_l is", "must be finite"]);
 }
