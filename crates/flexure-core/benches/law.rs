@@ -105,6 +105,21 @@ mod arm {
     }
 
     #[divan::bench(consts = [7, 8, 16, 32, 64])]
+    fn torque_with_two_derivatives<const N: usize>(bencher: Bencher) {
+        let (links, q) = (serial::<N>(), Numbers(1).series::<5, N>(1.0));
+        bencher.bench_local(|| black_box(&links).torque_along::<_, 3, 5>(black_box(&q)));
+    }
+
+    #[divan::bench(consts = [7, 8, 16, 32, 64])]
+    fn forward_dynamics<const N: usize>(bencher: Bencher) {
+        let (links, x) = (serial::<N>(), Numbers(1).motion(1.0));
+        bencher.bench_local(|| {
+            let x = black_box(&x);
+            black_box(&links).forward_dynamics(&x.q_l, &x.v_l, &x.q_m)
+        });
+    }
+
+    #[divan::bench(consts = [7, 8, 16, 32, 64])]
     fn factor_and_solve<const N: usize>(bencher: Bencher) {
         let (links, x) = (serial::<N>(), Numbers(1).motion(1.0));
         bencher.bench_local(|| {

@@ -8,7 +8,7 @@ use std::hint::black_box;
 
 use flexure_core::control::{CoupledTanh, Input, Vcbc};
 use flexure_core::linalg::Vector as V;
-use flexure_core::model::{Fjr, Links, Motion, State};
+use flexure_core::model::{FeedForward, Fjr, Links, Motion, State};
 use flexure_core::robots::{PlanarTwoLink, Tree};
 use flexure_core::scalar::{Jet, Scalar};
 use flexure_core::virtual_system::virtual_dynamics;
@@ -36,6 +36,21 @@ fn dynamics(robot: &Chain, x: &State<f64, 7>, u_m: &V<f64, 7>) -> [State<f64, 7>
 }
 
 #[cfg_attr(not(debug_assertions), no_panic)]
+fn inverse_dynamics(robot: &Chain, q_l: &V<Jet<f64, 7>, 7>) -> FeedForward<f64, 7, 3, 5> {
+    robot.inverse_dynamics(q_l)
+}
+
+#[cfg_attr(not(debug_assertions), no_panic)]
+fn torque_along(robot: &Chain, derivatives: &[V<f64, 7>; 5]) -> [V<f64, 7>; 3] {
+    robot.links.torque_along(&V::from_derivatives(derivatives)).derivatives()
+}
+
+#[cfg_attr(not(debug_assertions), no_panic)]
+fn forward_dynamics(robot: &Chain, q: &V<f64, 7>, v: &V<f64, 7>, torque: &V<f64, 7>) -> V<f64, 7> {
+    robot.links.forward_dynamics(q, v, torque)
+}
+
+#[cfg_attr(not(debug_assertions), no_panic)]
 fn factor_and_solve(robot: &Chain, q: &V<f64, 7>, b: &V<f64, 7>) -> V<f64, 7> {
     robot.links.mass_matrix(q).ldl().solve(b)
 }
@@ -51,6 +66,9 @@ fn main() {
         law_of_the_arm as fn(&_, &_, &_, &_) -> _,
         law_of_a_tree as fn(&_, &_, &_, &_) -> _,
         dynamics as fn(&_, &_, &_) -> _,
+        inverse_dynamics as fn(&_, &_) -> _,
+        torque_along as fn(&_, &_) -> _,
+        forward_dynamics as fn(&_, &_, &_, &_) -> _,
         factor_and_solve as fn(&_, &_, &_) -> _,
     ));
     assert!(jets(black_box(Jet::variable(0.5))).coefficient(4).is_finite());

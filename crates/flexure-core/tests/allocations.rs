@@ -3,7 +3,7 @@
 use assert_no_alloc::{AllocDisabler, assert_no_alloc, violation_count};
 use flexure_core::control::{Input, RigidVcbc};
 use flexure_core::linalg::Vector;
-use flexure_core::model::{LinkMatrices, Links, MassFactor};
+use flexure_core::model::{FeedForward, LinkMatrices, Links, MassFactor};
 use flexure_core::reference::{Multisine, PointToPoint, Reference, Sine, SmoothStart, Smoothstep, Term};
 use flexure_core::scalar::{Jet, Scalar};
 use flexure_core::virtual_system::{Structure, closed_loop, error_coordinates, virtual_dynamics};
@@ -28,6 +28,7 @@ fn law_and_dynamics_allocate_nothing<L: Links<f64, N>, const N: usize>(links: L)
     let robot = flexible(links, &mut r);
     let law = gains(coupled_tanh, true, &mut r);
     let (x, x_v, error) = (r.motion(1.5), r.motion(1.5), random_error(&mut r));
+    let q_l = r.series::<7, N>(1.0);
     let omega = Input { link: r.series(1.0), motor: r.vector(1.0) };
     let count = allocations(|| {
         let reference = Vector([Jet::variable(0.3).sin(); N]);
@@ -48,9 +49,12 @@ fn law_and_dynamics_allocate_nothing<L: Links<f64, N>, const N: usize>(links: L)
         let state = robot.state(&x);
         let dynamics = robot.hamiltonian_dynamics(&state, &omega.motor);
         let a = robot.link_acceleration(&x);
+        let torques = robot.links.torque_along::<_, 3, 5>(&q_l.map(|x| x.truncate())).derivatives();
+        let feed_forward: FeedForward<f64, N, 3, 5> = robot.inverse_dynamics(&q_l);
         let (factor, matrices) =
             (robot.links.factor(&x.q_l), LinkMatrices::new(&robot.links, &x.q_l, &x.v_l));
-        (dynamics, a, factor.solve(&a), matrices, robot.links.mass_matrix(&x.q_l).ldl().solve(&a))
+        let dense = robot.links.mass_matrix(&x.q_l).ldl().solve(&a);
+        ((dynamics, a, torques, feed_forward), (factor.solve(&a), matrices, dense))
     });
     assert_eq!(count, 0, "dynamics");
     let count = allocations(|| {

@@ -54,6 +54,15 @@ pub struct ModelRow {
     /// (q̇_l, q̇_m, ṗ_l, ṗ_m) under the given u_m; left out if none is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dx: Option<Vec<f64>>,
+    /// Torque M q̈ + C q̇ + g that the given `ddq_l` takes [N m]; left out if none is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tau_l: Option<Vec<f64>>,
+    /// Its rate along the trajectory with the given `d3q_l` [N m/s].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dtau_l: Option<Vec<f64>>,
+    /// Its second rate along the trajectory with the given `d4q_l` [N m/s²].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ddtau_l: Option<Vec<f64>>,
 }
 
 /// Evaluates the law of `scenario` at `states`.
@@ -124,23 +133,8 @@ impl RobotVisitor for EvaluateModel<'_> {
 
     fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) -> Self::Output {
         let row = |state: &StateRow| -> Result<ModelRow, Problem> {
-            let x = motion(state);
-            let matrices = LinkMatrices::new(&robot.links, &x.q_l, &x.v_l);
-            let dx = state.u_m.as_deref().map(|u_m| {
-                let dx = robot.workless_dynamics(&robot.state(&x), &vector(u_m));
-                [dx.q_l, dx.q_m, dx.p_l, dx.p_m].iter().flat_map(list).collect()
-            });
-            let row = ModelRow {
-                M_l: rows(&matrices.mass),
-                E_l: rows(&matrices.workless()),
-                S_l: rows(&matrices.skew),
-                dM_l: rows(&matrices.mass_rate),
-                bias: list(&robot.links.inverse_dynamics(&x.q_l, &x.v_l, &x.v_l, &Vector::ZERO)),
-                H: robot.total_energy(&x),
-                ddq_l: list(&robot.link_acceleration(&x)),
-                dx,
-            };
-            let numbers: [(_, &[f64]); 8] = [
+            let row = model_row(&robot, state);
+            let numbers: [(_, &[f64]); 11] = [
                 ("M_l", &row.M_l.concat()),
                 ("E_l", &row.E_l.concat()),
                 ("S_l", &row.S_l.concat()),
@@ -149,12 +143,52 @@ impl RobotVisitor for EvaluateModel<'_> {
                 ("H", &[row.H]),
                 ("ddq_l", &row.ddq_l),
                 ("dx", row.dx.as_deref().unwrap_or_default()),
+                ("tau_l", row.tau_l.as_deref().unwrap_or_default()),
+                ("dtau_l", row.dtau_l.as_deref().unwrap_or_default()),
+                ("ddtau_l", row.ddtau_l.as_deref().unwrap_or_default()),
             ];
             finite(self.states, state, numbers)?;
             Ok(row)
         };
         self.states.rows.iter().map(row).collect()
     }
+}
+
+fn model_row<L: Links<f64, N>, const N: usize>(robot: &Fjr<f64, L, N>, state: &StateRow) -> ModelRow {
+    let x = motion(state);
+    let matrices = LinkMatrices::new(&robot.links, &x.q_l, &x.v_l);
+    let dx = state.u_m.as_deref().map(|u_m| {
+        let dx = robot.workless_dynamics(&robot.state(&x), &vector(u_m));
+        [dx.q_l, dx.q_m, dx.p_l, dx.p_m].iter().flat_map(list).collect()
+    });
+    let [tau_l, dtau_l, ddtau_l] = torques(&robot.links, &x, state);
+    ModelRow {
+        M_l: rows(&matrices.mass),
+        E_l: rows(&matrices.workless()),
+        S_l: rows(&matrices.skew),
+        dM_l: rows(&matrices.mass_rate),
+        bias: list(&robot.links.inverse_dynamics(&x.q_l, &x.v_l, &x.v_l, &Vector::ZERO)),
+        H: robot.total_energy(&x),
+        ddq_l: list(&robot.link_acceleration(&x)),
+        dx,
+        tau_l,
+        dtau_l,
+        ddtau_l,
+    }
+}
+
+/// The torque on the links and its first two rates, each if the derivatives it depends on are given. Of those that are
+/// not, none is in the torque that is asked for: zero does.
+fn torques<L: Links<f64, N>, const N: usize>(
+    links: &L,
+    x: &Motion<f64, N>,
+    state: &StateRow,
+) -> [Option<Vec<f64>>; 3] {
+    let given = [&state.ddq_l, &state.d3q_l, &state.d4q_l];
+    let [a, jerk, snap] = given.map(|x| x.as_deref().map_or(Vector::ZERO, vector));
+    let torque = links.torque_along::<_, 3, 5>(&Vector::from_derivatives(&[x.q_l, x.v_l, a, jerk, snap]));
+    let rates = torque.derivatives();
+    std::array::from_fn(|k| given[k].as_ref().map(|_| list(&rates[k])))
 }
 
 /// A problem if some of the numbers computed at `state` are not finite: JSON has no word for them.

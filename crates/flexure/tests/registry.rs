@@ -10,14 +10,29 @@ use flexure::run::preload;
 fn the_pendulum_swings_about_its_joint() {
     let robot = load_robot("pendulum-1dof").expect("built in");
     let Links::Pendulum { mass, com, inertia } = robot.links else { panic!("a pendulum") };
-    let (q, v) = (0.7, 1.3);
-    let state =
-        StateRow { q_l: vec![q], q_m: vec![0.9], dq_l: vec![v], dq_m: vec![0.0], ..StateRow::default() };
+    let (q, v, a, jerk) = (0.7, 1.3, -2.1, 3.4);
+    let state = StateRow {
+        q_l: vec![q],
+        q_m: vec![0.9],
+        dq_l: vec![v],
+        dq_m: vec![0.0],
+        ddq_l: Some(vec![a]),
+        d3q_l: Some(vec![jerk]),
+        ..StateRow::default()
+    };
     let states = StateFile { name: "test".to_owned(), rows: vec![state] };
     let row = &evaluate_model(&robot, &states).expect("one joint")[0];
     let about_the_joint = inertia + mass * com * com;
     assert!((row.M_l[0][0] - about_the_joint).abs() < 1e-15);
     assert!((row.bias[0] - mass * 9.81 * com * q.sin()).abs() < 1e-14);
+    let weight = mass * 9.81 * com;
+    let torque = about_the_joint * a + weight * q.sin();
+    let rate = about_the_joint * jerk + weight * q.cos() * v;
+    for (got, expected) in [(&row.tau_l, torque), (&row.dtau_l, rate)] {
+        let got = got.as_ref().expect("given what it depends on")[0];
+        assert!((got - expected).abs() < 1e-14, "{got}, expected {expected}");
+    }
+    assert_eq!(row.ddtau_l, None, "the fourth derivative is not given");
     let spring = 0.5 * robot.stiffness[0] * 0.2 * 0.2;
     let energy = 0.5 * about_the_joint * v * v + mass * 9.81 * com * (1.0 - q.cos()) + spring;
     assert!((row.H - energy).abs() < 1e-14);

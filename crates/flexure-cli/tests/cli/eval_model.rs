@@ -124,6 +124,61 @@ fn without_a_torque_there_is_no_state_derivative() {
     assert_eq!(row["t"], 0.0, "the time is zero if none is given");
 }
 
+/// The acceleration that the springs give takes the torque that the springs give.
+#[test]
+fn the_torque_on_the_links_is_what_springs_and_damping_leave() {
+    let place = Place::new();
+    let mut state = json!({"q_l": [0.3, -0.8], "q_m": [0.5, -0.2], "dq_l": [1.5, -2.0], "dq_m": [0.0, 1.0]});
+    let run = |state: &Value| {
+        place.fed(&["model", "quanser-2dof", "--states", "-"], state.to_string()).done().json()
+    };
+    state["ddq_l"] = run(&state)["ddq_l"].clone();
+    let row = run(&state);
+    // K (q_m − q_l) − D_l q̇_l
+    assert_close("tau_l", &row["tau_l"], &json!([9.0 * 0.2 - 0.8 * 1.5, 4.0 * 0.6 + 0.55 * 2.0]));
+    assert!(row.get("dtau_l").is_none() && row.get("ddtau_l").is_none(), "not asked for: {row}");
+}
+
+/// Rates of the torque against differences of torques along a polynomial.
+#[test]
+fn torque_rates_are_rates_of_the_torque() {
+    let derivatives = [[0.3, -0.8], [1.5, -2.0], [-3.0, 4.0], [5.0, 7.0], [11.0, -13.0]];
+    let h = 1e-3;
+    let line = |step: i32| {
+        let t = h * f64::from(step);
+        // Derivative k of the polynomial at t.
+        let at = |k: usize| {
+            [0, 1].map(|joint| {
+                derivatives[k..]
+                    .iter()
+                    .enumerate()
+                    .rev()
+                    .fold(0.0, |sum, (i, x)| x[joint] + sum * t / (i + 1) as f64)
+            })
+        };
+        let rest = [0.0; 2];
+        let (q, v, a, jerk, snap) = (at(0), at(1), at(2), at(3), at(4));
+        let state = json!({"t": t, "q_l": q, "q_m": rest, "dq_l": v, "dq_m": rest, "ddq_l": a, "d3q_l": jerk, "d4q_l": snap});
+        format!("{state}\n")
+    };
+    let place = Place::new();
+    let states: String = (-2..=2).map(line).collect();
+    let rows = lines(&place.fed(&["model", "quanser-2dof", "--states", "-"], states).done().stdout);
+    let torque: Vec<_> = rows.iter().map(|row| numbers(&row["tau_l"])).collect();
+    let differences = |weights: [f64; 5], scale: f64| -> Vec<f64> {
+        (0..2).map(|i| weights.iter().zip(&torque).map(|(w, tau)| w * tau[i]).sum::<f64>() / scale).collect()
+    };
+    for (key, expected, tolerance) in [
+        ("dtau_l", differences([1.0, -8.0, 0.0, 8.0, -1.0], 12.0 * h), 1e-9),
+        // Rounding of 1e-15 N m over h².
+        ("ddtau_l", differences([-1.0, 16.0, -30.0, 16.0, -1.0], 12.0 * h * h), 1e-7),
+    ] {
+        for (g, e) in numbers(&rows[2][key]).iter().zip(&expected) {
+            assert!((g - e).abs() <= tolerance * e.abs(), "{key}: {}, expected {expected:?}", rows[2]);
+        }
+    }
+}
+
 /// JSON has no word for a number that is not finite, and null would be taken for "not computed".
 #[test]
 fn a_result_that_is_not_finite_is_refused_at_its_state() {
@@ -134,4 +189,8 @@ fn a_result_that_is_not_finite_is_refused_at_its_state() {
         let outcome = place.fed(&[&command[..], &["--states", "-"]].concat(), format!("{good}\n\n{huge}\n"));
         outcome.refused(&["standard input:3:1", "must be finite"]);
     }
+    // Products of these in the rate of the torque, and nowhere else, are beyond 1e308.
+    let huge = r#"{"q_l": [0, 1], "q_m": [0, 0], "dq_l": [1e150, 0], "dq_m": [0, 0], "ddq_l": [1e200, 0], "d3q_l": [0, 0]}"#;
+    let outcome = place.fed(&["model", "quanser-2dof", "--states", "-"], format!("{good}\n{huge}\n"));
+    outcome.refused(&["standard input:2:1", "dtau_l is", "must be finite"]);
 }

@@ -6,6 +6,7 @@
 
 mod ldl;
 mod matrix;
+mod series;
 mod vector;
 
 pub use ldl::Ldl;

@@ -136,8 +136,7 @@ impl<C: Scalar, L: Links<C, N>, const N: usize> Fjr<C, L, N> {
     /// Link accelerations q̈_l [rad/s²]: they do not depend on the motor torque.
     #[inline]
     pub fn link_acceleration<T: Over<C>>(&self, x: &Motion<T, N>) -> Vector<T, N> {
-        let bias = self.links.inverse_dynamics(&x.q_l, &x.v_l, &x.v_l, &Vector::ZERO);
-        self.links.factor(&x.q_l).solve(&(self.link_torque(x) - bias))
+        self.links.forward_dynamics(&x.q_l, &x.v_l, &self.link_torque(x))
     }
 
     /// Motor accelerations q̈_m [rad/s²] under the motor torque u_m [N m].

@@ -1,7 +1,7 @@
 //! What a robot must say of its links.
 
 use crate::linalg::{Ldl, Matrix, Vector};
-use crate::scalar::{Dual, Over, Scalar};
+use crate::scalar::{Dual, Jet, Over, Scalar};
 
 /// The rigid links of a robot with `N` joints and constants of type `C`: everything between the springs and the world.
 ///
@@ -67,6 +67,42 @@ pub trait Links<C: Scalar, const N: usize> {
         a_r: &Vector<T, N>,
     ) -> Vector<T, N> {
         self.inertial_torque(q, v, v_r, a_r) + self.gravity_torque(q)
+    }
+
+    /// Joint torque that moves the links along a trajectory, τ = M(q) q̈ + C(q, q̇) q̇ + g(q) [N m], with its exact time
+    /// derivatives: `U` Taylor coefficients of τ from the `U2 = U + 2` of q in rad.
+    ///
+    /// With `U = 3`, from q, q̇, q̈, q⃛, q⃜: τ, τ̇ and τ̈. What other libraries call `rnea`, along a trajectory instead of at
+    /// an instant, for O(n) whatever `U` is. Derivatives without their factorials go in and come out by
+    /// [`Vector::from_derivatives`] and [`Vector::derivatives`]:
+    ///
+    /// ```
+    /// use flexure_core::{linalg::Vector, model::Links, robots::Pendulum};
+    /// let (links, zero) = (Pendulum { inertia: 0.1, weight_moment: 5.0 }, Vector([0.0]));
+    /// // Turning at a constant 2 rad/s, now hanging: the torque is 5 sin 2t.
+    /// let q = Vector::from_derivatives(&[zero, Vector([2.0]), zero, zero, zero]);
+    /// let [torque, rate, second] = links.torque_along::<_, 3, 5>(&q).derivatives();
+    /// assert_eq!([torque[0], rate[0], second[0]], [0.0, 10.0, 0.0]);
+    /// ```
+    #[inline]
+    fn torque_along<T: Over<C>, const U: usize, const U2: usize>(
+        &self,
+        q: &Vector<Jet<T, U2>, N>,
+    ) -> Vector<Jet<T, U>, N> {
+        let v = q.map(|x| x.differentiate());
+        self.inverse_dynamics(&q.map(|x| x.truncate()), &v, &v, &q.map(|x| x.differentiate_twice()))
+    }
+
+    /// Accelerations under the joint torque `torque` [N m]: M(q)⁻¹ (τ − C(q, v) v − g(q)) [rad/s²].
+    #[inline]
+    fn forward_dynamics<T: Over<C>>(
+        &self,
+        q: &Vector<T, N>,
+        v: &Vector<T, N>,
+        torque: &Vector<T, N>,
+    ) -> Vector<T, N> {
+        let bias = self.inverse_dynamics(q, v, v, &Vector::ZERO);
+        self.factor(q).solve(&(*torque - bias))
     }
 
     /// M(q) a [N m].

@@ -1,12 +1,14 @@
 //! The port-Hamiltonian model of a flexible-joint robot over any [`Links`].
 
 mod fjr;
+mod inverse_dynamics;
 mod link_motion;
 mod links;
 mod matrices;
 mod state;
 
 pub use fjr::{Fjr, Power};
+pub use inverse_dynamics::FeedForward;
 pub use links::{Links, MassFactor};
 pub use matrices::LinkMatrices;
 pub use state::{Motion, State};

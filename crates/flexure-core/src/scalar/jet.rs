@@ -94,6 +94,13 @@ impl<S: Scalar, const K: usize> Jet<S, K> {
         Jet::from_fn(|k| self.coefficients[k + 1] * S::from_f64((k + 1) as f64))
     }
 
+    /// The second time derivative as a jet of `J < K − 1` coefficients.
+    #[inline]
+    pub fn differentiate_twice<const J: usize>(&self) -> Jet<S, J> {
+        const { assert!(J + 1 < K, "differentiation costs one order each time") }
+        Jet::from_fn(|k| self.coefficients[k + 2] * S::from_f64(((k + 1) * (k + 2)) as f64))
+    }
+
     /// Solves `y' = f x'` order by order, where `f` may depend on lower orders of `y`: the recurrence behind
     /// `exp`, `tanh`, … `f(k, y)` returns coefficient `k` of `f` given `y` up to order `k`.
     #[inline]

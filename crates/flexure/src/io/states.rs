@@ -14,7 +14,7 @@ use super::suggest;
 /// Longest line that is read \[bytes\].
 const LONGEST: usize = 1 << 20;
 
-/// A time, a state and perhaps a torque; one number per joint.
+/// A time, a state, perhaps a torque and higher derivatives of the link positions; one number per joint.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StateRow {
     /// Line of the file, counted from 1.
@@ -31,6 +31,12 @@ pub struct StateRow {
     pub dq_m: Vec<f64>,
     /// Motor torques [N m].
     pub u_m: Option<Vec<f64>>,
+    /// Link accelerations [rad/s²].
+    pub ddq_l: Option<Vec<f64>>,
+    /// Link jerks [rad/s³]; only with accelerations.
+    pub d3q_l: Option<Vec<f64>>,
+    /// Fourth derivatives of the link positions [rad/s⁴]; only with jerks.
+    pub d4q_l: Option<Vec<f64>>,
 }
 
 /// The states in a stream, one by one; after an error the next line goes on. Blank lines are skipped.
@@ -76,7 +82,7 @@ impl<R: BufRead> States<R> {
         let n = self.joints;
         let numbers = if n == 1 { "[one number]".into() } else { format!("[{n} numbers]") };
         let help = format!(
-            "one JSON object a line with q_l, q_m, dq_l, dq_m = {numbers}, optional t (a number) and u_m = {numbers}"
+            "one JSON object a line with q_l, q_m, dq_l, dq_m = {numbers}, optional t (a number), u_m, ddq_l, d3q_l and d4q_l = {numbers}"
         );
         let start = (0..=column.min(line.len())).rev().find(|&i| line.is_char_boundary(i)).unwrap_or(0);
         Problem::new(code, what, help).at(&Source::part(&self.name, line, self.line - 1), start..start)
@@ -177,7 +183,7 @@ struct Row {
     line: usize,
 }
 
-const KEYS: &[&str] = &["t", "q_l", "q_m", "dq_l", "dq_m", "u_m"];
+const KEYS: &[&str] = &["t", "q_l", "q_m", "dq_l", "dq_m", "u_m", "ddq_l", "d3q_l", "d4q_l"];
 
 impl<'de> DeserializeSeed<'de> for Row {
     type Value = StateRow;
@@ -195,7 +201,7 @@ impl<'de> Visitor<'de> for Row {
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<StateRow, A::Error> {
         let mut time = None;
-        let mut vectors: [Option<Vec<f64>>; 5] = Default::default();
+        let mut vectors: [Option<Vec<f64>>; 8] = Default::default();
         while let Some(key) = map.next_key::<String>()? {
             // The position travels in the message: serde_json finds it there again.
             let named = |error: A::Error| de::Error::custom(format!("{key}: {error}"));
@@ -220,7 +226,15 @@ impl<'de> Visitor<'de> for Row {
                 }
             }
         }
-        let [q_l, q_m, dq_l, dq_m, u_m] = vectors;
+        let [q_l, q_m, dq_l, dq_m, u_m, ddq_l, d3q_l, d4q_l] = vectors;
+        for (key, given, lower, lower_given) in [
+            ("d3q_l", d3q_l.is_some(), "ddq_l", ddq_l.is_some()),
+            ("d4q_l", d4q_l.is_some(), "d3q_l", d3q_l.is_some()),
+        ] {
+            if given && !lower_given {
+                return Err(de::Error::custom(format!("{key} without {lower}: torque rates need both")));
+            }
+        }
         let missing = |key: &'static str| move || de::Error::custom(format!("missing key {key}"));
         Ok(StateRow {
             line: self.line,
@@ -230,6 +244,9 @@ impl<'de> Visitor<'de> for Row {
             dq_l: dq_l.ok_or_else(missing("dq_l"))?,
             dq_m: dq_m.ok_or_else(missing("dq_m"))?,
             u_m,
+            ddq_l,
+            d3q_l,
+            d4q_l,
         })
     }
 }
@@ -258,10 +275,15 @@ mod tests {
             dq_l: vec![5.0, 6.0],
             dq_m: vec![7.0, 8.5],
             u_m: Some(vec![0.0, -1e3]),
+            ..StateRow::default()
         };
         let later = StateRow { line: 4, ..expected.clone() };
         assert_eq!(rows, [Ok(expected), Ok(later)]);
         assert!(read(&format!("\u{feff}{line}"))[0].is_ok());
+        let along = line.replace("\"u_m\"", r#""d3q_l": [3, 3], "d4q_l": [4, 4], "ddq_l""#);
+        let row = read(&along).remove(0).unwrap();
+        assert_eq!((row.u_m, row.ddq_l), (None, Some(vec![0.0, -1e3])));
+        assert_eq!((row.d3q_l, row.d4q_l), (Some(vec![3.0; 2]), Some(vec![4.0; 2])));
     }
 
     #[test]
@@ -278,6 +300,9 @@ mod tests {
             (format!(r#"{{"q_m": [1, 2], {rest}"#), "q_m is given twice"),
             (format!(r#"{{"t": 1, "t": 1, "q_l": [1, 2], {rest}"#), "t is given twice"),
             (format!(r#"{{"q_l": [1, 2], {rest} 3"#), "trailing characters"),
+            (format!(r#"{{"ddq_l": [1], "q_l": [1, 2], {rest}"#), "ddq_l: 2 numbers expected"),
+            (format!(r#"{{"d3q_l": [1, 2], "q_l": [1, 2], {rest}"#), "d3q_l without ddq_l"),
+            (format!(r#"{{"d4q_l": [1, 2], "ddq_l": [1, 2], "q_l": [1, 2], {rest}"#), "d4q_l without d3q_l"),
             ("[1, 2]".into(), "invalid type: sequence, expected an object"),
             (r#"{"q_l": [1, "#.into(), "q_l: EOF"),
         ] {
