@@ -25,8 +25,9 @@ const PRINTED: [(&str, [&str; 13]); 2] = [
 fn at_rest(robot: &Robot, count: u32) -> Vec<(Vec<f64>, ModelRow)> {
     const STEPS: [f64; 3] = [std::f64::consts::SQRT_2, 2.236_067_977_499_79, 2.645_751_311_064_590_6];
     let angle = |i: u32, step: f64| (f64::from(i) * step).rem_euclid(std::f64::consts::TAU) - 3.0;
-    let postures: Vec<Vec<f64>> =
-        (0..count).map(|i| STEPS[..robot.joint_count()].iter().map(|step| angle(i, *step)).collect()).collect();
+    let postures: Vec<Vec<f64>> = (0..count)
+        .map(|i| STEPS[..robot.joint_count()].iter().map(|step| angle(i, *step)).collect())
+        .collect();
     let rows = postures.iter().map(|q| {
         let still = vec![0.0; q.len()];
         StateRow { q_l: q.clone(), q_m: q.clone(), dq_l: still.clone(), dq_m: still, ..StateRow::default() }
