@@ -4,9 +4,11 @@ mod fjr;
 mod link_motion;
 mod links;
 mod matrices;
+mod rotors;
 mod state;
 
 pub use fjr::{Fjr, Power};
 pub use links::{Links, MassFactor};
 pub use matrices::LinkMatrices;
+pub use rotors::RotorCoupling;
 pub use state::{Motion, State};
