@@ -55,7 +55,8 @@ fn describe(scenario: &Scenario) -> String {
         Hold::ZeroOrder => format!("torque held for {} ms", 1e3 * scenario.control_period),
         Hold::Continuous => "continuous control".to_owned(),
     };
-    let unknown = unknown(&scenario.plant.options()).map(|unknown| format!("; {unknown}")).unwrap_or_default();
+    let unknown =
+        unknown(&scenario.plant.options()).map(|unknown| format!("; {unknown}")).unwrap_or_default();
     format!("{} under v-CBC with φ = {}; {start}; {hold}{unknown}", scenario.robot.name, phi.name())
 }
 

@@ -64,8 +64,9 @@ fn advance<L: Links<f64, N> + Copy, const N: usize>(
     u: Vector<f64, N>,
 ) -> (Motion<f64, N>, Ledger, u64) {
     let (mut integrator, mut ledger) = (Integrator::new(1e-10), Ledger::default());
-    let end =
-        integrator.advance(&(*robot).into(), x, 0.0, interval, &|_, _: &_| u, &mut ledger).expect("a benign motion");
+    let end = integrator
+        .advance(&(*robot).into(), x, 0.0, interval, &|_, _: &_| u, &mut ledger)
+        .expect("a benign motion");
     (end, ledger, integrator.steps())
 }
 
@@ -220,8 +221,9 @@ fn an_explosion_is_reported_where_it_happens() {
     let mut integrator = Integrator::new(1e-10);
     let torque = |t: f64, _: &Motion<f64, 2>| Vector([if t > 0.25 { f64::NAN } else { 1.0 }, 0.0]);
     let x = Motion::at_rest(Vector([0.0, 0.0]));
-    let failure =
-        integrator.advance(&robot.into(), x, 0.0, 1.0, &torque, &mut Ledger::default()).expect_err("NaN torque");
+    let failure = integrator
+        .advance(&robot.into(), x, 0.0, 1.0, &torque, &mut Ledger::default())
+        .expect_err("NaN torque");
     // A step whose last stage lies before the explosion may end a little after it.
     assert!((0.24..0.26).contains(&failure.after), "{failure:?}");
 }

@@ -63,8 +63,8 @@ impl<const N: usize> StageSolver<N> {
             // What the motors' elimination adds to the springs' −h² K A² beside S.
             for (k, row) in link.iter_mut().enumerate() {
                 for (l, block) in row.iter_mut().enumerate() {
-                    let mut added = (motor[l] * spring[l]).scaled(S[(k, l)])
-                        + (motor[k] * spring[k]).scaled(S[(l, k)]);
+                    let mut added =
+                        (motor[l] * spring[l]).scaled(S[(k, l)]) + (motor[k] * spring[k]).scaled(S[(l, k)]);
                     for (j, motor) in motor.iter().enumerate() {
                         added = added - motor.scaled(S[(k, j)] * S[(l, j)]);
                     }
@@ -127,9 +127,7 @@ impl<const N: usize> StageSolver<N> {
         }
         // Motors out, links solved, motors back.
         let free: [Stages; N] = std::array::from_fn(|k| self.motor[k] * motor[k]);
-        let link = self.solve_links(std::array::from_fn(|k| {
-            link[k] + self.load(k, &free, |S, j| S[(k, j)])
-        }));
+        let link = self.solve_links(std::array::from_fn(|k| link[k] + self.load(k, &free, |S, j| S[(k, j)])));
         let mut worst = 0.0_f64;
         for k in 0..N {
             let motor = free[k] + self.motor[k] * self.load(k, &link, |S, j| S[(j, k)]);

@@ -94,8 +94,7 @@ impl<L: Links<f64, N>, const N: usize> Plant<L, N> {
     pub fn accelerations(&self, x: &Motion<f64, N>, u_m: &Vector<f64, N>) -> [Vector<f64, N>; 2] {
         let robot = &self.robot;
         let [link, motor] = self.unbalanced(x, u_m, [Vector::ZERO; 2]);
-        let per_inertia =
-            |torque: Vector<f64, N>| Vector::from_fn(|i| torque[i] / robot.motor_inertia[i]);
+        let per_inertia = |torque: Vector<f64, N>| Vector::from_fn(|i| torque[i] / robot.motor_inertia[i]);
         match self.coupling_matrix(&x.q_l) {
             None => [robot.links.factor(&x.q_l).solve(&link), per_inertia(motor)],
             Some(S) => {
