@@ -8,7 +8,7 @@ use std::hint::black_box;
 
 use flexure_core::control::{CoupledTanh, Input, Vcbc};
 use flexure_core::linalg::Vector as V;
-use flexure_core::model::{FeedForward, Fjr, Links, Motion, State};
+use flexure_core::model::{FeedForward, Fjr, Links, Motion, RotorCoupling, State};
 use flexure_core::robots::{PlanarTwoLink, Tree};
 use flexure_core::scalar::{Jet, Scalar};
 use flexure_core::virtual_system::virtual_dynamics;
@@ -56,6 +56,16 @@ fn factor_and_solve(robot: &Chain, q: &V<f64, 7>, b: &V<f64, 7>) -> V<f64, 7> {
 }
 
 #[cfg_attr(not(debug_assertions), no_panic)]
+fn rotors(
+    coupling: &RotorCoupling<f64, 7>,
+    robot: &Chain,
+    x: &Motion<f64, 7>,
+    a: &V<f64, 7>,
+) -> [V<f64, 7>; 2] {
+    [coupling.link_torque(&robot.links, x, a), coupling.motor_torque(&robot.links, x, a)]
+}
+
+#[cfg_attr(not(debug_assertions), no_panic)]
 fn jets(x: Jet<f64, 5>) -> Jet<f64, 5> {
     (x.sin() * x.exp() + x.tanh() / x.ln()).sqrt().atan().ln_cosh().square()
 }
@@ -70,6 +80,7 @@ fn main() {
         torque_along as fn(&_, &_) -> _,
         forward_dynamics as fn(&_, &_, &_, &_) -> _,
         factor_and_solve as fn(&_, &_, &_) -> _,
+        rotors as fn(&_, &_, &_, &_) -> _,
     ));
     assert!(jets(black_box(Jet::variable(0.5))).coefficient(4).is_finite());
 }

@@ -23,6 +23,13 @@ impl<C: Scalar, L: Links<C, N>, const N: usize> Links<C, N> for Derived<'_, L> {
     fn potential_energy<T: flexure_core::scalar::Over<C>>(&self, q: &Vector<T, N>) -> T {
         self.0.potential_energy(q)
     }
+    fn carrier_rates<T: flexure_core::scalar::Over<C>>(
+        &self,
+        q: &Vector<T, N>,
+        v: &Vector<T, N>,
+    ) -> Vector<T, N> {
+        self.0.carrier_rates(q, v)
+    }
     fn factor<T: flexure_core::scalar::Over<C>>(&self, q: &Vector<T, N>) -> flexure_core::linalg::Ldl<T, N> {
         self.0.mass_matrix(q).ldl()
     }

@@ -55,7 +55,14 @@ fn describe(scenario: &Scenario) -> String {
         Hold::ZeroOrder => format!("torque held for {} ms", 1e3 * scenario.control_period),
         Hold::Continuous => "continuous control".to_owned(),
     };
-    format!("{} under v-CBC with φ = {}; {start}; {hold}", scenario.robot.name, phi.name())
+    let unknown =
+        unknown(&scenario.plant.options()).map(|unknown| format!("; {unknown}")).unwrap_or_default();
+    format!("{} under v-CBC with φ = {}; {start}; {hold}{unknown}", scenario.robot.name, phi.name())
+}
+
+/// What the plant has that the law does not know, from the keys of `[plant]`.
+fn unknown(options: &[&str]) -> Option<String> {
+    (!options.is_empty()).then(|| format!("unknown to the law: {}", options.join(", ").replace('_', " ")))
 }
 
 /// Runs the experiments of the paper, on all cores. `progress` is told the number of the experiment and the fraction of
@@ -111,8 +118,9 @@ fn outcome(summary: &Summary) -> String {
         }
         None => "the links do not settle within 1 mrad of the reference".to_owned(),
     };
+    let unknown = unknown(&summary.plant).map(|unknown| format!("; {unknown}")).unwrap_or_default();
     format!(
-        "φ = {}: {settled}; largest motor torque {} N m, root mean square {} N m.",
+        "φ = {}: {settled}; largest motor torque {} N m, root mean square {} N m{unknown}.",
         summary.phi,
         engineering(summary.max_abs_u_m),
         engineering(summary.rms_u_m)
@@ -140,6 +148,7 @@ fn unit(key: &str) -> &'static str {
         "torque_limit" => " N m",
         "velocity_limit" => " rad/s",
         "deflection_limit" => " rad",
+        "spring_hardening" | "metric_hardening" => " N m/rad³",
         "kappa" => " 1/s",
         _ => "",
     }

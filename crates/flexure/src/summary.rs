@@ -11,6 +11,8 @@ pub struct Summary {
     pub controller: String,
     /// Shaping function, as in the scenario file.
     pub phi: String,
+    /// What the plant has that the law does not know, as keys of `[plant]` in the scenario file.
+    pub plant: Vec<&'static str>,
     /// Largest |q_l − q_ld| over all joints and the whole run, in rad. Like the next two NaN (null in JSON) for a run
     /// that diverged.
     pub max_abs_e_l: f64,

@@ -1,6 +1,6 @@
 //! A robot that is driven by the torque of its inverse dynamics, and by nothing else, follows the trajectory.
 
-use flexure::sim::{Integrator, Ledger};
+use flexure::sim::{Integrator, Ledger, Plant};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{FeedForward, Fjr, Links, Motion};
 use flexure_core::reference::{Reference, Sine};
@@ -8,7 +8,7 @@ use flexure_core::robots::{Body, JointKind, PlanarTwoLink, Tree};
 
 /// Open loop for a second from the right initial state: largest deviation of a position or a velocity, and largest
 /// deflection of a spring.
-fn deviation<L: Links<f64, N>, const N: usize>(
+fn deviation<L: Links<f64, N> + Copy, const N: usize>(
     robot: &Fjr<f64, L, N>,
     reference: &Sine<f64, N>,
 ) -> (f64, f64) {
@@ -19,12 +19,13 @@ fn deviation<L: Links<f64, N>, const N: usize>(
             (q_l.derivatives(), q_m.derivatives(), u_m.derivatives());
         (Motion { q_l, q_m, v_l, v_m }, u_m)
     };
+    let plant = Plant::from(*robot);
     let (mut integrator, mut ledger) = (Integrator::new(1e-11), Ledger::default());
     let (mut x, _) = plan(0.0);
     let (mut worst, mut bent) = (0.0_f64, 0.0_f64);
     for k in 0..100 {
         let t = f64::from(k) * 0.01;
-        x = integrator.advance(robot, x, t, 0.01, &|t, _: &_| plan(t).1, &mut ledger).expect("smooth");
+        x = integrator.advance(&plant, x, t, 0.01, &|t, _: &_| plan(t).1, &mut ledger).expect("smooth");
         let (planned, _) = plan(t + 0.01);
         let parts = [x.q_l - planned.q_l, x.q_m - planned.q_m, x.v_l - planned.v_l, x.v_m - planned.v_m];
         worst = parts.iter().flat_map(Vector::iter).fold(worst, |m, e| m.max(e.abs()));
@@ -34,7 +35,7 @@ fn deviation<L: Links<f64, N>, const N: usize>(
 }
 
 #[track_caller]
-fn follows<L: Links<f64, N>, const N: usize>(robot: &Fjr<f64, L, N>, reference: &Sine<f64, N>) {
+fn follows<L: Links<f64, N> + Copy, const N: usize>(robot: &Fjr<f64, L, N>, reference: &Sine<f64, N>) {
     let (worst, bent) = deviation(robot, reference);
     // Some thousand steps with local errors of 1e-11 of speeds of 10 rad/s.
     assert!(worst < 1e-8, "{worst} from the trajectory");

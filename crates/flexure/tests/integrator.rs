@@ -57,15 +57,16 @@ fn distance<const N: usize>(a: &Motion<f64, N>, b: &Motion<f64, N>) -> f64 {
         .fold(0.0, |m: f64, x| m.max(x.abs()))
 }
 
-fn advance<L: Links<f64, N>, const N: usize>(
+fn advance<L: Links<f64, N> + Copy, const N: usize>(
     robot: &Fjr<f64, L, N>,
     x: Motion<f64, N>,
     interval: f64,
     u: Vector<f64, N>,
 ) -> (Motion<f64, N>, Ledger, u64) {
     let (mut integrator, mut ledger) = (Integrator::new(1e-10), Ledger::default());
-    let end =
-        integrator.advance(robot, x, 0.0, interval, &|_, _: &_| u, &mut ledger).expect("a benign motion");
+    let end = integrator
+        .advance(&(*robot).into(), x, 0.0, interval, &|_, _: &_| u, &mut ledger)
+        .expect("a benign motion");
     (end, ledger, integrator.steps())
 }
 
@@ -76,7 +77,7 @@ fn the_order_is_eight() {
         Motion { v_l: Vector([3.0, -5.0]), v_m: Vector([1.0, 4.0]), ..Motion::at_rest(Vector([0.3, 1.2])) };
     let run = |count| {
         let torque = |t: f64, _: &Motion<f64, 2>| Vector([2.0 * t.cos(), 1.0]);
-        Integrator::new(1.0).advance_uniformly(&robot, x, 1.0, count, &torque).expect("smooth")
+        Integrator::new(1.0).advance_uniformly(&robot.into(), x, 1.0, count, &torque).expect("smooth")
     };
     let reference = run(1024);
     let errors = [16, 32, 64].map(|count| distance(&run(count), &reference));
@@ -112,7 +113,7 @@ fn a_stiff_spring_on_a_light_wrist_neither_blows_up_nor_loses_energy() {
     let mut now = x;
     for _ in 0..2000 {
         now = integrator
-            .advance(&robot, now, 0.0, 1e-3, &|_, _: &_| Vector([0.0]), &mut ledger)
+            .advance(&robot.into(), now, 0.0, 1e-3, &|_, _: &_| Vector([0.0]), &mut ledger)
             .expect("bounded");
     }
     // 1000 oscillations: amplitude and phase stay.
@@ -156,7 +157,7 @@ fn a_seven_joint_arm_keeps_its_energy() {
     let (mut now, mut drift) = (x, 0.0_f64);
     for _ in 0..1000 {
         now = integrator
-            .advance(&robot, now, 0.0, 1e-3, &|_, _: &_| Vector::ZERO, &mut ledger)
+            .advance(&robot.into(), now, 0.0, 1e-3, &|_, _: &_| Vector::ZERO, &mut ledger)
             .expect("bounded");
         drift = drift.max((robot.total_energy(&now) - start).abs());
     }
@@ -220,8 +221,9 @@ fn an_explosion_is_reported_where_it_happens() {
     let mut integrator = Integrator::new(1e-10);
     let torque = |t: f64, _: &Motion<f64, 2>| Vector([if t > 0.25 { f64::NAN } else { 1.0 }, 0.0]);
     let x = Motion::at_rest(Vector([0.0, 0.0]));
-    let failure =
-        integrator.advance(&robot, x, 0.0, 1.0, &torque, &mut Ledger::default()).expect_err("NaN torque");
+    let failure = integrator
+        .advance(&robot.into(), x, 0.0, 1.0, &torque, &mut Ledger::default())
+        .expect_err("NaN torque");
     // A step whose last stage lies before the explosion may end a little after it.
     assert!((0.24..0.26).contains(&failure.after), "{failure:?}");
 }

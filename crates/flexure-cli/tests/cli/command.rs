@@ -15,10 +15,11 @@ pub const SCENARIO: &str = include_str!("../../../../scenarios/two-link-tanh.tom
 pub const ROBOT: &str = include_str!("../../../../robots/quanser-2dof.toml");
 
 /// Keys of a summary that the contract promises.
-pub const SUMMARY: [&str; 15] = [
+pub const SUMMARY: [&str; 16] = [
     "name",
     "controller",
     "phi",
+    "plant",
     "max_abs_e_l",
     "rms_e_l",
     "final_abs_e_l",

@@ -22,6 +22,11 @@ pub trait Links<C: Scalar, const N: usize> {
     /// The mass matrix at q, ready for [`MassFactor::solve`].
     fn factor<T: Over<C>>(&self, q: &Vector<T, N>) -> Self::Factor<'_, T>;
 
+    /// Rates at which the bodies that carry the motors turn about the motors' axes, a_i·ω of the parent of joint i
+    /// [rad/s]: linear in `v` [rad/s], zero for motors on the base. A motor sits on the body that carries its joint and
+    /// its axis is the joint's.
+    fn carrier_rates<T: Over<C>>(&self, q: &Vector<T, N>, v: &Vector<T, N>) -> Vector<T, N>;
+
     /// Gravity torque g_l(q) = ∂P_l/∂q [N m].
     #[inline]
     fn gravity_torque<T: Over<C>>(&self, q: &Vector<T, N>) -> Vector<T, N> {

@@ -5,10 +5,12 @@ mod inverse_dynamics;
 mod link_motion;
 mod links;
 mod matrices;
+mod rotors;
 mod state;
 
 pub use fjr::{Fjr, Power};
 pub use inverse_dynamics::FeedForward;
 pub use links::{Links, MassFactor};
 pub use matrices::LinkMatrices;
+pub use rotors::RotorCoupling;
 pub use state::{Motion, State};

@@ -30,6 +30,11 @@ impl<C: Scalar> Links<C, 1> for Pendulum<C> {
     }
 
     #[inline]
+    fn carrier_rates<T: Over<C>>(&self, _: &Vector<T, 1>, _: &Vector<T, 1>) -> Vector<T, 1> {
+        Vector::ZERO
+    }
+
+    #[inline]
     fn factor<T: Over<C>>(&self, q: &Vector<T, 1>) -> Ldl<T, 1> {
         self.mass_matrix(q).ldl()
     }

@@ -46,6 +46,12 @@ impl<C: Scalar> Links<C, 2> for PlanarTwoLink<C> {
         T::ZERO
     }
 
+    /// The second motor sits on the first link.
+    #[inline]
+    fn carrier_rates<T: Over<C>>(&self, _: &Vector<T, 2>, v: &Vector<T, 2>) -> Vector<T, 2> {
+        Vector([T::ZERO, v[0]])
+    }
+
     #[inline]
     fn gravity_torque<T: Over<C>>(&self, _: &Vector<T, 2>) -> Vector<T, 2> {
         Vector::ZERO

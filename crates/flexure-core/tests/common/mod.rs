@@ -60,8 +60,16 @@ pub fn rotation(roll: f64, pitch: f64, yaw: f64) -> [[f64; 3]; 3] {
 
 /// A branched tree with revolute and prismatic joints about arbitrary axes.
 pub fn branched<const N: usize>(seed: u64) -> Tree<f64, N> {
+    Tree::new(&branched_bodies(seed), GRAVITY).expect("parents come first")
+}
+
+/// Down, on a base that stands askew.
+pub const GRAVITY: [f64; 3] = [0.3, -0.2, -9.81];
+
+/// The bodies of [`branched`].
+pub fn branched_bodies<const N: usize>(seed: u64) -> [Body; N] {
     let mut r = Numbers(seed);
-    let bodies = core::array::from_fn(|i| {
+    core::array::from_fn(|i| {
         let axis: Vector<f64, 3> = r.vector(1.0);
         let norm = axis.dot(&axis).sqrt();
         let axis =
@@ -84,8 +92,7 @@ pub fn branched<const N: usize>(seed: u64) -> Tree<f64, N> {
             com: r.vector::<3>(0.1).0,
             inertia: (turn * Matrix::diagonal(&principal) * turn.transpose()).0,
         }
-    });
-    Tree::new(&bodies, [0.3, -0.2, -9.81]).expect("parents come first")
+    })
 }
 
 /// A serial arm of revolute joints with the proportions of a seven-joint arm: neighbouring axes at right angles.

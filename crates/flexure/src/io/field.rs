@@ -137,6 +137,15 @@ impl<'a> Field<'a> {
         }
     }
 
+    /// True or false.
+    pub fn boolean(&self) -> Option<bool> {
+        let DeValue::Boolean(value) = self.value else {
+            self.wrong_type("true or false", "without quotes");
+            return None;
+        };
+        Some(*value)
+    }
+
     /// The one of `options` that is named here.
     pub fn choice<T: Copy>(&self, options: &[(&str, T)]) -> Option<T> {
         let text = self.text()?;

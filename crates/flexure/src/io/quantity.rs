@@ -118,6 +118,10 @@ pub(super) const STIFFNESS: Quantity = Quantity::positive(
     "N m/rad",
 )
 .plausible(1e-3, 1e7, "joints lie between 1 and 1e6 N m/rad; is it in N m/degree or on the motor side?");
+pub(super) const SPRING_HARDENING: Quantity = Quantity::non_negative(
+    "growth k of the joint springs, torque K ζ + k ζ³, link side of the gear",
+    "N m/rad^3",
+);
 pub(super) const MOTOR_INERTIA: Quantity = Quantity::positive(
     "motor inertia, link side of the gear",
     "kg m^2",

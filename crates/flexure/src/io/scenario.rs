@@ -10,6 +10,7 @@ use super::document::{self, Form, Places};
 use super::field::Field;
 use super::initial::{self, Initial};
 use super::links;
+use super::plant::{self, Plant};
 use super::provenance::{self, Assumption};
 use super::quantity;
 use super::reference::{self, Reference};
@@ -45,6 +46,8 @@ pub struct Scenario {
     pub reference: Reference,
     /// Time in which the robot joins the reference from where it is at t = 0, if it does \[s\].
     pub smooth_start: Option<f64>,
+    /// What the simulated robot has that the law does not know.
+    pub plant: Plant,
     /// The law.
     pub controller: Controller,
     /// Numbers that no source vouches for: the robot's, then those of the scenario.
@@ -76,7 +79,7 @@ pub fn scenario_from_text(name: &str, text: &str, folder: &Path) -> Result<Scena
 const FORM: Form = Form {
     what: "scenario file",
     required: &["robot", "duration", "control_period", "reference", "controller"],
-    optional: &["hold", "initial", "sources", "imperfection"],
+    optional: &["hold", "initial", "plant", "sources", "imperfection"],
     other: (
         "links",
         "robot file",
@@ -110,6 +113,7 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> 
         reference_field.as_ref().map_or((None, None), |field| reference::read(field, &joints, base, end));
     let controller = root.required("controller", "a table with the kind");
     let controller = controller.and_then(|field| controller::read(&field, &joints));
+    let plant = plant::read(root, &joints, robot.as_ref());
     refuse_imperfections(root);
     let own = provenance::assumptions(root, places);
     if let (Some(field), Some(reference), Some(None), Some(initial)) =
@@ -129,6 +133,7 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> 
         initial: initial?,
         reference: reference?,
         smooth_start: smooth_start?,
+        plant: plant?,
         controller: controller?,
         assumptions: assumed,
         places: places.clone(),

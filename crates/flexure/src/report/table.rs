@@ -22,15 +22,21 @@ const NUMBERS: [Column; 5] = [
     ("rate\nsampled\n[1/s]", |summary| number(summary.rate_measured)),
 ];
 const AT_LIMIT: Column = ("at\nlimit\n[%]", |summary| number(100.0 * summary.saturated_fraction));
+const UNKNOWN: Column = ("unknown\nto the\nlaw", |summary| words(&summary.plant));
 const PROVED: Column = ("rate\nproved\n[1/s]", |summary| optional(summary.rate_certified));
 
-/// One row a run, at most 100 columns wide, without colours: the same text on a terminal and in a file. Torque limits
-/// and proved rates have a column where any run has them.
+/// One row a run, at most 100 columns wide, without colours: the same text on a terminal and in a file. Torque limits,
+/// proved rates and what a plant has that the law does not know have a column where any run has them.
 pub fn summary_table(summaries: &[Summary]) -> String {
     let limited = summaries.iter().any(|summary| summary.saturated_fraction > 0.0);
     let proved = summaries.iter().any(|summary| summary.rate_certified.is_some());
-    let columns: Vec<Column> =
-        NUMBERS.into_iter().chain(limited.then_some(AT_LIMIT)).chain(proved.then_some(PROVED)).collect();
+    let unknown = summaries.iter().any(|summary| !summary.plant.is_empty());
+    let columns: Vec<Column> = NUMBERS
+        .into_iter()
+        .chain(limited.then_some(AT_LIMIT))
+        .chain(proved.then_some(PROVED))
+        .chain(unknown.then_some(UNKNOWN))
+        .collect();
     let mut table = headed(["run", "φ"].into_iter().chain(columns.iter().map(|(title, _)| *title)));
     for summary in summaries {
         table.add_row(row(summary, &columns));
@@ -106,6 +112,10 @@ fn number(value: f64) -> String {
 
 fn optional(value: Option<f64>) -> String {
     value.map_or(NONE.to_owned(), engineering)
+}
+
+fn words(options: &[&str]) -> String {
+    if options.is_empty() { NONE.to_owned() } else { options.join("\n").replace('_', " ") }
 }
 
 fn row(summary: &Summary, columns: &[Column]) -> Row {

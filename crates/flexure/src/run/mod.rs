@@ -6,17 +6,18 @@ mod recorder;
 use std::time::Instant as Clock;
 
 use flexure_core::control::Input;
-use flexure_core::model::{Fjr, Links, Motion};
+use flexure_core::linalg::Vector;
+use flexure_core::model::{Fjr, Links, Motion, RotorCoupling};
 use flexure_core::reference::Reference;
 
 pub use preload::preload;
 use recorder::Recorder;
 pub use recorder::SETTLED;
 
-use crate::io::{self, Problems, Scenario};
+use crate::io::{self, Problem, Problems, Scenario};
 use crate::rates::BlockRates;
 use crate::registry::{AnyReference, Law, RobotVisitor, law, vector, with_robot};
-use crate::sim::{ClosedLoop, Divergence, Hold, Instant};
+use crate::sim::{ClosedLoop, Divergence, Hold, Instant, Plant};
 use crate::summary::Summary;
 use crate::trace::Trace;
 
@@ -37,7 +38,8 @@ pub struct Run {
 /// Simulates a scenario. `progress` is told the fraction done, now and then.
 ///
 /// # Errors
-/// If the robot has more joints than this program was built for, or the samples of the reference make no path.
+/// If the robot has more joints than this program was built for, its links cannot contain its coupled rotors, or the
+/// samples of the reference make no path.
 pub fn run(scenario: &Scenario, progress: &(dyn Fn(f64) + Sync)) -> Result<Run, Problems> {
     with_robot(&scenario.robot, Simulate { scenario, progress })?
 }
@@ -54,6 +56,12 @@ impl RobotVisitor for Simulate<'_> {
         let Self { scenario, progress } = self;
         let io::Controller::Vcbc { phi, .. } = &scenario.controller;
         let started = Clock::now();
+        let plant = plant(scenario, robot);
+        let start = initial(scenario);
+        if !plant.carries_its_rotors(&start.q_l) {
+            return Err(too_heavy(scenario).into());
+        }
+        let robot = &plant.robot;
         let law: Law<N> = law(&scenario.controller);
         let reference = AnyReference::<N>::new(scenario)?;
         let settings = ClosedLoop {
@@ -65,14 +73,14 @@ impl RobotVisitor for Simulate<'_> {
             },
             tolerance: TOLERANCE,
         };
-        let command = |t: f64, x: &Motion<f64, N>| law.command(&robot, x, &reference.at(t), &Input::ZERO);
+        let command = |t: f64, x: &Motion<f64, N>| law.command(robot, x, &reference.at(t), &Input::ZERO);
         let mut recorder = Recorder::new(vector(&scenario.robot.limits.torque));
         let mut observe = |instant: &Instant<'_, N>| {
-            let rates = BlockRates::at(&robot, &law, &instant.motion.q_l, instant.command);
-            recorder.record(&robot, instant, &rates);
+            let rates = BlockRates::at(robot, &law, &instant.motion.q_l, instant.command);
+            recorder.record(robot, instant, &rates);
             progress(instant.t / settings.duration);
         };
-        let outcome = settings.run(&robot, initial(scenario), &command, &mut observe);
+        let outcome = settings.run(&plant, start, &command, &mut observe);
         let (trace, figures) = recorder.finish();
         // Errors of a run that diverged are beyond those that were recorded: no number stands for them.
         let ended = |error: f64| if outcome.divergence.is_none() { error } else { f64::NAN };
@@ -80,6 +88,7 @@ impl RobotVisitor for Simulate<'_> {
             name: scenario.name.clone(),
             controller: scenario.controller.kind().to_owned(),
             phi: phi.name().to_owned(),
+            plant: scenario.plant.options(),
             max_abs_e_l: ended(figures.max_abs_e_l),
             rms_e_l: ended(figures.rms_e_l()),
             final_abs_e_l: ended(figures.final_abs_e_l),
@@ -106,4 +115,26 @@ fn initial<const N: usize>(scenario: &Scenario) -> Motion<f64, N> {
         v_l: vector(&initial.dq_l),
         v_m: vector(&initial.dq_m),
     }
+}
+
+/// The robot with what the scenario says that the law does not know.
+fn plant<L, const N: usize>(scenario: &Scenario, robot: Fjr<f64, L, N>) -> Plant<L, N> {
+    let io::Plant { rotor_coupling, spring_hardening } = &scenario.plant;
+    Plant {
+        spring_hardening: spring_hardening.as_deref().map_or(Vector::ZERO, vector),
+        rotor_coupling: rotor_coupling
+            .as_deref()
+            .map(|gears| RotorCoupling::new(&robot.motor_inertia, &vector(gears))),
+        robot,
+    }
+}
+
+fn too_heavy(scenario: &Scenario) -> Problem {
+    let message = format!(
+        "with coupled rotors the mass matrix of {} is not positive definite at the start",
+        scenario.robot.name
+    );
+    let help = "rotors have motor_inertia / gear_ratio² about their axes, and link inertias must contain the rotors that \
+                the links carry: a gear ratio is too small, or the links lack their motors";
+    scenario.places.problem("plant.rotor_coupling", "rotors", message, help)
 }

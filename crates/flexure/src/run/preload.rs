@@ -3,7 +3,7 @@
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links};
 
-use super::initial;
+use super::{initial, plant};
 use crate::io::{Problem, Problems, Scenario};
 use crate::registry::{RobotVisitor, with_robot};
 
@@ -27,12 +27,13 @@ impl RobotVisitor for Preload<'_> {
         let x = initial::<N>(self.scenario);
         let at_rest = x.v_l.iter().chain(x.v_m.iter()).all(|v| v == 0.0);
         let gravity = robot.links.gravity_torque(&x.q_l);
-        let missing = gravity - robot.spring_torque(&x.q_l, &x.q_m);
+        let plant = plant(self.scenario, robot);
+        let missing = gravity - plant.spring_torque(&x);
         let largest = |v: &Vector<f64, N>| v.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         if !at_rest || largest(&missing) <= NEGLIGIBLE * largest(&gravity).max(1.0) {
             return None;
         }
-        let holding = Vector::<f64, N>::from_fn(|i| x.q_l[i] + gravity[i] / robot.stiffness[i]);
+        let holding = x.q_l + plant.deflection_under(&gravity);
         let message = format!(
             "at rest, the springs miss what gravity asks of them by up to {:.3} N m (N for a prismatic joint): the first \
              torques will be large",

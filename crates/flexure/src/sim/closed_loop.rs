@@ -2,10 +2,11 @@
 
 use flexure_core::control::Command;
 use flexure_core::linalg::Vector;
-use flexure_core::model::{Fjr, Links, Motion};
+use flexure_core::model::{Links, Motion};
 
 use super::gauss::Integrator;
 use super::ledger::Ledger;
+use super::plant::Plant;
 
 /// How the torque behaves between control instants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,24 +83,24 @@ pub enum Cause {
 const BEYOND: f64 = 1e6;
 
 impl ClosedLoop {
-    /// Runs `law(t, x)` on `robot` from `x` and shows every control instant to `observe`, the last included.
+    /// Runs `law(t, x)` on `plant` from `x` and shows every control instant to `observe`, the last included.
     pub fn run<L: Links<f64, N>, const N: usize>(
         &self,
-        robot: &Fjr<f64, L, N>,
+        plant: &Plant<L, N>,
         mut x: Motion<f64, N>,
         law: &impl Fn(f64, &Motion<f64, N>) -> Command<f64, N>,
         observe: &mut impl FnMut(&Instant<'_, N>),
     ) -> Outcome {
         let mut integrator = Integrator::new(self.tolerance);
         let mut ledger = Ledger::default();
-        let start = robot.total_energy(&x);
+        let start = plant.total_energy(&x);
         let (mut worst, mut scale) = (0.0_f64, start.abs());
         let periods = self.periods();
         let mut divergence = None;
         for k in 0..=periods {
             let t = self.period * f64::from(k);
             let command = law(t, &x);
-            let energy = robot.total_energy(&x);
+            let energy = plant.total_energy(&x);
             let residual = energy - start - ledger.supplied + ledger.dissipated;
             scale = scale.max(energy.abs()).max(ledger.throughput).max(ledger.dissipated);
             worst = worst.max(residual.abs());
@@ -118,7 +119,7 @@ impl ClosedLoop {
             }
             let next = match self.hold {
                 Hold::ZeroOrder => integrator.advance(
-                    robot,
+                    plant,
                     x,
                     t,
                     self.period,
@@ -126,7 +127,7 @@ impl ClosedLoop {
                     &mut ledger,
                 ),
                 Hold::Continuous => integrator.advance(
-                    robot,
+                    plant,
                     x,
                     t,
                     self.period,

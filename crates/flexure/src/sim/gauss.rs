@@ -1,4 +1,4 @@
-//! Gauss–Legendre collocation of order 8 for flexible-joint robots.
+//! Gauss–Legendre collocation of order 8 for flexible-joint plants.
 //!
 //! Symplectic, so that an undamped robot neither gains nor loses energy systematically; A-stable, so that a motor
 //! damper of 9000 1/s or a stiff spring on a light wrist cannot blow up; and of high order, so that fast transients
@@ -6,10 +6,11 @@
 //! needs inverse dynamics only. Hairer, Lubich & Wanner, *Geometric Numerical Integration*, chapters II and VI.
 
 use flexure_core::linalg::Vector;
-use flexure_core::model::{Fjr, Links, Motion};
+use flexure_core::model::{Links, Motion};
 
 use super::ledger::Ledger;
 use super::newton::StageSolver;
+use super::plant::{Plant, Sides};
 use super::scheme::{STAGES, Scheme, Stages};
 
 /// A step that cannot be made: the state or the torque is not finite, or the step would have to be too small.
@@ -19,7 +20,7 @@ pub struct StepFailure {
     pub after: f64,
 }
 
-/// Integrates a robot over intervals, with steps chosen for accuracy.
+/// Integrates a plant over intervals, with steps chosen for accuracy.
 #[derive(Clone, Debug)]
 pub struct Integrator {
     scheme: Scheme,
@@ -79,7 +80,7 @@ impl Integrator {
     /// diverged, or its torque is no function of the state.
     pub fn advance<L: Links<f64, N>, const N: usize>(
         &mut self,
-        robot: &Fjr<f64, L, N>,
+        plant: &Plant<L, N>,
         mut x: Motion<f64, N>,
         t: f64,
         interval: f64,
@@ -92,7 +93,7 @@ impl Integrator {
             // Equal steps to the end of the interval, of at most the length that is good now.
             let remaining = steps_in(interval - done, self.step);
             let h = (interval - done) / f64::from(remaining);
-            match self.try_step(robot, &x, t + done, h, torque) {
+            match self.try_step(plant, &x, t + done, h, torque) {
                 Some(step) if step.factor >= 1.0 || h <= shortest => {
                     x = step.end;
                     ledger.add(&step.work);
@@ -117,7 +118,7 @@ impl Integrator {
     /// [`StepFailure`] if the stage equations of a step cannot be solved.
     pub fn advance_uniformly<L: Links<f64, N>, const N: usize>(
         &mut self,
-        robot: &Fjr<f64, L, N>,
+        plant: &Plant<L, N>,
         mut x: Motion<f64, N>,
         interval: f64,
         count: u32,
@@ -126,7 +127,7 @@ impl Integrator {
         let h = interval / f64::from(count);
         for i in 0..count {
             let t = h * f64::from(i);
-            x = self.try_step(robot, &x, t, h, torque).ok_or(StepFailure { after: t })?.end;
+            x = self.try_step(plant, &x, t, h, torque).ok_or(StepFailure { after: t })?.end;
             self.steps += 1;
         }
         Ok(x)
@@ -135,13 +136,13 @@ impl Integrator {
     /// A step of `h`; none if its stage equations cannot be solved in finite numbers.
     fn try_step<L: Links<f64, N>, const N: usize>(
         &self,
-        robot: &Fjr<f64, L, N>,
+        plant: &Plant<L, N>,
         x: &Motion<f64, N>,
         t: f64,
         h: f64,
         torque: &impl Fn(f64, &Motion<f64, N>) -> Vector<f64, N>,
     ) -> Option<Step<N>> {
-        let start = [robot.link_acceleration(x), robot.motor_acceleration(x, &torque(t, x))];
+        let start = plant.accelerations(x, &torque(t, x));
         let at_stage = |i: usize, solution: &StepSolution<N>| {
             let motion = self.stage(x, h, solution, i);
             let u = torque(t + h * self.scheme.nodes[i], &motion);
@@ -151,12 +152,12 @@ impl Integrator {
         // Corrections below this are rounding of velocities.
         let speeds = largest(&x.v_l) + largest(&x.v_m) + h * (largest(&start[0]) + largest(&start[1]));
         let floor = ROUNDING * speeds + STILL;
-        StageSolver::new(&self.scheme, robot, &x.q_l, h).solve(robot, &mut solution, floor / h, at_stage)?;
+        StageSolver::new(&self.scheme, plant, x, h).solve(plant, &mut solution, floor / h, at_stage)?;
 
         let mut work = Ledger::default();
         for i in 0..STAGES {
             let (motion, u) = at_stage(i, &solution);
-            work.book(h * self.scheme.weights[i], &robot.power(&motion, &u));
+            work.book(h * self.scheme.weights[i], &plant.power(&motion, &u));
         }
         let end = self.end_of_step(x, h, &solution);
         let factor = self.step_factor(x, h, &start, &solution);
@@ -192,7 +193,7 @@ impl Integrator {
         &self,
         x: &Motion<f64, N>,
         h: f64,
-        start: &[Vector<f64, N>; 2],
+        start: &Sides<N>,
         solution: &StepSolution<N>,
     ) -> f64 {
         let defect = |v: &Vector<f64, N>, a: &Vector<f64, N>, stages: &[Vector<f64, N>; STAGES]| {

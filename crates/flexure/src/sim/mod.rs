@@ -4,8 +4,10 @@ mod closed_loop;
 mod gauss;
 mod ledger;
 mod newton;
+mod plant;
 mod scheme;
 
 pub use closed_loop::{Cause, ClosedLoop, Divergence, Hold, Instant, Outcome};
 pub use gauss::{Integrator, StepFailure};
 pub use ledger::Ledger;
+pub use plant::Plant;

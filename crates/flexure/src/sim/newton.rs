@@ -1,14 +1,15 @@
 //! Simplified Newton iteration for the collocation equations of a flexible-joint robot.
 //!
 //! Unknown are the accelerations of links and motors at the stages; residuals are torques. The iteration matrix keeps
-//! what can be stiff, namely the mass matrix at the start of the step, springs and dampers, and leaves out velocity
-//! products and gravity, whose part vanishes with the step. Motors couple only to their own joint and are
-//! eliminated; what remains are N × N blocks of one small matrix over the stages.
+//! what can be stiff, namely the mass matrix and the slopes of the springs at the start of the step, and dampers. It
+//! leaves out velocity products and gravity, whose part vanishes with the step. Motors do not couple to each other and
+//! are eliminated; what remains are N × N blocks of one small matrix over the stages.
 
 use flexure_core::linalg::{Matrix, Vector};
-use flexure_core::model::{Fjr, Links, Motion};
+use flexure_core::model::{Links, Motion};
 
 use super::gauss::StepSolution;
+use super::plant::Plant;
 use super::scheme::{STAGES, Scheme, Stages};
 
 type Block = Matrix<f64, STAGES, STAGES>;
@@ -25,6 +26,8 @@ pub(super) struct StageSolver<const N: usize> {
     motor: [Block; N],
     /// h² K A² per joint: how an acceleration of one side loads the other through the spring.
     spring: [Block; N],
+    /// How it loads the other through coupled rotors: a row per link, a column per motor [kg m²].
+    coupling: Option<Matrix<f64, N, N>>,
     /// Block LU of M ⊗ 1 + diag(G): unit lower part below the diagonal, inverses of pivots on it.
     link: [[Block; N]; N],
 }
@@ -32,16 +35,18 @@ pub(super) struct StageSolver<const N: usize> {
 impl<const N: usize> StageSolver<N> {
     pub(super) fn new<L: Links<f64, N>>(
         scheme: &Scheme,
-        robot: &Fjr<f64, L, N>,
-        q_l: &Vector<f64, N>,
+        plant: &Plant<L, N>,
+        x: &Motion<f64, N>,
         h: f64,
     ) -> Self {
-        let spring = std::array::from_fn(|k| scheme.twice.scaled(h * h * robot.stiffness[k]));
+        let robot = &plant.robot;
+        let stiffness = plant.tangent_stiffness(x);
+        let spring: [Block; N] = std::array::from_fn(|k| scheme.twice.scaled(h * h * stiffness[k]));
         let motor: [Block; N] = std::array::from_fn(|k| {
             let inertia = Matrix::identity().scaled(robot.motor_inertia[k]);
             inverse(&(inertia + scheme.once.scaled(h * robot.motor_damping[k]) + spring[k]))
         });
-        let mass = robot.links.mass_matrix(q_l);
+        let mass = robot.links.mass_matrix(&x.q_l);
         let mut link: [[Block; N]; N] = std::array::from_fn(|k| {
             std::array::from_fn(|l| {
                 let inertia = Matrix::identity().scaled(mass[(k, l)]);
@@ -53,6 +58,20 @@ impl<const N: usize> StageSolver<N> {
                 }
             })
         });
+        let coupling = plant.coupling_matrix(&x.q_l);
+        if let Some(S) = &coupling {
+            // What the motors' elimination adds to the springs' −h² K A² beside S.
+            for (k, row) in link.iter_mut().enumerate() {
+                for (l, block) in row.iter_mut().enumerate() {
+                    let mut added =
+                        (motor[l] * spring[l]).scaled(S[(k, l)]) + (motor[k] * spring[k]).scaled(S[(l, k)]);
+                    for (j, motor) in motor.iter().enumerate() {
+                        added = added - motor.scaled(S[(k, j)] * S[(l, j)]);
+                    }
+                    *block = *block + added;
+                }
+            }
+        }
         for j in 0..N {
             link[j][j] = inverse(&link[j][j]);
             for i in j + 1..N {
@@ -62,21 +81,21 @@ impl<const N: usize> StageSolver<N> {
                 }
             }
         }
-        Self { motor, spring, link }
+        Self { motor, spring, coupling, link }
     }
 
     /// Iterates until corrections are below `floor` [rad/s²], or stop shrinking close to it. None if they do not.
     /// `stage(i, solution)` gives the motion and the motor torque at stage `i`.
     pub(super) fn solve<L: Links<f64, N>>(
         &self,
-        robot: &Fjr<f64, L, N>,
+        plant: &Plant<L, N>,
         solution: &mut StepSolution<N>,
         floor: f64,
         stage: impl Fn(usize, &StepSolution<N>) -> (Motion<f64, N>, Vector<f64, N>),
     ) -> Option<()> {
         let mut previous = f64::INFINITY;
         for iteration in 0..MAX_ITERATIONS {
-            let correction = self.improve(robot, solution, &stage);
+            let correction = self.improve(plant, solution, &stage);
             let stalled = iteration > 3 && correction > 0.5 * previous;
             if correction <= floor || (stalled && correction <= STALL * floor) {
                 return Some(());
@@ -92,7 +111,7 @@ impl<const N: usize> StageSolver<N> {
     /// One iteration: improves the accelerations and returns the largest correction [rad/s²].
     fn improve<L: Links<f64, N>>(
         &self,
-        robot: &Fjr<f64, L, N>,
+        plant: &Plant<L, N>,
         solution: &mut StepSolution<N>,
         stage: &impl Fn(usize, &StepSolution<N>) -> (Motion<f64, N>, Vector<f64, N>),
     ) -> f64 {
@@ -100,23 +119,18 @@ impl<const N: usize> StageSolver<N> {
         let mut motor = [Stages::ZERO; N];
         for i in 0..STAGES {
             let (x, u) = stage(i, solution);
-            let needed = robot.links.inverse_dynamics(&x.q_l, &x.v_l, &x.v_l, &solution.link[i]);
-            let spring = robot.spring_torque(&x.q_l, &x.q_m);
-            let damping_m = robot.motor_damping.diag_mul(&x.v_m);
-            let inertia_m = robot.motor_inertia.diag_mul(&solution.motor[i]);
-            let missing_l = robot.link_torque(&x) - needed;
-            let missing_m = u - spring - damping_m - inertia_m;
+            let [missing_l, missing_m] = plant.unbalanced(&x, &u, [solution.link[i], solution.motor[i]]);
             for k in 0..N {
                 link[k][i] = missing_l[k];
                 motor[k][i] = missing_m[k];
             }
         }
         // Motors out, links solved, motors back.
-        let load: [Stages; N] = std::array::from_fn(|k| self.motor[k] * motor[k]);
-        let link = self.solve_links(std::array::from_fn(|k| link[k] + self.spring[k] * load[k]));
+        let free: [Stages; N] = std::array::from_fn(|k| self.motor[k] * motor[k]);
+        let link = self.solve_links(std::array::from_fn(|k| link[k] + self.load(k, &free, |S, j| S[(k, j)])));
         let mut worst = 0.0_f64;
         for k in 0..N {
-            let motor = load[k] + self.motor[k] * (self.spring[k] * link[k]);
+            let motor = free[k] + self.motor[k] * self.load(k, &link, |S, j| S[(j, k)]);
             for i in 0..STAGES {
                 solution.link[i][k] += link[k][i];
                 solution.motor[i][k] += motor[i];
@@ -128,6 +142,23 @@ impl<const N: usize> StageSolver<N> {
             }
         }
         worst
+    }
+
+    /// How accelerations of one side load joint `k` of the other; `share` picks what joint j adds from S.
+    #[inline]
+    fn load(
+        &self,
+        k: usize,
+        accelerations: &[Stages; N],
+        share: impl Fn(&Matrix<f64, N, N>, usize) -> f64,
+    ) -> Stages {
+        let mut load = self.spring[k] * accelerations[k];
+        if let Some(S) = &self.coupling {
+            for (j, acceleration) in accelerations.iter().enumerate() {
+                load -= acceleration.scaled(share(S, j));
+            }
+        }
+        load
     }
 
     fn solve_links(&self, mut b: [Stages; N]) -> [Stages; N] {

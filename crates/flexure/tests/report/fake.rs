@@ -50,6 +50,7 @@ pub fn summary(name: &str) -> Summary {
         name: name.to_owned(),
         controller: "vcbc".to_owned(),
         phi: "tanh".to_owned(),
+        plant: Vec::new(),
         max_abs_e_l: 0.0312,
         rms_e_l: 1.234e-3,
         final_abs_e_l: 1.23e-7,

@@ -47,12 +47,10 @@ impl<C: Scalar> Joint<C> {
     /// A motion vector from parent to child coordinates.
     #[inline]
     pub(super) fn motion_to_child<T: Over<C>>(&self, pose: &Pose<T>, m: &Motion<T>) -> Motion<T> {
-        let angular = self.rotation.unrotate(m.angular);
-        let linear = self.rotation.unrotate(m.linear + m.angular.cross_constant(&self.translation));
+        let angular = self.unrotate(pose, m.angular);
+        let linear = self.unrotate(pose, m.linear + m.angular.cross_constant(&self.translation));
         match *pose {
-            Pose::Turned { sin, cos } => {
-                Motion { angular: unturn(angular, sin, cos), linear: unturn(linear, sin, cos) }
-            }
+            Pose::Turned { .. } => Motion { angular, linear },
             // v + ω × e_z q
             Pose::Slid(q) => Motion {
                 angular,
@@ -83,6 +81,16 @@ impl<C: Scalar> Joint<C> {
             Pose::Turned { sin, cos } => turn(v, sin, cos),
             Pose::Slid(_) => v,
         })
+    }
+
+    /// A free vector from parent to child axes.
+    #[inline]
+    pub(super) fn unrotate<T: Over<C>>(&self, pose: &Pose<T>, v: Vec3<T>) -> Vec3<T> {
+        let v = self.rotation.unrotate(v);
+        match *pose {
+            Pose::Turned { sin, cos } => unturn(v, sin, cos),
+            Pose::Slid(_) => v,
+        }
     }
 
     /// Origin of the child frame in the parent frame.

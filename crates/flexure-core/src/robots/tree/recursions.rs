@@ -123,6 +123,20 @@ impl<C: Scalar, const N: usize> Links<C, N> for Tree<C, N> {
         -total.dot_constant(&self.gravity)
     }
 
+    /// Angular velocities from the base outwards.
+    #[inline]
+    fn carrier_rates<T: Over<C>>(&self, q: &Vector<T, N>, v: &Vector<T, N>) -> Vector<T, N> {
+        let poses = self.poses(q);
+        let mut angular = Vector([Vec3::ZERO; N]);
+        let mut rates = Vector::ZERO;
+        for (i, (joint, pose)) in self.joints.iter().zip(&poses).enumerate() {
+            let carrier = angular.0.get(joint.parent).map_or(Vec3::ZERO, |&w| joint.unrotate(pose, w));
+            rates[i] = carrier.z;
+            angular[i] = carrier + joint.along_axis(v[i]).angular;
+        }
+        rates
+    }
+
     #[inline]
     fn factor<T: Over<C>>(&self, q: &Vector<T, N>) -> TreeFactor<'_, C, T, N> {
         self.articulate(q)
