@@ -1,13 +1,12 @@
 //! The law and the model at given states.
 
-use flexure_core::control::Input;
 use flexure_core::linalg::{Matrix, Vector};
 use flexure_core::model::{Fjr, LinkMatrices, Links, Motion};
 use flexure_core::reference::Reference;
 use serde::Serialize;
 
 use crate::io::{Problem, Problems, Robot, Scenario, StateFile, StateRow};
-use crate::registry::{AnyReference, Law, RobotVisitor, law, vector, with_robot};
+use crate::registry::{self, AnyReference, Law, RobotVisitor, law, vector, with_robot};
 
 /// The law at one state: a line of `flexure eval`.
 #[expect(non_snake_case, reason = "keys of the contract")]
@@ -94,7 +93,7 @@ impl RobotVisitor for EvaluateLaw<'_> {
         let reference = AnyReference::new(self.scenario)?;
         let row = |state: &StateRow| -> Result<LawRow, Problem> {
             let x = motion(state);
-            let command = law.command(&robot, &x, &reference.at(state.t), &Input::ZERO);
+            let command = registry::command(&law, &robot, &x, &reference.at(state.t));
             let sigma = robot.state(&Motion { v_l: command.s_l, v_m: command.s_m, ..x });
             let row = LawRow {
                 t: state.t,

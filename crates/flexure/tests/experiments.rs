@@ -170,7 +170,7 @@ fn seven_joints_with_gravity_off_by(factor: f64) -> f64 {
             motor_damping: vector(&data.motor_damping),
         }
     };
-    let (plant, model) = (robot(factor), robot(1.0));
+    let (plant, model) = (sim::Plant::from(robot(factor)), robot(1.0));
     let (law, reference) =
         (law::<7>(&scenario.controller), AnyReference::<7>::new(&scenario).expect("a path"));
     let command = |t: f64, x: &Motion<f64, 7>| law.command(&model, x, &reference.at(t), &Input::ZERO);

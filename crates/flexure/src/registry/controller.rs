@@ -1,6 +1,9 @@
 //! The controllers by name.
 
-use flexure_core::control::{LinkGains, Metric, MotorGains, Vcbc};
+use flexure_core::control::{Command, Input, LinkGains, Metric, MotorGains, Vcbc};
+use flexure_core::linalg::Vector;
+use flexure_core::model::{Fjr, Links, Motion};
+use flexure_core::scalar::Jet;
 
 use super::robot::vector;
 use super::{AnyShaping, Entry};
@@ -31,6 +34,18 @@ pub fn law<const N: usize>(controller: &Controller) -> Law<N> {
             damping: vector(&motor.damping),
         },
     }
+}
+
+/// What `law` commands the robot at `x` to do, following `q_ld`, the reference in rad to order 4. Compiled once per
+/// robot: it is much code, wanted in many places.
+#[inline(never)]
+pub fn command<L: Links<f64, N>, const N: usize>(
+    law: &Law<N>,
+    robot: &Fjr<f64, L, N>,
+    x: &Motion<f64, N>,
+    q_ld: &Vector<Jet<f64, 5>, N>,
+) -> Command<f64, N> {
+    law.command(robot, x, q_ld, &Input::ZERO)
 }
 
 fn shaping<const N: usize>(phi: Phi, gains: &SideGains) -> AnyShaping<N> {

@@ -6,7 +6,7 @@ mod reference;
 mod robot;
 mod shaping;
 
-pub use controller::{CONTROLLERS, Law, law};
+pub use controller::{CONTROLLERS, Law, command, law};
 pub use reference::{AnyReference, REFERENCES};
 pub(crate) use robot::vector;
 pub use robot::{MAX_JOINTS, RobotVisitor, supported, with_robot};

@@ -5,7 +5,6 @@ mod recorder;
 
 use std::time::Instant as Clock;
 
-use flexure_core::control::Input;
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion, RotorCoupling};
 use flexure_core::reference::Reference;
@@ -16,7 +15,7 @@ pub use recorder::SETTLED;
 
 use crate::io::{self, Problem, Problems, Scenario};
 use crate::rates::BlockRates;
-use crate::registry::{AnyReference, Law, RobotVisitor, law, vector, with_robot};
+use crate::registry::{self, AnyReference, Law, RobotVisitor, law, vector, with_robot};
 use crate::sim::{ClosedLoop, Divergence, Hold, Instant, Plant};
 use crate::summary::Summary;
 use crate::trace::Trace;
@@ -73,7 +72,7 @@ impl RobotVisitor for Simulate<'_> {
             },
             tolerance: TOLERANCE,
         };
-        let command = |t: f64, x: &Motion<f64, N>| law.command(robot, x, &reference.at(t), &Input::ZERO);
+        let command = |t: f64, x: &Motion<f64, N>| registry::command(&law, robot, x, &reference.at(t));
         let mut recorder = Recorder::new(vector(&scenario.robot.limits.torque));
         let mut observe = |instant: &Instant<'_, N>| {
             let rates = BlockRates::at(robot, &law, &instant.motion.q_l, instant.command);

@@ -83,11 +83,23 @@ impl<L: Links<f64, N>, const N: usize> Plant<L, N> {
         let motor = *u_m - hardening - spring - damping_m - inertia_m;
         match &self.rotor_coupling {
             None => [link, motor],
-            Some(coupling) => [
-                link - coupling.link_torque(&robot.links, x, &a_m),
-                motor - coupling.motor_torque(&robot.links, x, &a_l),
-            ],
+            Some(coupling) => {
+                let [of_links, of_motors] = self.coupling_torques(coupling, x, a);
+                [link - of_links, motor - of_motors]
+            }
         }
+    }
+
+    /// Torques that the coupling needs on links and motors [N m]. Compiled once: it is much code in many places.
+    #[inline(never)]
+    fn coupling_torques(
+        &self,
+        coupling: &RotorCoupling<f64, N>,
+        x: &Motion<f64, N>,
+        [a_l, a_m]: Sides<N>,
+    ) -> Sides<N> {
+        let links = &self.robot.links;
+        [coupling.link_torque(links, x, &a_m), coupling.motor_torque(links, x, &a_l)]
     }
 
     /// Accelerations of links and motors [rad/s²] under the motor torque `u_m` [N m].

@@ -3,6 +3,7 @@
 use flexure_core::linalg::Matrix;
 
 use super::rigid::Pose;
+use crate::eigenvalues::eigenvalues;
 use crate::io::quantity;
 use crate::io::site::Site;
 use crate::io::table::Table;
@@ -53,28 +54,12 @@ fn check(site: &Site<'_>, inertia: &Matrix<f64, 3, 3>) -> Option<()> {
     Some(())
 }
 
-/// Eigenvalues in ascending order, by cyclic Jacobi rotations: accurate also where two are equal.
+/// Principal inertias in ascending order.
 fn principal(inertia: &Matrix<f64, 3, 3>) -> [f64; 3] {
-    let mut a = *inertia;
-    for (p, q) in [(0, 1), (0, 2), (1, 2)].into_iter().cycle().take(3 * SWEEPS) {
-        let off = a[(p, q)];
-        if off != 0.0 {
-            let theta = (a[(q, q)] - a[(p, p)]) / (2.0 * off);
-            let tangent = theta.signum() / (theta.abs() + theta.hypot(1.0));
-            let cos = tangent.hypot(1.0).recip();
-            let mut turn = Matrix::identity();
-            (turn[(p, p)], turn[(q, q)]) = (cos, cos);
-            (turn[(p, q)], turn[(q, p)]) = (tangent * cos, -tangent * cos);
-            a = turn.transpose() * a * turn;
-        }
-    }
-    let mut values = [a[(0, 0)], a[(1, 1)], a[(2, 2)]];
+    let mut values = eigenvalues(*inertia).0;
     values.sort_by(f64::total_cmp);
     values
 }
-
-/// Jacobi rotations converge quadratically: six sweeps of a 3 × 3 matrix are more than enough.
-const SWEEPS: usize = 6;
 
 #[cfg(test)]
 mod tests {
