@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use flexure::experiment::Experiment;
 use flexure::io::{Problem, load_scenario, prepare, write_experiment};
 use flexure::report::summary_table;
-use flexure::run::preload;
+use flexure::run::{exceeded, preload};
 use flexure::sim::{Cause, Divergence};
 use flexure::summary::Summary;
 use serde::Serialize;
@@ -41,6 +41,7 @@ pub fn run(scenario: &str, out: &Path, json: bool) -> Result<(), Failure> {
         Experiment::new(scenario, &|fraction| progress.set(0, fraction))?
     };
     let files = write_experiment(out, &experiment)?;
+    say(&exceeded(&experiment.scenario.robot, &experiment.run.trace));
     if json {
         print::json(&Outcome::new(&experiment, files))?;
     } else {

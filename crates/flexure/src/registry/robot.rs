@@ -15,7 +15,7 @@ pub trait RobotVisitor {
 }
 
 /// Largest joint count of a tree. To raise it, add the numbers to the list in [`with_robot`] and build again.
-pub const MAX_JOINTS: usize = 8;
+pub const MAX_JOINTS: usize = 10;
 
 /// Calls `visitor` with the robot that `data` describes.
 ///
@@ -40,7 +40,7 @@ pub fn with_robot<V: RobotVisitor>(data: &io::Robot, visitor: V) -> Result<V::Ou
             visitor
                 .visit::<_, 1>(robot(data, Pendulum { inertia: inertia + mass * com * com, weight_moment }))
         }
-        io::Links::Tree(bodies) => tree!(bodies, 1 2 3 4 5 6 7 8),
+        io::Links::Tree(bodies) => tree!(bodies, 1 2 3 4 5 6 7 8 9 10),
     })
 }
 

@@ -1,5 +1,6 @@
 //! A scenario as a simulated run: from its file to trace and summary.
 
+mod limits;
 mod preload;
 mod recorder;
 
@@ -9,6 +10,7 @@ use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion, RotorCoupling};
 use flexure_core::reference::Reference;
 
+pub use limits::exceeded;
 pub use preload::preload;
 use recorder::Recorder;
 pub use recorder::SETTLED;
