@@ -37,7 +37,10 @@ fn shipped_files_are_good() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     for folder in ["robots", "scenarios"] {
         for entry in std::fs::read_dir(root.join(folder)).unwrap() {
-            place.run(&["check", entry.unwrap().path().to_str().unwrap()]).done();
+            let path = entry.unwrap().path();
+            if path.extension().is_some_and(|ending| ending == "toml") {
+                place.run(&["check", path.to_str().unwrap()]).done();
+            }
         }
     }
 }
@@ -50,7 +53,8 @@ fn one_bad_file_among_good_ones_is_told_apart() {
     let outcome = place.run(&files);
     assert_eq!(outcome.code, Some(2));
     outcome.said(&["bad.toml:23:17", "2 of 4 files", "cannot read none.toml"]);
-    assert_eq!(outcome.stdout.lines().count(), 2, "a line for each good one: {}", outcome.stdout);
+    let verdicts = outcome.stdout.lines().filter(|line| line.ends_with("warnings")).count();
+    assert_eq!(verdicts, 2, "a line for each good one: {}", outcome.stdout);
 
     let outcome = place.run(&[&files[..], &["--json"]].concat());
     assert_eq!(outcome.code, Some(2));

@@ -5,6 +5,8 @@ mod check_list;
 mod command;
 mod divergence;
 mod eval_model;
+mod hostile;
 mod pipes;
 mod reproduce;
 mod run;
+mod urdf;

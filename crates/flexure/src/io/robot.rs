@@ -109,6 +109,10 @@ fn robot(root: &Table<'_>, places: &Places, base: &Base) -> Option<Robot> {
     })
 }
 
+/// What is assumed of the damping in a URDF.
+pub(super) const DAMPING: &str =
+    "damping of the URDF, which does not say on which side of the spring it acts";
+
 /// What is assumed where the file of the links says less, or more, than the model needs.
 fn of_the_links(links: &Assembled, drives: &Drives, places: &Places) -> Vec<Assumption> {
     let assumption = |key: &str, values: Vec<f64>, note: &str| Assumption {
@@ -118,13 +122,9 @@ fn of_the_links(links: &Assembled, drives: &Drives, places: &Places) -> Vec<Assu
         file: places.file().to_owned(),
     };
     let friction: Vec<_> = links.joints.iter().map(|joint| joint.drive.friction.unwrap_or(0.0)).collect();
-    let damping = drives.damping_of_links.then(|| {
-        assumption(
-            "joints.link_damping",
-            drives.link_damping.clone(),
-            "damping of the URDF, which does not say on which side",
-        )
-    });
+    let damping = drives
+        .damping_of_links
+        .then(|| assumption("joints.link_damping", drives.link_damping.clone(), DAMPING));
     let friction = friction.iter().any(|&x| x != 0.0).then(|| {
         assumption("links.file", friction, "Coulomb friction of the URDF in N m, which the model leaves out")
     });

@@ -63,10 +63,11 @@ pub(in crate::io) fn assemble(joints: Vec<Joint<'_>>, none_moves: impl FnOnce())
     Some(Assembled { links, joints: bodies.into_iter().map(|moving| moving.joint).collect() })
 }
 
-/// Notes an error at each joint that moves no inertia: the mass matrix at q = 0 would be singular.
+/// Notes an error at each joint that moves no inertia, the outermost of several in a row: the mass matrix at q = 0 would
+/// be singular.
 fn check(bodies: &[Moving<'_>]) -> Option<()> {
     let mut composites: Vec<Rigid> = bodies.iter().map(|moving| moving.rigid).collect();
-    let mut sound = Some(());
+    let mut faulty = vec![false; bodies.len()];
     for (i, Moving { site, joint, parent, axis, pose, .. }) in bodies.iter().enumerate().rev() {
         let outer = composites[i];
         let axis = Vector(*axis);
@@ -74,20 +75,22 @@ fn check(bodies: &[Moving<'_>]) -> Option<()> {
             JointKind::Revolute => (axis.dot(&(outer.inertia_about(&Vector::ZERO) * axis)), "kg m^2"),
             JointKind::Prismatic => (outer.mass, "kg"),
         };
-        if moved <= 1e-15 {
+        let massless = moved <= 1e-15;
+        if massless && !faulty[i] {
             let message = format!("{} moves {moved:e} {unit}, must be > 0", site.path);
             site.error(
                 "massless",
                 message,
                 "give it, or what it carries, mass away from its axis or inertia",
             );
-            sound = None;
         }
+        faulty[i] |= massless;
         if let Some(parent) = *parent {
+            faulty[parent] |= faulty[i];
             composites[parent] = composites[parent].joined(&outer.seen_from(pose));
         }
     }
-    sound
+    faulty.iter().all(|faulty| !faulty).then_some(())
 }
 
 impl Moving<'_> {

@@ -7,6 +7,7 @@ use super::{LIMIT, Locks, Urdf};
 use crate::io::diagnostic::{Problem, Problems};
 use crate::io::document::Log;
 use crate::io::links::{Assembled, DriveDefaults, JointKind, MovingJoint};
+use crate::io::robot::DAMPING;
 use crate::io::source;
 use crate::io::suggest::{self, key, text};
 
@@ -59,15 +60,7 @@ fn draft<'a>(urdf: Urdf<'a>, path: &str, mut locks: Locks<'a>) -> Option<(String
     for joint in &joints {
         drive(&mut toml, joint);
     }
-    let _ = write!(
-        toml,
-        "\n[sources]                          # where the numbers come from; begin with \"assumed: \" what nothing vouches \
-         for\nlinks = {}\n# stiffness = \"data sheet of …\"\n",
-        text(&format!(
-            "{} as it was imported",
-            Path::new(path).file_name().unwrap_or_default().to_string_lossy()
-        ))
-    );
+    sources(&mut toml, path, joints.iter().any(|joint| joint.drive.damping.is_some()));
     Some((toml, joints.len()))
 }
 
@@ -92,6 +85,20 @@ fn head(toml: &mut String, path: &str, name: &str, locks: &Locks<'_>, mimicked: 
     for name in mimicked.keys() {
         let _ = writeln!(toml, "# {} is locked because joints that mimic it cannot move with it", key(name));
     }
+}
+
+/// `[sources]`, as far as they are known.
+fn sources(toml: &mut String, path: &str, damping: bool) {
+    let file = Path::new(path).file_name().unwrap_or_default().to_string_lossy();
+    let _ = write!(
+        toml,
+        "\n[sources]  # where numbers come from; begin with \"assumed: \" what nothing vouches for\nlinks = {}\n",
+        text(&format!("{file} as it was imported"))
+    );
+    if damping {
+        let _ = writeln!(toml, "link_damping = {}", text(&format!("assumed: {DAMPING}")));
+    }
+    let _ = writeln!(toml, "# stiffness = \"data sheet of …\"");
 }
 
 /// The table of one joint.

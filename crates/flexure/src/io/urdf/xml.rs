@@ -103,20 +103,20 @@ impl<'a> Document<'a> {
         let refuse = |code, message: String, help: &str| log.error(span.clone(), code, message, help);
         let raw = tag.name();
         let name = part(&log.source.text, raw.as_ref())?;
-        let shown = suggest::quoted(name);
+        let shown = || suggest::quoted(name);
         if self.open.len() + self.skipped.len() >= DEEPEST {
-            let message = format!("element {shown} is nested {DEEPEST} deep, must be less");
+            let message = format!("element {} is nested {DEEPEST} deep, must be less", shown());
             refuse("depth", message, "in a URDF links and joints stand side by side");
             return None;
         }
         if name.starts_with("xacro:") && self.skipped.is_empty() {
-            refuse("xacro", format!("{shown} is a macro, must be plain URDF"), XACRO);
+            refuse("xacro", format!("{} is a macro, must be plain URDF", shown()), XACRO);
             return None;
         }
         if self.open.is_empty() && (name != "robot" || self.root.is_some()) {
             let message = match self.root {
-                None => format!("the root element is {shown}, must be 'robot'"),
-                Some(_) => format!("{shown} stands after the end of <robot>, must be inside"),
+                None => format!("the root element is {}, must be 'robot'", shown()),
+                Some(_) => format!("{} stands after the end of <robot>, must be inside", shown()),
             };
             refuse("root", message, "a URDF is one <robot name=\"…\"> with links and joints in it");
             return None;
