@@ -115,6 +115,7 @@ fn axis(node: &Node<'_>) -> Option<[f64; 3]> {
     unit(&axis.site, axis.numbers("xyz", &quantity::AXIS, "x, y, z", default)?)
 }
 
+#[expect(clippy::option_option, reason = "bad, absent and good are three cases")]
 fn mimic<'a>(node: &Node<'a>) -> Option<Option<Mimic<'a>>> {
     let Some(mimic) = node.child("mimic")? else { return Some(None) };
     let of = mimic.text("joint", "the name of the joint that it follows");

@@ -122,7 +122,7 @@ fn drive(toml: &mut String, MovingJoint { name, kind, drive }: &MovingJoint) {
     line("motor_damping", wanted(), format!("SUPPLY: {damping}"));
     match drive.damping {
         Some(damping_l) => {
-            line("link_damping", format!("{damping_l:?}"), format!("{damping}, the URDF's damping"))
+            line("link_damping", format!("{damping_l:?}"), format!("{damping}, the URDF's damping"));
         }
         None => line("link_damping", wanted(), format!("SUPPLY: {damping}")),
     }

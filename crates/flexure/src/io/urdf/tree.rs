@@ -1,6 +1,6 @@
 //! The tree that links and joints make: every link carried by one joint, but for the root.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::joint::{self, Connection, Joint, Kind};
 use super::link;
@@ -49,7 +49,7 @@ pub(super) fn read<'a>(root: &'a Element<'a>, log: &'a Log) -> Option<Urdf<'a>> 
 /// Every link and joint; all that is wrong with any of them is noted.
 fn parts<'a>(root: &'a Element<'a>, log: &'a Log) -> Option<Parts<'a>> {
     let mut parts = Parts { links: Vec::new(), connections: Vec::new() };
-    let mut names = HashMap::new();
+    let mut names = HashSet::new();
     let mut sound = Some(());
     for element in &root.children {
         let is_link = element.name == "link";
@@ -63,7 +63,7 @@ fn parts<'a>(root: &'a Element<'a>, log: &'a Log) -> Option<Parts<'a>> {
             sound = None;
             continue;
         };
-        if names.insert((is_link, name), ()).is_some() {
+        if !names.insert((is_link, name)) {
             node.site.error("duplicate", format!("{} stands twice", node.site.path), "names must differ");
             sound = None;
         } else if is_link {
@@ -137,7 +137,9 @@ fn ordered<'a>(parts: Parts<'a>, robot: &Site<'a>) -> Option<Vec<Joint<'a>>> {
     }
     if order.len() < connections.len() {
         let mut reached = vec![false; connections.len()];
-        order.iter().for_each(|&(i, _)| reached[i] = true);
+        for &(i, _) in &order {
+            reached[i] = true;
+        }
         let stray = reached.iter().position(|reached| !reached).unwrap_or(0);
         let site = &connections[stray].joint.site;
         let message = format!("{} is part of a cycle: it hangs on its own child", site.path);
