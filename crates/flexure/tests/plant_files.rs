@@ -81,7 +81,7 @@ fn bad_plants() {
         ("= true", "= 1", "1\nspring", "plant.rotor_coupling is a number, must be true or false"),
         ("= true", "= [true, true]", "[true", "plant.rotor_coupling is an array"),
         ("50]", "-50]", "-50]", "plant.spring_hardening[1] is -50 N m/rad^3, must be >= 0"),
-        ("50]", "nan]", "nan]", "plant.spring_hardening[1] is NaN N m/rad^3, must be a finite number"),
+        ("50]", "nan]", "nan]", "plant.spring_hardening[1] is nan N m/rad^3, must be a number"),
         ("50]", "inf]", "inf]", "plant.spring_hardening[1] is inf N m/rad^3"),
         ("50]", "50, 0]", "[100.0, 50, 0]", "2 numbers expected, one per joint of quanser-2dof; got 3"),
         ("[100.0, 50]", "\"stiff\"", "\"stiff\"", "plant.spring_hardening is text, must be a number"),
