@@ -205,7 +205,7 @@ const SCENARIO_CASES: &[Case] = &[
         "[0.0, 0.0]",
         "[0.0, 0.6]",
         "[reference]",
-        "the reference of joint 1 starts at 0 rad and the robot at 0.6 rad",
+        "the reference of joint2 starts at 0 rad and the robot at 0.6 rad",
     ),
     ("q_l = [0.0, 0.0]", "ql = [0.0, 0.6]", "ql", "unknown key 'ql' in [initial]"),
     (

@@ -1,6 +1,6 @@
 //! `flexure check`: are these files good?
 
-use flexure::io::{self, Checked, Problem, Problems};
+use flexure::io::{self, Assumption, Checked, Problem, Problems};
 use flexure::overview::{JointRow, overview};
 use flexure::registry::supported;
 use flexure::report::joint_table;
@@ -27,9 +27,19 @@ struct Content {
     name: String,
     joints: usize,
     assumptions: usize,
+    /// What is assumed.
+    assumed: Vec<Assumed>,
     /// Of a robot file.
     #[serde(skip_serializing_if = "Option::is_none")]
     robot: Option<Vec<JointRow>>,
+}
+
+/// A number that no source vouches for.
+#[derive(Serialize)]
+struct Assumed {
+    key: String,
+    value: String,
+    note: String,
 }
 
 #[derive(Serialize)]
@@ -47,7 +57,7 @@ pub fn check(files: &[String], json: bool) -> Result<(), Failure> {
         print::json(&verdicts)?;
     } else {
         for verdict in &verdicts {
-            if let Some(Content { kind, name, joints, assumptions, robot }) = &verdict.content {
+            if let Some(Content { kind, name, joints, assumptions, assumed, robot }) = &verdict.content {
                 print::line(&format!(
                     "{}: {kind} {name}, {}, {}, {}",
                     verdict.file,
@@ -57,6 +67,9 @@ pub fn check(files: &[String], json: bool) -> Result<(), Failure> {
                 ))?;
                 if let Some(rows) = robot {
                     print::line(&joint_table(rows))?;
+                    for Assumed { key, value, note } in assumed {
+                        print::line(&format!("assumed: {key} = {value}: {note}"))?;
+                    }
                 }
             }
         }
@@ -94,17 +107,28 @@ fn content(file: &str) -> Result<(Option<Content>, Vec<Problem>), Problems> {
     Ok(match io::check(file)? {
         Checked::Robot(robot) => {
             let rows = overview(&robot)?;
-            let (joints, assumptions) = (rows.len(), robot.assumptions().len());
-            let content = Content { kind: "robot", name: robot.name, joints, assumptions, robot: Some(rows) };
+            let assumed = assumed(&robot.assumptions());
+            let (joints, assumptions, name) = (rows.len(), assumed.len(), robot.name);
+            let content = Content { kind: "robot", name, joints, assumptions, assumed, robot: Some(rows) };
             (Some(content), robot.warnings)
         }
         Checked::Scenario(scenario) => {
             supported(&scenario.robot)?;
-            let (joints, assumptions) = (scenario.robot.joint_count(), scenario.assumptions.len());
-            let content = Content { kind: "scenario", name: scenario.name, joints, assumptions, robot: None };
+            let assumed = assumed(&scenario.assumptions);
+            let (joints, assumptions, name) = (scenario.robot.joint_count(), assumed.len(), scenario.name);
+            let content = Content { kind: "scenario", name, joints, assumptions, assumed, robot: None };
             (Some(content), scenario.warnings)
         }
     })
+}
+
+fn assumed(assumptions: &[Assumption]) -> Vec<Assumed> {
+    let listed = |Assumption { key, value, note, .. }: &Assumption| Assumed {
+        key: key.clone(),
+        value: value.clone(),
+        note: note.clone(),
+    };
+    assumptions.iter().map(listed).collect()
 }
 
 fn bad(file: &str, problems: &Problems, json: bool) -> Verdict {

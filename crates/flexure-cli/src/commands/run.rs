@@ -41,7 +41,9 @@ pub fn run(scenario: &str, out: &Path, json: bool) -> Result<(), Failure> {
         Experiment::new(scenario, &|fraction| progress.set(0, fraction))?
     };
     let files = write_experiment(out, &experiment)?;
-    say(&exceeded(&experiment.scenario.robot, &experiment.run.trace));
+    if experiment.run.divergence.is_none() {
+        say(&exceeded(&experiment.scenario.robot, &experiment.run.trace));
+    }
     if json {
         print::json(&Outcome::new(&experiment, files))?;
     } else {

@@ -12,7 +12,7 @@ use super::quantity::Quantity;
 use super::source::Source;
 use super::table::Table;
 
-/// Problems beyond these are not reported: nobody reads them.
+/// Errors beyond these are not reported, nor are warnings beyond as many: nobody reads them.
 const MOST_PROBLEMS: usize = 24;
 
 /// Where problems are noted while a file is read.
@@ -29,15 +29,19 @@ impl Log {
 
     /// Notes `problem` as it is.
     pub fn push(&self, problem: Problem) {
-        let mut problems = self.problems.borrow_mut();
-        if problems.len() < MOST_PROBLEMS {
-            problems.push(problem);
+        if self.count(problem.is_warning()) < MOST_PROBLEMS {
+            self.problems.borrow_mut().push(problem);
         }
     }
 
-    /// Whether more problems would go unreported.
+    /// Warnings, or errors, noted so far.
+    fn count(&self, warnings: bool) -> usize {
+        self.problems.borrow().iter().filter(|problem| problem.is_warning() == warnings).count()
+    }
+
+    /// Whether more errors would go unreported.
     pub fn is_full(&self) -> bool {
-        self.problems.borrow().len() >= MOST_PROBLEMS
+        self.count(false) >= MOST_PROBLEMS
     }
 
     /// Notes what another file's log finished with, and gives its value.

@@ -152,6 +152,8 @@ impl Reader<'_> {
         default: impl Fn(&DriveDefaults) -> Option<f64>,
     ) -> Option<Vec<f64>> {
         let values = self.values(key, quantity, default)?;
+        // Of links that could not be read it cannot be told what is missing.
+        self.joints.count?;
         if self.is_silent(key) && values.iter().all(Option::is_none) {
             let what = format!("{}, {}", self.joints.expected(), quantity.described());
             self.table.required(key, &what);

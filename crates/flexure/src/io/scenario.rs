@@ -119,7 +119,7 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> 
     if let (Some(field), Some(reference), Some(None), Some(initial)) =
         (reference_field, &reference, smooth_start, &initial)
     {
-        check_start(&field, reference, initial);
+        check_start(&field, robot.as_ref(), reference, initial);
     }
     assumed.extend(own?);
     let ((duration, control_period), robot) = (times?, robot?);
@@ -203,13 +203,15 @@ fn refuse_imperfections(root: &Table<'_>) {
 }
 
 /// Notes an error if the reference starts far from the robot.
-fn check_start(field: &Field<'_>, reference: &Reference, initial: &Initial) {
+fn check_start(field: &Field<'_>, robot: Option<&Robot>, reference: &Reference, initial: &Initial) {
     let start = reference.initial();
     let far = start.iter().zip(&initial.q_l).enumerate().find(|(_, (q_d, q))| (*q_d - *q).abs() > FAR);
     if let Some((i, (q_d, q))) = far {
         let distance = (q_d - q).abs();
+        let name =
+            robot.and_then(|robot| robot.joints.get(i)).map_or_else(String::new, |joint| joint.name.clone());
         let message = format!(
-            "the reference of joint {i} starts at {q_d} rad and the robot at {q} rad: {distance:.3} rad apart, must be <= {FAR} rad"
+            "the reference of {name} starts at {q_d} rad and the robot at {q} rad: {distance:.3} rad apart, must be <= {FAR} rad"
         );
         field.error(
             "far",

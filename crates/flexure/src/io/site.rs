@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::diagnostic::Problem;
 use super::document::Log;
+use super::suggest;
 
 /// Where something stands, what it is called, and where its problems go.
 #[derive(Clone, Debug)]
@@ -18,6 +19,16 @@ impl Site<'_> {
     /// Notes an error here.
     pub fn error(&self, code: &'static str, message: impl Into<String>, help: impl Into<String>) {
         self.log.error(self.span.clone(), code, message, help);
+    }
+
+    /// `text` if it can be a name: not empty, and nothing in it that a terminal might obey.
+    pub fn name<'t>(&self, text: &'t str) -> Option<&'t str> {
+        if text.trim().is_empty() || text.chars().any(char::is_control) {
+            let message = format!("{} is {}, must be a name", self.path, suggest::quoted(text));
+            self.error("name", message, "letters, digits and the like, no control characters");
+            return None;
+        }
+        Some(text)
     }
 
     /// Notes a warning here.

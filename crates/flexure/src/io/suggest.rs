@@ -1,16 +1,26 @@
 //! "Did you mean": the nearest of the names that would have been right.
 
-/// Names listed in a hint.
-const MOST: usize = 24;
+/// No more names are listed in a hint once it is so many bytes long.
+const LONGEST_LIST: usize = 400;
+
+/// As many characters of a name are shown.
+const LONGEST_NAME: usize = 60;
 
 /// Names that the given one is compared with: a hint must not take longer than the file.
 const MOST_COMPARED: usize = 128;
 
 /// `did you mean 'x'? known: x, y, z`, as far as it applies.
 pub(super) fn hint<'a>(given: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
-    let mut list = known.clone().take(MOST).collect::<Vec<_>>().join(", ");
-    if known.clone().nth(MOST).is_some() {
-        list.push_str(", …");
+    let mut list = String::new();
+    for name in known.clone() {
+        if list.len() > LONGEST_LIST {
+            list.push_str(", …");
+            break;
+        }
+        if !list.is_empty() {
+            list.push_str(", ");
+        }
+        list.extend(name.chars().take(LONGEST_NAME).flat_map(char::escape_debug));
     }
     match nearest(given, known) {
         Some(name) => format!("did you mean '{name}'? known: {list}"),
@@ -21,12 +31,13 @@ pub(super) fn hint<'a>(given: &str, known: impl Iterator<Item = &'a str> + Clone
 /// The name at the smallest edit distance, if it is near at all.
 fn nearest<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let length = given.chars().count();
-    if length > 64 {
+    if length > LONGEST_NAME {
         return None;
     }
     let plain = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
     let (distance, name) = known
         .take(MOST_COMPARED)
+        .filter(|name| name.len() <= 4 * LONGEST_NAME)
         .map(|name| (strsim::osa_distance(&plain(given), &plain(name)), name))
         .min_by_key(|&(distance, _)| distance)?;
     (distance <= (length / 3).max(1)).then_some(name)

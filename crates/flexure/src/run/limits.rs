@@ -1,6 +1,6 @@
 //! Did the robot stay inside its limits?
 
-use crate::io::{Problem, Robot};
+use crate::io::{JointKind, Problem, Robot};
 use crate::trace::Trace;
 
 /// A limit that a run exceeded: what it is of, its key in a robot file, its unit.
@@ -28,6 +28,16 @@ pub fn exceeded(robot: &Robot, trace: &Trace) -> Vec<Problem> {
             let Some(first) = (0..trace.len()).find(beyond) else { return };
             let worst = (first..trace.len()).max_by(|&a, &b| excess(value(a)).total_cmp(&excess(value(b))));
             let (what, key, unit) = kind;
+            let unit = match joint.kind {
+                JointKind::Revolute => unit,
+                JointKind::Prismatic => {
+                    if unit == "rad" {
+                        "m"
+                    } else {
+                        "m/s"
+                    }
+                }
+            };
             let message = format!(
                 "joint {}: {what} exceeds {key}, {limit} {unit}, from t = {:.3} s on: {:.4} {unit} at worst",
                 joint.name,

@@ -138,6 +138,61 @@ fn every_fault_has_its_element_and_line() {
     }
 }
 
+/// However many warnings there are, they neither make a good file bad nor hide what is wrong with a bad one.
+#[test]
+fn warnings_do_not_crowd_out_errors() {
+    let doubtful = |i: usize| {
+        format!(
+            r#"<link name="w{i}"><inertial><mass value="1"/><inertia ixx="9" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+            <joint name="f{i}" type="fixed"><parent link="tool"/><child link="w{i}"/></joint>"#
+        )
+    };
+    let many: String = (0..1000).map(doubtful).collect();
+    let good = ARM.replace("</robot>", &format!("{many}</robot>"));
+    let robot = Folder::with(&good).robot("", DRIVES).unwrap_or_else(|problems| panic!("{problems}"));
+    assert!(robot.warnings.len() > 10);
+    let bad =
+        good.replace("</robot>", "<link name=\"x\"><inertial><mass value=\"-1\"/></inertial></link></robot>");
+    let problems = Folder::with(&bad).robot("", DRIVES).unwrap_err();
+    assert!(problems.to_string().contains("link 'x': inertial mass value is -1 kg"), "{problems}");
+}
+
+/// Mimics that lead nowhere are refused, in a draft too: nothing else is locked in their stead.
+#[test]
+fn mimics_that_lead_nowhere() {
+    let with = |turn: &str, slide: &str| {
+        let urdf =
+            ARM.replace("<axis xyz=\"0 0 1\"/>", &format!("<axis xyz=\"0 0 1\"/><mimic joint=\"{turn}\"/>"));
+        urdf.replace("<dynamics damping=\"0.7\"/>", slide)
+    };
+    for urdf in [with("none", ""), with("turn", ""), with("slide", "<mimic joint=\"turn\"/>")] {
+        let folder = Folder::with(&urdf);
+        let problems =
+            flexure::io::import(folder.path().join("arm.urdf").to_str().unwrap(), &[]).unwrap_err();
+        assert!(problems.to_string().contains("joint 'turn' mimics joint"), "{problems}");
+    }
+}
+
+/// What is wrong with the links is not followed by what is then missing for the joints.
+#[test]
+fn one_fault_is_one_error() {
+    let text =
+        "name = 'arm'\n[links]\nkind = 'urdf'\nfile = 'elsewhere.urdf'\n[joints.turn]\nstiffness = 1\n";
+    let problems = flexure::io::robot_from_text("arm.toml", text, ".".as_ref()).unwrap_err();
+    assert_eq!(problems.iter().count(), 1, "{problems}");
+}
+
+/// Names that a terminal might obey, or that are none.
+#[test]
+fn names_are_names() {
+    for name in ["&#27;[31mred", "a&#10;b", "", " "] {
+        let urdf = ARM.replace("name=\"turn\"", &format!("name=\"{name}\""));
+        let problems = Folder::with(&urdf).robot("", DRIVES).unwrap_err();
+        assert!(problems.to_string().contains("must be a name"), "{problems}");
+        assert!(!problems.to_string().contains('\u{1b}'));
+    }
+}
+
 #[test]
 fn an_inertia_of_no_matter_is_a_warning() {
     let urdf = ARM.replacen("ixx=\"0.01\"", "ixx=\"0.05\"", 1);
@@ -152,8 +207,8 @@ fn an_inertia_of_no_matter_is_a_warning() {
 #[test]
 fn bad_robot_files_about_a_urdf() {
     let cases = [
-        ("locked = { slid = 0 }", DRIVES, "links.locked.slid names no joint of the URDF"),
-        ("locked = { mount = 0 }", DRIVES, "links.locked.mount is a fixed joint"),
+        ("locked = { slid = 0 }", DRIVES, "links.locked.slid: 'slid' is no joint of the URDF"),
+        ("locked = { mount = 0 }", DRIVES, "links.locked.mount: 'mount' is a fixed joint"),
         ("locked = { slide = 'x' }", DRIVES, "links.locked.slide is text, must be a number"),
         ("locked = ['slide']", DRIVES, "links.locked is an array, must be a table"),
         ("locked = { slide = 0, turn = 0 }", DRIVES, "no joint of the robot moves"),

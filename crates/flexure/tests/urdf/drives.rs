@@ -45,3 +45,12 @@ fn sources_cover_keys_joint_by_joint() {
     let assumed = &robot(text).assumed[0];
     assert_eq!((assumed.key.as_str(), assumed.value.as_str()), ("joints.stiffness", "3 values"));
 }
+
+/// A continuous joint has no stops, whatever its `<limit>` says.
+#[test]
+fn continuous_joints_have_no_stops() {
+    let urdf = ARM.replace("type=\"revolute\"", "type=\"continuous\"");
+    let limits = Folder::with(&urdf).robot("", DRIVES).unwrap().limits;
+    assert_eq!((limits.lower[0], limits.upper[0]), (f64::NEG_INFINITY, f64::INFINITY));
+    assert_eq!((limits.lower[1], limits.upper[1]), (-0.1, 0.4));
+}

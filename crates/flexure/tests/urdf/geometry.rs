@@ -78,17 +78,20 @@ fn branches_come_depth_first() {
             r#"<joint name="{name}" type="continuous"><parent link="{parent}"/><child link="{child}"/></joint>"#
         )
     };
-    let links: String = ["a", "b", "c", "d", "root"].into_iter().map(link).collect();
-    // d hangs on b, b and c on a, a on the root.
-    let joints =
-        joint("j4", "b", "d") + &joint("j2", "a", "b") + &joint("j3", "a", "c") + &joint("j1", "root", "a");
+    let links: String = ["a", "b", "c", "d", "e", "root"].into_iter().map(link).collect();
+    // d hangs on b, b and c on a, a and e on the root.
+    let joints = joint("j4", "b", "d")
+        + &joint("j2", "a", "b")
+        + &joint("j3", "a", "c")
+        + &joint("j1", "root", "a")
+        + &joint("j5", "root", "e");
     let robot =
         crate::Folder::with(&format!("<robot>{joints}{links}</robot>")).robot("", crate::DRIVES).unwrap();
     let names: Vec<_> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
-    assert_eq!(names, ["j1", "j2", "j4", "j3"]);
+    assert_eq!(names, ["j1", "j2", "j4", "j3", "j5"]);
     let flexure::io::Links::Tree(bodies) = robot.links else { panic!() };
     let parents: Vec<_> = bodies.iter().map(|body| body.parent).collect();
-    assert_eq!(parents, [None, Some(0), Some(1), Some(0)]);
+    assert_eq!(parents, [None, Some(0), Some(1), Some(0), None]);
 }
 
 /// Files as they are found: namespaces, prefixes, plug-ins, meshes that are not there, comments, `&quot;`.

@@ -80,10 +80,13 @@ fn the_draft_of_the_panda_is_the_panda() {
 fn bad_locks_are_refused() {
     let folder = Folder::with(ARM);
     let path = folder.path().join("arm.urdf");
-    for name in ["trun", "mount"] {
+    for (name, objection) in [("trun", "is no joint of the URDF"), ("mount", "is a fixed joint")] {
         let problems = import(path.to_str().unwrap(), &[(name.to_owned(), 0.0)]).unwrap_err();
-        assert!(problems.to_string().contains(&format!("'{name}' is no moving joint")), "{problems}");
+        assert!(problems.to_string().contains(&format!("'{name}' {objection}")), "{problems}");
     }
+    let draft = import(path.to_str().unwrap(), &[("turn".to_owned(), 2.6)]).unwrap();
+    assert!(draft.warnings[0].to_string().contains("'turn' is at 2.6, outside the limits -2 to 2.5"));
+    assert!(import(path.to_str().unwrap(), &[("turn".to_owned(), -2.0)]).unwrap().warnings.is_empty());
     let all = [("turn".to_owned(), 0.0), ("slide".to_owned(), 0.0)];
     let problems = import(path.to_str().unwrap(), &all).unwrap_err();
     assert!(problems.to_string().contains("no joint of the robot moves"), "{problems}");

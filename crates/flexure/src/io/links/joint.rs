@@ -31,7 +31,7 @@ pub(super) fn read<'a>(field: &Field<'a>) -> Option<Entry<'a>> {
     let table = field.any_table()?;
     let kind = table.choice("kind", KINDS);
     table.refuse_unknown(if kind == Some(None) { FIXED_KEYS } else { MOVING_KEYS });
-    let name = table.required("name", "a name of its own").and_then(|field| field.text());
+    let name = table.required("name", "a name of its own").and_then(|field| field.name(field.text()?));
     let parent = table.optional("parent", |field| Some((field.text()?, field.clone())));
     let xyz = table.array_or("xyz", &quantity::POSITION, "x, y, z");
     let rpy = table.array_or("rpy", &quantity::ORIENTATION, "roll, pitch, yaw");

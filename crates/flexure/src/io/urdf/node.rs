@@ -23,7 +23,8 @@ impl<'a> Node<'a> {
     pub fn named(element: &'a Element<'a>, log: &'a Log) -> Option<(&'a str, Self)> {
         let path = format!("<{}>", element.name);
         let node = Self { element, site: Site { span: element.span.clone(), path, log } };
-        let name = &*node.required("name", "a name of its own")?.value;
+        let attribute = node.required("name", "a name of its own")?;
+        let name = node.at(attribute).name(&attribute.value)?;
         let path = format!("{} {}", element.name, suggest::quoted(name));
         Some((name, Self { element, site: Site { path, ..node.site } }))
     }

@@ -8,16 +8,17 @@ use crate::io::diagnostic::{Problem, Problems};
 use crate::io::document::Log;
 use crate::io::links::{Assembled, DriveDefaults, JointKind, MovingJoint};
 use crate::io::robot::DAMPING;
+use crate::io::site::Site;
 use crate::io::source;
-use crate::io::suggest::{self, key, text};
+use crate::io::suggest::{key, text};
 
 /// A robot file that lacks what a URDF does not say.
 #[derive(Clone, Debug)]
 pub struct Import {
     /// The file; numbers still to be supplied are `nan`, which every reader refuses.
     pub toml: String,
-    /// Number of moving joints.
-    pub joints: usize,
+    /// Names of the moving joints.
+    pub joints: Vec<String>,
     /// What is suspicious in the URDF.
     pub warnings: Vec<Problem>,
 }
@@ -31,23 +32,17 @@ pub fn import(path: &str, locks: &[(String, f64)]) -> Result<Import, Problems> {
     let source = source::read(Path::new(path), LIMIT)?;
     let log = Log::new(&source);
     let draft = super::with(&log, |urdf| {
+        let site = Site { path: "lock".to_owned(), ..urdf.site.clone() };
+        let sound: Vec<_> = locks.iter().map(|(name, q)| urdf.can_hold(name, *q, &site)).collect();
+        sound.into_iter().collect::<Option<()>>()?;
         let locks: Locks<'_> = locks.iter().map(|(name, q)| (&**name, *q)).collect();
-        for name in locks.keys() {
-            let found = urdf.joints.iter().find(|joint| joint.name == *name);
-            if found.is_none_or(|joint| !joint.moves()) {
-                let message = format!("{} is no moving joint of the URDF", suggest::quoted(name));
-                let known = urdf.joints.iter().filter(|joint| joint.moves()).map(|joint| joint.name);
-                urdf.site.error("unknown-name", message, suggest::hint(name, known));
-                return None;
-            }
-        }
         draft(urdf, path, locks)
     });
     let ((toml, joints), warnings) = log.finish(draft)?;
     Ok(Import { toml, joints, warnings })
 }
 
-fn draft<'a>(urdf: Urdf<'a>, path: &str, mut locks: Locks<'a>) -> Option<(String, usize)> {
+fn draft<'a>(urdf: Urdf<'a>, path: &str, mut locks: Locks<'a>) -> Option<(String, Vec<String>)> {
     let mimicked: Locks<'_> =
         urdf.mimicked(&locks).into_iter().map(|(name, drive)| (name, drive.nearest(0.0))).collect();
     locks.extend(&mimicked);
@@ -61,7 +56,7 @@ fn draft<'a>(urdf: Urdf<'a>, path: &str, mut locks: Locks<'a>) -> Option<(String
         drive(&mut toml, joint);
     }
     sources(&mut toml, path, joints.iter().any(|joint| joint.drive.damping.is_some()));
-    Some((toml, joints.len()))
+    Some((toml, joints.into_iter().map(|joint| joint.name).collect()))
 }
 
 /// Everything above the joints. Writing to a string cannot fail.
@@ -74,7 +69,7 @@ fn head(toml: &mut String, path: &str, name: &str, locks: &Locks<'_>, mimicked: 
          gravity = [0.0, 0.0, -9.81]        # m/s², in the base frame of the URDF\n\n\
          [links]\n\
          kind = \"urdf\"\n\
-         file = {}  # relative to this file\n",
+         file = {}  # relative to this file: change it if this file goes elsewhere\n",
         text(name),
         text(path)
     );

@@ -187,6 +187,31 @@ fn root(links: &[(&str, Site<'_>, Rigid)], carrier: &[Option<usize>], robot: &Si
 }
 
 impl<'a> Urdf<'a> {
+    /// Notes an error at `site` if there is no joint `name`, or none that moves, and a warning if it cannot be at `q`
+    /// [rad or m].
+    pub fn can_hold(&self, name: &str, q: f64, site: &Site<'_>) -> Option<()> {
+        let Some(joint) = self.joints.iter().find(|joint| joint.name == name) else {
+            let message = format!("{}: {} is no joint of the URDF", site.path, suggest::quoted(name));
+            let moving = self.joints.iter().filter(|joint| joint.moves());
+            site.error("unknown-name", message, suggest::hint(name, moving.map(|joint| joint.name)));
+            return None;
+        };
+        if !joint.moves() {
+            let message = format!("{}: {} is a fixed joint", site.path, suggest::quoted(name));
+            site.error("lock", message, "only joints that move can be locked");
+            return None;
+        }
+        let lower = joint.drive.position_lower.unwrap_or(f64::NEG_INFINITY);
+        let upper = joint.drive.position_upper.unwrap_or(f64::INFINITY);
+        if !(lower..=upper).contains(&q) {
+            let name = suggest::quoted(name);
+            let message =
+                format!("{}: {name} is at {q}, outside the limits {lower} to {upper} of the URDF", site.path);
+            site.warn("limits", message, "rad, or m for a prismatic joint");
+        }
+        Some(())
+    }
+
     /// The moving bodies, with the joints in `locks` and those that mimic them held still.
     pub fn assemble(self, locks: &Locks<'_>) -> Option<Assembled> {
         let held = self.held(locks)?;
@@ -243,8 +268,7 @@ impl<'a> Urdf<'a> {
         self.joints.iter().enumerate().map(|(i, joint)| (joint.name, i)).collect()
     }
 
-    /// The joints to lock so that none that moves mimics another: the ones that are mimicked in the end, and those that
-    /// mimic what is not there.
+    /// The joints to lock so that none that moves mimics another: the ones that are mimicked in the end.
     pub fn mimicked(&self, locks: &Locks<'_>) -> Vec<(&'a str, DriveDefaults)> {
         let index = self.indices();
         let mut masters = BTreeMap::new();
@@ -254,7 +278,7 @@ impl<'a> Urdf<'a> {
                 let Some(next) = last.mimic.as_ref().and_then(|mimic| index.get(mimic.of)) else { break };
                 last = &self.joints[*next];
             }
-            if last.mimic.is_some() || !std::ptr::eq(last, joint) {
+            if last.mimic.is_none() && !std::ptr::eq(last, joint) {
                 masters.insert(last.name, last.drive);
             }
         }
