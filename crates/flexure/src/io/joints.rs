@@ -60,7 +60,7 @@ pub(super) fn read(field: &Field<'_>, joints: &Joints, moving: Option<&[MovingJo
     let table = field.any_table()?;
     let by_name = by_name(&table, moving);
     let moving = moving.unwrap_or_default();
-    let mut reader = Reader { table, by_name: by_name?, joints: joints.clone(), moving };
+    let reader = Reader { table, by_name: by_name?, joints: joints.clone(), moving };
     let damping_of_links =
         reader.is_silent("link_damping") && moving.iter().all(|joint| joint.drive.damping.is_some());
     let none = |_: &DriveDefaults| None;
@@ -146,7 +146,7 @@ impl Reader<'_> {
     }
 
     fn required(
-        &mut self,
+        &self,
         key: &str,
         quantity: &Quantity,
         default: impl Fn(&DriveDefaults) -> Option<f64>,
@@ -174,7 +174,7 @@ impl Reader<'_> {
         Some(values.into_iter().flatten().collect())
     }
 
-    fn limits(&mut self) -> Option<Limits> {
+    fn limits(&self) -> Option<Limits> {
         let read = |key, quantity: &Quantity, none: f64, default: fn(&DriveDefaults) -> Option<f64>| {
             let values = self.values(key, quantity, default)?;
             Some(values.into_iter().map(|value| value.unwrap_or(none)).collect::<Vec<_>>())
