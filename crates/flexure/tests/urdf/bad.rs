@@ -165,7 +165,12 @@ fn mimics_that_lead_nowhere() {
             ARM.replace("<axis xyz=\"0 0 1\"/>", &format!("<axis xyz=\"0 0 1\"/><mimic joint=\"{turn}\"/>"));
         urdf.replace("<dynamics damping=\"0.7\"/>", slide)
     };
-    for urdf in [with("none", ""), with("turn", ""), with("slide", "<mimic joint=\"turn\"/>")] {
+    for urdf in [
+        with("none", ""),
+        with("turn", ""),
+        with("slide", "<mimic joint=\"turn\"/>"),
+        with("slide", "<mimic joint=\"none\"/>"),
+    ] {
         let folder = Folder::with(&urdf);
         let problems =
             flexure::io::import(folder.path().join("arm.urdf").to_str().unwrap(), &[]).unwrap_err();
