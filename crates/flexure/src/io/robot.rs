@@ -77,7 +77,7 @@ pub(super) fn read(source: &Source, base: &Base) -> Result<Robot, Problems> {
 }
 
 fn robot(root: &Table<'_>, places: &Places, base: &Base) -> Option<Robot> {
-    let name = root.required("name", "what the robot is called").and_then(|field| field.text());
+    let name = root.required("name", "what the robot is called").and_then(|field| field.name(field.text()?));
     let gravity = root.optional("gravity", |field| field.array(&quantity::GRAVITY, "x, y, z"));
     let (links, count) = root
         .required("links", "a table with the kind")

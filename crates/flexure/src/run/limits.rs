@@ -3,13 +3,13 @@
 use crate::io::{JointKind, Problem, Robot};
 use crate::trace::Trace;
 
-/// A limit that a run exceeded: what it is of, its key in a robot file, its unit.
-type Kind = (&'static str, &'static str, &'static str);
+/// A limit that a run exceeded: what it is of, its key in a robot file, its unit for revolute and prismatic joints.
+type Kind = (&'static str, &'static str, [&'static str; 2]);
 
-const POSITION_LOWER: Kind = ("link position", "position_lower", "rad");
-const POSITION_UPPER: Kind = ("link position", "position_upper", "rad");
-const VELOCITY: Kind = ("link velocity", "velocity_limit", "rad/s");
-const DEFLECTION: Kind = ("deflection of the spring", "deflection_limit", "rad");
+const POSITION_LOWER: Kind = ("link position", "position_lower", ["rad", "m"]);
+const POSITION_UPPER: Kind = ("link position", "position_upper", ["rad", "m"]);
+const VELOCITY: Kind = ("link velocity", "velocity_limit", ["rad/s", "m/s"]);
+const DEFLECTION: Kind = ("deflection of the spring", "deflection_limit", ["rad", "m"]);
 
 /// A warning for each joint and limit of position, velocity or deflection that was exceeded: from when on, and how far.
 /// For torques there is [`Summary::saturated_fraction`](crate::summary::Summary).
@@ -27,16 +27,10 @@ pub fn exceeded(robot: &Robot, trace: &Trace) -> Vec<Problem> {
             let beyond = |k: &usize| excess(value(*k)) > 0.0;
             let Some(first) = (0..trace.len()).find(beyond) else { return };
             let worst = (first..trace.len()).max_by(|&a, &b| excess(value(a)).total_cmp(&excess(value(b))));
-            let (what, key, unit) = kind;
+            let (what, key, [angle, distance]) = kind;
             let unit = match joint.kind {
-                JointKind::Revolute => unit,
-                JointKind::Prismatic => {
-                    if unit == "rad" {
-                        "m"
-                    } else {
-                        "m/s"
-                    }
-                }
+                JointKind::Revolute => angle,
+                JointKind::Prismatic => distance,
             };
             let message = format!(
                 "joint {}: {what} exceeds {key}, {limit} {unit}, from t = {:.3} s on: {:.4} {unit} at worst",

@@ -64,6 +64,15 @@ fn odd_names_survive() {
     let (folder, toml) = drafted(&odd, &[]);
     let robot = robot_from_text("draft.toml", &toml.replace("nan", "0.5"), folder.path()).unwrap();
     assert_eq!(robot.joints[0].name, "left arm.\"turn\" é");
+    // A robot without a usable name is called like its file, and no name reaches a terminal that would obey it.
+    for name in ["", "&#27;[31m"] {
+        let (_, toml) =
+            drafted(&ARM.replace("<robot name=\"arm\">", &format!("<robot name=\"{name}\">")), &[]);
+        assert!(toml.contains("\nname = \"arm\"\n"), "{toml}");
+    }
+    let obeyed = toml.replace("name = \"arm\"", "name = \"\\u001b[31m\"").replace("nan", "0.5");
+    let problems = robot_from_text("draft.toml", &obeyed, folder.path()).unwrap_err();
+    assert!(problems.to_string().contains("must be a name"), "{problems}");
 }
 
 /// The draft of panda.urdf, completed, is the built-in arm.

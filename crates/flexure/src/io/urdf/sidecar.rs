@@ -47,7 +47,8 @@ fn draft<'a>(urdf: Urdf<'a>, path: &str, mut locks: Locks<'a>) -> Option<(String
         urdf.mimicked(&locks).into_iter().map(|(name, drive)| (name, drive.nearest(0.0))).collect();
     locks.extend(&mimicked);
     let stem = Path::new(path).file_stem().map_or("robot".into(), |stem| stem.to_string_lossy());
-    let name = urdf.name.map_or_else(|| stem.into_owned(), str::to_owned);
+    let is_name = |name: &&str| !name.trim().is_empty() && !name.contains(char::is_control);
+    let name = urdf.name.filter(is_name).map_or_else(|| stem.into_owned(), str::to_owned);
     let Assembled { joints, .. } = urdf.assemble(&locks)?;
 
     let mut toml = String::new();
