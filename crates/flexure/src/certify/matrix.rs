@@ -51,7 +51,8 @@ impl Symmetric {
             for i in k + 1..n {
                 let factor = a[at(i, k)] / pivot;
                 // The diagonal by a square: a product of an interval with itself is not as tight.
-                a[at(i, i)] -= a[at(i, k)].square() / pivot;
+                let square = a[at(i, k)].square() / pivot;
+                a[at(i, i)] -= square;
                 for j in k + 1..i {
                     let update = factor * a[at(j, k)];
                     a[at(i, j)] -= update;
