@@ -21,11 +21,17 @@ impl Number {
         Self::Decimal(if plain.len() <= scientific.len() + 2 { plain } else { scientific })
     }
 
-    /// What is known of a number that a file gives as `x` and `bounds` enclose: the decimal itself where it lies within
-    /// them, else the bounds.
-    pub fn enclosed(x: f64, bounds: Interval) -> Self {
+    /// A number of a file that was read as the float `x`: its shortest decimal where `bounds` are those of that decimal,
+    /// which is then the file's; else the bounds.
+    pub fn read(x: f64, bounds: Interval) -> Self {
         let decimal = Self::decimal(x);
-        if bounds.contains_interval(decimal.bounds()) { decimal } else { Self::between(bounds) }
+        if decimal.bounds() == bounds { decimal } else { Self::between(bounds) }
+    }
+
+    /// A number that is computed from those of a file: a decimal only where it is known exactly.
+    pub fn computed(bounds: Interval) -> Self {
+        let decimal = Self::decimal(bounds.lo());
+        if bounds.lo() == bounds.hi() && decimal.bounds() == bounds { decimal } else { Self::between(bounds) }
     }
 
     /// The bounds themselves, exactly: a float's shortest decimal may lie beside it, so both ends take one step out.
@@ -70,7 +76,7 @@ mod tests {
         for x in [0.1, 1.0 / 3.0, -2e-7, 5.0] {
             let bounds = Interval::new(x - 1e-9, x + 1e-9).unwrap();
             assert!(Number::between(bounds).bounds().contains_interval(bounds));
-            assert!(Number::enclosed(x, Interval::point(x)).bounds().contains(x));
+            assert!(Number::computed(Interval::point(x)).bounds().contains(x));
         }
     }
 }

@@ -45,7 +45,7 @@ pub fn summary_table(summaries: &[Summary]) -> String {
 }
 
 /// An empty table with these column titles.
-fn headed<'a>(titles: impl Iterator<Item = &'a str>) -> Table {
+pub(super) fn headed<'a>(titles: impl Iterator<Item = &'a str>) -> Table {
     let mut table = Table::new();
     table
         .load_style(UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()))
@@ -57,6 +57,11 @@ fn headed<'a>(titles: impl Iterator<Item = &'a str>) -> Table {
         column.set_padding((1, 0));
     });
     table
+}
+
+/// A cell of numbers.
+pub(super) fn right(text: String) -> Cell {
+    Cell::new(text).set_alignment(CellAlignment::Right)
 }
 
 /// A column about a joint: three lines of heading, and what stands in it.
@@ -98,7 +103,7 @@ pub fn joint_table(joints: &[JointRow]) -> String {
             name = format!("{name}\n({})", joint.kind);
         }
         let numbers = columns.iter().map(|(_, show)| {
-            Cell::new(show(joint).unwrap_or(NONE.to_owned())).set_alignment(CellAlignment::Right)
+            right(show(joint).unwrap_or(NONE.to_owned()))
         });
         table.add_row(Row::from(std::iter::once(Cell::new(name)).chain(numbers).collect::<Vec<_>>()));
     }
@@ -121,6 +126,6 @@ fn words(options: &[&str]) -> String {
 fn row(summary: &Summary, columns: &[Column]) -> Row {
     let words = [&summary.name, &summary.phi].map(Cell::new);
     let numbers =
-        columns.iter().map(|(_, show)| Cell::new(show(summary)).set_alignment(CellAlignment::Right));
+        columns.iter().map(|(_, show)| right(show(summary)));
     Row::from(words.into_iter().chain(numbers).collect::<Vec<_>>())
 }

@@ -1,0 +1,188 @@
+//! A scenario file as a proof: its numbers enclosed, its region chosen, its rates certified.
+
+use std::time::Instant as Clock;
+
+use flexure_core::scalar::Interval;
+use crate::certify::certificate::{
+    self, Controller, Gains, JointKind, Links, Phi, Robot,
+};
+use crate::certify::region::level_that_holds;
+use crate::certify::{self, Certificate, Number, RateWitness, Request, Verdict, certify};
+use crate::io::{self, Problems, Scenario};
+use crate::paper::paper_rate;
+use crate::sampling::{Sampled, sample};
+
+/// What to prove of a scenario.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Question {
+    /// Where.
+    pub region: Region,
+    /// The contraction rate to prove [1/s]; the largest if none is given.
+    pub rate: Option<f64>,
+    /// Largest unknown torque on each motor [N m].
+    pub disturbance: Option<Vec<f64>>,
+}
+
+/// Where a claim shall hold.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Region {
+    /// Everywhere if φ allows it; else errors of up to 1 rad, as an assumption.
+    #[default]
+    Chosen,
+    /// |q̃_i| up to these, links then motors, in rad.
+    Errors(Vec<f64>),
+    /// The smallest level of W that holds these position errors, links then motors, in rad, with no momentum errors.
+    Start(Vec<f64>),
+}
+
+/// Largest error where none is named and φ has no rate everywhere \[rad\].
+const ASSUMED_ERROR: f64 = 1.0;
+
+/// What came of it.
+#[derive(Clone, Debug)]
+pub struct Proof {
+    /// The verdict.
+    pub verdict: Verdict<Certificate, RateWitness>,
+    /// The rate by the paper's formula [1/s].
+    pub paper_rate: f64,
+    /// The links' momentum block sampled over all configurations.
+    pub sampled: Sampled,
+    /// Options that were not given, and numbers that no source vouches for.
+    pub assumptions: Vec<String>,
+    /// Time that it took in s.
+    pub wall_seconds: f64,
+}
+
+/// The closed loop of `scenario` as the prover takes it.
+///
+/// # Errors
+/// Where no certificate can speak of it: with the place and the reason.
+pub fn problem(scenario: &Scenario, question: &Question) -> Result<certify::Problem, Problems> {
+    let io::Controller::Vcbc { phi, link, motor } = &scenario.controller;
+    if link.metric_hardening.as_ref().is_some_and(|h| h.iter().any(|&h| h != 0.0)) {
+        let message = "controller.link.metric_hardening is not 0: certificates take a constant metric";
+        let help = "with a Π_l that depends on the error the rate depends on the speed of the error too; leave it out";
+        return Err(scenario.places.problem("controller.link.metric_hardening", "metric", message, help).into());
+    }
+    let phi = match phi {
+        io::Phi::Tanh => Phi::Tanh,
+        io::Phi::Linear => Phi::Linear,
+        io::Phi::CoupledTanh => Phi::CoupledTanh,
+    };
+    let controller = Controller { phi, link: gains(scenario, link), motor: gains(scenario, motor) };
+    let mut assumptions: Vec<String> = scenario
+        .assumptions
+        .iter()
+        .map(|assumed| format!("{}: {} = {}: {}", assumed.file, assumed.key, assumed.value, assumed.note))
+        .collect();
+    let errors = |errors: &[f64]| errors.iter().map(|&e| Number::decimal(e)).collect::<Vec<_>>();
+    let region = match &question.region {
+        Region::Errors(largest) => Request::Box(errors(largest)),
+        Region::Start(start) => {
+            let metric: Vec<_> =
+                controller.link.metric.iter().chain(&controller.motor.metric).map(Number::bounds).collect();
+            Request::Level(level_that_holds(&errors(start), &metric))
+        }
+        Region::Chosen if phi == Phi::Tanh => {
+            assumptions.push(format!(
+                "no region was named and tanh has no rate everywhere: errors of up to {ASSUMED_ERROR} rad are assumed"
+            ));
+            Request::Box(errors(&vec![ASSUMED_ERROR; 2 * scenario.robot.joint_count()]))
+        }
+        Region::Chosen => Request::Everywhere,
+    };
+    let disturbance =
+        question.disturbance.as_ref().map(|torques| torques.iter().map(|&d| Number::decimal(d)).collect());
+    Ok(certify::Problem {
+        name: scenario.name.clone(),
+        assumptions,
+        robot: robot(&scenario.robot),
+        controller,
+        region,
+        disturbance,
+    })
+}
+
+/// Proves what `question` asks of `scenario`.
+///
+/// # Errors
+/// Where no certificate can speak of it: with the place and the reason.
+pub fn prove(scenario: &Scenario, question: &Question) -> Result<Proof, Problems> {
+    let started = Clock::now();
+    let problem = problem(scenario, question)?;
+    let damping: Vec<f64> = {
+        let io::Controller::Vcbc { link, .. } = &scenario.controller;
+        scenario.robot.link_damping.iter().zip(&link.damping).map(|(a, b)| a + b).collect()
+    };
+    let sampled = sample(&scenario.robot, &damping)?;
+    let verdict = certify(&problem);
+    Ok(Proof {
+        paper_rate: paper_rate(&scenario.robot, &scenario.controller, &problem, sampled.largest_inertia),
+        verdict,
+        sampled,
+        assumptions: problem.assumptions,
+        wall_seconds: started.elapsed().as_secs_f64(),
+    })
+}
+
+fn gains(scenario: &Scenario, gains: &io::SideGains) -> Gains {
+    let numbers = |values: &[f64]| values.iter().map(|&x| Number::read(x, scenario.bounds(x))).collect();
+    Gains {
+        metric: numbers(&gains.metric),
+        shaping: numbers(&gains.shaping),
+        damping: numbers(&gains.damping),
+        kappa: gains.kappa.as_deref().map(numbers),
+    }
+}
+
+fn robot(data: &io::Robot) -> Robot {
+    let numbers = |values: &[f64]| values.iter().map(|&x| Number::read(x, data.bounds(x))).collect();
+    Robot {
+        name: data.name.clone(),
+        joints: data.joint_count(),
+        links: links(data),
+        stiffness: numbers(&data.stiffness),
+        motor_inertia: numbers(&data.motor_inertia),
+        link_damping: numbers(&data.link_damping),
+        motor_damping: numbers(&data.motor_damping),
+    }
+}
+
+fn links(data: &io::Robot) -> Links {
+    let number = |x: f64| Number::read(x, data.bounds(x));
+    match (&data.links, &data.enclosed) {
+        (io::Links::PlanarTwoLink { mass, length, com, inertia }, _) => Links::PlanarTwoLink {
+            mass: mass.map(number),
+            length: number(length[0]),
+            com: com.map(number),
+            inertia: inertia.map(number),
+        },
+        (io::Links::Pendulum { mass, com, inertia }, _) => {
+            Links::Pendulum { mass: number(*mass), com: number(*com), inertia: number(*inertia) }
+        }
+        (_, io::Links::Tree(bodies)) => {
+            let bodies = bodies.iter().enumerate().map(|(i, enclosed)| body(data, i, enclosed));
+            Links::Tree { bodies: bodies.collect() }
+        }
+        _ => unreachable!("enclosed links are of the same kind"),
+    }
+}
+
+fn body(data: &io::Robot, joint: usize, body: &io::Body<Interval>) -> certificate::Body {
+    let computed = Number::computed;
+    let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = body.inertia;
+    let (lower, upper) = (data.limits.lower[joint], data.limits.upper[joint]);
+    let number = |x: f64| Number::read(x, data.bounds(x));
+    let prismatic = body.kind == io::JointKind::Prismatic;
+    certificate::Body {
+        parent: body.parent,
+        kind: if prismatic { JointKind::Prismatic } else { JointKind::Revolute },
+        axis: body.axis.map(computed),
+        rotation: body.rotation.map(|row| row.map(computed)),
+        translation: body.translation.map(computed),
+        mass: computed(body.mass),
+        com: body.com.map(computed),
+        inertia: [xx, xy, xz, yy, yz, zz].map(computed),
+        travel: (prismatic && lower.is_finite() && upper.is_finite()).then(|| [number(lower), number(upper)]),
+    }
+}
