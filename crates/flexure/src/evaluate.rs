@@ -89,7 +89,7 @@ impl RobotVisitor for EvaluateLaw<'_> {
     type Output = Result<Vec<LawRow>, Problems>;
 
     fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) -> Self::Output {
-        let law: Law<N> = law(&self.scenario.controller);
+        let law: Law<f64, N> = law(&self.scenario.controller);
         let reference = AnyReference::new(self.scenario)?;
         let row = |state: &StateRow| -> Result<LawRow, Problem> {
             let x = motion(state);

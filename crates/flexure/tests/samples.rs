@@ -25,11 +25,14 @@ fn rough() -> Vec<(f64, Vector<f64, 2>)> {
     TIMES.into_iter().zip(q.map(Vector)).collect()
 }
 
-fn spline<const N: usize>(samples: &[(f64, Vector<f64, N>)]) -> Samples<N> {
+fn spline<const N: usize>(samples: &[(f64, Vector<f64, N>)]) -> Samples<f64, N> {
     Samples::new(samples).expect("good samples")
 }
 
-fn sampled<const N: usize>(q_d: &impl Reference<f64, N>, times: impl IntoIterator<Item = f64>) -> Samples<N> {
+fn sampled<const N: usize>(
+    q_d: &impl Reference<f64, N>,
+    times: impl IntoIterator<Item = f64>,
+) -> Samples<f64, N> {
     spline(&times.into_iter().map(|t| (t, q_d.on(t))).collect::<Vec<_>>())
 }
 
@@ -116,7 +119,7 @@ fn reproduces_septic_motions_on_uneven_samples() {
     reproduces(&sampled(&motion, TIMES), &motion, 2e-8);
 }
 
-fn reproduces(q_d: &Samples<2>, motion: &PointToPoint<f64, 2>, tolerance: f64) {
+fn reproduces(q_d: &Samples<f64, 2>, motion: &PointToPoint<f64, 2>, tolerance: f64) {
     for step in -20..80 {
         let t = 0.05 * f64::from(step) + 0.01;
         let (a, b) = (q_d.at::<5>(t), motion.at::<5>(t));

@@ -1,12 +1,13 @@
 //! A TOML document while it is read: its text, the problems found so far, and where every key stands.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 
+use super::decimals::Decimals;
 use super::diagnostic::{Problem, Problems};
 use super::quantity::Quantity;
 use super::source::Source;
@@ -20,11 +21,12 @@ const MOST_PROBLEMS: usize = 24;
 pub(super) struct Log {
     pub source: Source,
     problems: RefCell<Vec<Problem>>,
+    decimals: Cell<Decimals>,
 }
 
 impl Log {
     pub fn new(source: &Source) -> Self {
-        Self { source: source.clone(), problems: RefCell::default() }
+        Self { source: source.clone(), problems: RefCell::default(), decimals: Cell::default() }
     }
 
     /// Notes `problem` as it is.
@@ -32,6 +34,16 @@ impl Log {
         if self.count(problem.is_warning()) < MOST_PROBLEMS {
             self.problems.borrow_mut().push(problem);
         }
+    }
+
+    /// What the numbers read so far were read from.
+    pub fn decimals(&self) -> Decimals {
+        self.decimals.get()
+    }
+
+    /// Notes what other numbers were read from.
+    pub fn note(&self, decimals: Decimals) {
+        self.decimals.set(self.decimals.get().and(decimals));
     }
 
     /// Warnings, or errors, noted so far.

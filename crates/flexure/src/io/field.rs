@@ -1,9 +1,11 @@
 //! One value of a TOML document, with its path, its place and the log: the one mechanism that validates numbers.
 
+use std::borrow::Cow;
 use std::ops::Deref;
 
 use toml::de::{DeArray, DeValue};
 
+use super::decimals::Decimals;
 use super::quantity::Quantity;
 use super::site::Site;
 use super::suggest;
@@ -58,19 +60,22 @@ impl<'a> Field<'a> {
 
     /// The number, if it is one and nothing but doubt speaks against it.
     pub fn number(&self, quantity: &Quantity) -> Option<f64> {
-        let parsed = match self.value {
+        let decimal = match self.value {
             // Any integer is meant as a number; those in hexadecimal are small enough or refused.
-            DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().parse().ok(),
+            DeValue::Integer(integer) if integer.radix() == 10 => Some(Cow::Borrowed(integer.as_str())),
             DeValue::Integer(integer) => {
-                i64::from_str_radix(integer.as_str(), integer.radix()).ok().map(|exact| exact as f64)
+                let exact = i64::from_str_radix(integer.as_str(), integer.radix());
+                exact.ok().map(|exact| Cow::Owned(exact.to_string()))
             }
-            DeValue::Float(float) => float.as_str().parse().ok(),
+            DeValue::Float(float) => Some(Cow::Borrowed(float.as_str())),
             _ => None,
         };
-        let Some(x) = parsed else {
+        let parsed = decimal.and_then(|decimal| Some((decimal.parse().ok()?, decimal)));
+        let Some((x, decimal)) = parsed else {
             self.wrong_type("a number", quantity.described());
             return None;
         };
+        self.log.note(Decimals::of(&decimal, x));
         self.log.accept(&self.path, x, quantity, self.span.clone())
     }
 

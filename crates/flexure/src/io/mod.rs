@@ -21,6 +21,7 @@ mod atomic;
 mod base;
 mod builtin;
 mod controller;
+mod decimals;
 mod diagnostic;
 mod document;
 mod field;

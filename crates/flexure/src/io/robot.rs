@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
+use flexure_core::scalar::Interval;
+
 use super::base::Base;
+use super::decimals::Decimals;
 use super::diagnostic::{Problem, Problems};
 use super::document::{self, Form, Places};
 use super::joints::{self, Drives, Limits};
@@ -21,6 +24,9 @@ pub struct Robot {
     pub gravity: [f64; 3],
     /// The links.
     pub links: Links,
+    /// The links that the decimals of the files make exactly, enclosed: 0.1 is a tenth, and what follows from it by sines
+    /// and roots is bounded. Whoever changes `links` changes this too.
+    pub enclosed: Links<Interval>,
     /// The moving joints, in the order of everything that is given per joint.
     pub joints: Vec<MovingJoint>,
     /// Joint stiffness K, > 0 [N m/rad].
@@ -41,12 +47,19 @@ pub struct Robot {
     pub warnings: Vec<Problem>,
     /// Where the keys stand in the file.
     pub places: Places,
+    pub(super) decimals: Decimals,
 }
 
 impl Robot {
     /// Number of moving joints.
     pub fn joint_count(&self) -> usize {
         self.joints.len()
+    }
+
+    /// Encloses the decimal that `x`, a number of the robot file or of its URDF, was read from: 0.1 as a tenth, what is a
+    /// float as a point. Infinity, where there is no limit, is itself.
+    pub fn bounds(&self, x: f64) -> Interval {
+        self.decimals.enclose(x)
     }
 
     /// Numbers that no source vouches for.
@@ -96,6 +109,7 @@ fn robot(root: &Table<'_>, places: &Places, base: &Base) -> Option<Robot> {
         name: name?.to_owned(),
         gravity: gravity?.unwrap_or([0.0, 0.0, -9.81]),
         links: links.links,
+        enclosed: links.enclosed,
         joints: links.joints,
         stiffness: drives.stiffness,
         motor_inertia: drives.motor_inertia,
@@ -106,6 +120,7 @@ fn robot(root: &Table<'_>, places: &Places, base: &Base) -> Option<Robot> {
         assumed,
         warnings: Vec::new(),
         places: places.clone(),
+        decimals: root.decimals(),
     })
 }
 

@@ -2,9 +2,12 @@
 
 use std::path::Path;
 
+use flexure_core::scalar::Interval;
+
 use super::base::Base;
 use super::builtin;
 use super::controller::{self, Controller};
+use super::decimals::Decimals;
 use super::diagnostic::{Problem, Problems};
 use super::document::{self, Form, Places};
 use super::field::Field;
@@ -56,6 +59,16 @@ pub struct Scenario {
     pub warnings: Vec<Problem>,
     /// Where the keys stand in the file.
     pub places: Places,
+    decimals: Decimals,
+}
+
+impl Scenario {
+    /// Encloses the decimal that `x`, a number of the scenario file or of its robot's files, was read from: 0.1 as a tenth,
+    /// what is a float as a point. The samples of a path are taken as floats instead: see
+    /// [`AnyReference`](crate::registry::AnyReference).
+    pub fn bounds(&self, x: f64) -> Interval {
+        self.decimals.and(self.robot.decimals).enclose(x)
+    }
 }
 
 /// What the torque does between two evaluations of the law.
@@ -137,6 +150,7 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> 
         controller: controller?,
         assumptions: assumed,
         places: places.clone(),
+        decimals: root.decimals(),
     })
 }
 

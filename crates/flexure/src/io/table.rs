@@ -5,6 +5,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::decimals::Decimals;
 use super::document::Log;
 use super::field::{Field, Joints};
 use super::quantity::Quantity;
@@ -25,6 +26,11 @@ pub(super) struct Table<'a> {
 impl<'a> Table<'a> {
     pub fn new(entries: &'a DeTable<'a>, path: String, span: Range<usize>, log: &'a Log) -> Self {
         Self { entries, path, span, log }
+    }
+
+    /// What the numbers of the file that were read so far were read from.
+    pub fn decimals(&self) -> Decimals {
+        self.log.decimals()
     }
 
     /// Notes every key that is not in `known`.

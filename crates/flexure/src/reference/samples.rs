@@ -2,7 +2,7 @@
 
 use flexure_core::linalg::Vector;
 use flexure_core::reference::Reference;
-use flexure_core::scalar::{Jet, Over, Piecewise};
+use flexure_core::scalar::{Interval, Jet, Over, Piecewise, Scalar};
 use thiserror::Error;
 
 use super::septic::{Segment, interpolate};
@@ -36,10 +36,10 @@ use super::septic::{Segment, interpolate};
 /// # Ok::<(), flexure::reference::SamplesError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Samples<const N: usize> {
-    end: f64,
+pub struct Samples<C, const N: usize> {
+    end: C,
     /// At least one, in the order of time.
-    segments: Vec<Segment<N>>,
+    segments: Vec<Segment<C, N>>,
 }
 
 /// Why there is no trajectory through the samples. Samples and joints are counted from 0.
@@ -89,7 +89,7 @@ pub enum SamplesError {
     },
 }
 
-impl<const N: usize> Samples<N> {
+impl<const N: usize> Samples<f64, N> {
     /// The trajectory through `samples`, pairs of time in s and posture in rad; O(number of samples).
     ///
     /// # Errors
@@ -124,39 +124,65 @@ impl<const N: usize> Samples<N> {
         }
         Ok(Self { end: *end, segments })
     }
+}
+
+impl<C: Scalar, const N: usize> Samples<C, N> {
+    /// The trajectory with its coefficients as constants of another type.
+    pub fn map<D: Scalar>(&self, f: impl Fn(C) -> D) -> Samples<D, N> {
+        Samples { end: f(self.end), segments: self.segments.iter().map(|segment| segment.map(&f)).collect() }
+    }
 
     /// Time of the first sample in s.
-    pub fn start(&self) -> f64 {
+    pub fn start(&self) -> C {
         self.segments.first().map_or(self.end, |segment| segment.start)
     }
 
     /// Time of the last sample in s.
-    pub fn end(&self) -> f64 {
+    pub fn end(&self) -> C {
         self.end
     }
 
+    /// Position in rad at time `t` in s, which is on one of `segments`, before the first or after the last.
     #[inline]
-    fn clamp<T: Over<f64> + Piecewise>(&self, t: T) -> T {
-        t.clamp(T::constant(self.start()), T::constant(self.end))
-    }
-}
-
-impl<const N: usize> Reference<f64, N> for Samples<N> {
-    /// Looks at every segment, for numbers that have no order; [`at`](Self::at) finds the one it needs.
-    fn on<T: Over<f64> + Piecewise>(&self, t: T) -> Vector<T, N> {
-        let t = self.clamp(t);
-        let mut q_d = self.segments.first().map_or(Vector::ZERO, |first| first.on(t));
-        for segment in self.segments.iter().skip(1) {
+    fn along<T: Over<C> + Piecewise>(&self, segments: &[Segment<C, N>], t: T) -> Vector<T, N> {
+        let t = t.clamp(T::constant(self.start()), T::constant(self.end));
+        let mut q_d = segments.first().map_or(Vector::ZERO, |first| first.on(t));
+        for segment in segments.iter().skip(1) {
             let (after, here) = (t - T::constant(segment.start), segment.on(t));
             q_d = Vector::from_fn(|i| after.select(here[i], q_d[i]));
         }
         q_d
     }
 
+    /// The segments that are needed where `begun` have begun for sure and `possible` may have.
+    fn needed(&self, begun: usize, possible: usize) -> &[Segment<C, N>] {
+        self.segments.get(begun.saturating_sub(1)..possible.max(1)).unwrap_or_default()
+    }
+}
+
+impl<const N: usize> Reference<f64, N> for Samples<f64, N> {
+    /// Looks at every segment, for numbers that have no order; [`at`](Self::at) finds the one it needs.
+    fn on<T: Over<f64> + Piecewise>(&self, t: T) -> Vector<T, N> {
+        self.along(&self.segments, t)
+    }
+
     /// [`on`](Self::on) the time variable, in O(log of the number of samples).
     fn at<const K: usize>(&self, t: f64) -> Vector<Jet<f64, K>, N> {
         let begun = self.segments.partition_point(|segment| segment.start <= t);
-        let time = self.clamp(Jet::variable(t));
-        self.segments.get(begun.saturating_sub(1)).map_or(Vector::ZERO, |segment| segment.on(time))
+        self.along(self.needed(begun, begun), Jet::variable(t))
+    }
+}
+
+impl<const N: usize> Reference<Interval, N> for Samples<Interval, N> {
+    /// Looks at every segment, for numbers that have no order; [`at`](Self::at) finds those it needs.
+    fn on<T: Over<Interval> + Piecewise>(&self, t: T) -> Vector<T, N> {
+        self.along(&self.segments, t)
+    }
+
+    /// [`on`](Self::on) the time variable, in O(log of the number of samples) and the number of segments that `t` meets.
+    fn at<const K: usize>(&self, t: Interval) -> Vector<Jet<Interval, K>, N> {
+        let begun = self.segments.partition_point(|segment| segment.start.hi() <= t.lo());
+        let possible = self.segments.partition_point(|segment| segment.start.lo() <= t.hi());
+        self.along(self.needed(begun, possible), Jet::variable(t))
     }
 }

@@ -10,21 +10,21 @@ use flexure_core::scalar::{Dual, Over, Scalar};
 /// Taylor coefficients q, q̇, q̈ / 2, q⃛ / 6 at a knot, time in s.
 type Knot<T> = [T; 4];
 
-/// A polynomial of degree 7 in τ = (t − start) / width.
+/// A polynomial of degree 7 in τ = (t − start) / width, with constants of type `C`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Segment<const N: usize> {
+pub(super) struct Segment<C, const N: usize> {
     /// Its first instant in s.
-    pub(super) start: f64,
+    pub(super) start: C,
     /// 1 / width in 1/s.
-    rate: f64,
+    rate: C,
     /// By powers of τ in rad.
-    coefficients: [Vector<f64, N>; 8],
+    coefficients: [Vector<C, N>; 8],
 }
 
-impl<const N: usize> Segment<N> {
+impl<C: Scalar, const N: usize> Segment<C, N> {
     /// Position in rad at time `t` in s, by Horner's rule.
     #[inline]
-    pub(super) fn on<T: Over<f64>>(&self, t: T) -> Vector<T, N> {
+    pub(super) fn on<T: Over<C>>(&self, t: T) -> Vector<T, N> {
         let tau = (t - T::constant(self.start)).scale(self.rate);
         let mut q_d = Vector::ZERO;
         for c in self.coefficients.iter().rev() {
@@ -33,13 +33,23 @@ impl<const N: usize> Segment<N> {
         q_d
     }
 
+    pub(super) fn map<D>(&self, f: impl Fn(C) -> D) -> Segment<D, N> {
+        Segment {
+            start: f(self.start),
+            rate: f(self.rate),
+            coefficients: self.coefficients.each_ref().map(|c| c.map(&f)),
+        }
+    }
+}
+
+impl<const N: usize> Segment<f64, N> {
     pub(super) fn is_finite(&self) -> bool {
         self.rate.is_finite() && self.coefficients.iter().all(|c| c.iter().all(f64::is_finite))
     }
 }
 
 /// The segments of the spline through at least two samples (t_i, q_i), t_i increasing.
-pub(super) fn interpolate<const N: usize>(samples: &[(f64, Vector<f64, N>)]) -> Vec<Segment<N>> {
+pub(super) fn interpolate<const N: usize>(samples: &[(f64, Vector<f64, N>)]) -> Vec<Segment<f64, N>> {
     let slopes = slopes(samples);
     let knot = |i: usize, joint: usize| {
         let [d1, d2, d3] = slopes[i][joint].0;

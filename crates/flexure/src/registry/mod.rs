@@ -6,10 +6,10 @@ mod reference;
 mod robot;
 mod shaping;
 
-pub use controller::{CONTROLLERS, Law, command, law};
+pub use controller::{CONTROLLERS, Law, command, law, law_over};
 pub use reference::{AnyReference, REFERENCES};
 pub(crate) use robot::vector;
-pub use robot::{MAX_JOINTS, RobotVisitor, supported, with_robot};
+pub use robot::{MAX_JOINTS, RobotVisitor, supported, with_enclosed_robot, with_robot};
 pub use shaping::{AnyShaping, SHAPING};
 
 /// A registered name and what it stands for.

@@ -2,7 +2,7 @@
 
 use flexure_core::linalg::Vector;
 use flexure_core::reference::{Multisine, PointToPoint, Reference, Sine, SmoothStart, Smoothstep, Term};
-use flexure_core::scalar::{Jet, Over, Piecewise};
+use flexure_core::scalar::{Interval, Jet, Over, Piecewise, Scalar};
 
 use super::Entry;
 use super::robot::vector;
@@ -19,27 +19,54 @@ pub const REFERENCES: &[Entry] = &[
     Entry { name: "samples", summary: "a path from a CSV file through a septic spline" },
 ];
 
-/// Any registered reference for `N` joints.
+/// Any registered reference for `N` joints, with constants of type `C`.
+///
+/// On intervals it encloses the reference that the decimals of the scenario make exactly. Only a path through samples *is*
+/// the spline with the coefficients that floats gave it, which are points on intervals: samples are measured or computed,
+/// not meant to the last digit.
 #[derive(Clone, Debug)]
-pub enum AnyReference<const N: usize> {
+pub enum AnyReference<C, const N: usize> {
     /// Sines.
-    Sine(Sine<f64, N>),
+    Sine(Sine<C, N>),
     /// Sums of sines.
-    Multisine(Multisine<f64, Vec<Term<f64, N>>, N>),
+    Multisine(Multisine<C, Vec<Term<C, N>>, N>),
     /// Rest to rest.
-    PointToPoint(PointToPoint<f64, N>),
+    PointToPoint(PointToPoint<C, N>),
     /// Through samples.
-    Samples(Samples<N>),
+    Samples(Samples<C, N>),
     /// Any other, joined from rest.
-    SmoothStart(Box<SmoothStart<f64, AnyReference<N>, N>>),
+    SmoothStart(Box<SmoothStart<C, AnyReference<C, N>, N>>),
 }
 
-impl<const N: usize> AnyReference<N> {
+impl<const N: usize> AnyReference<f64, N> {
     /// The reference of a scenario, with its smooth start from the robot's initial position.
     ///
     /// # Errors
     /// If there is no spline through the samples.
     pub fn new(scenario: &io::Scenario) -> Result<Self, io::Problems> {
+        Self::over(scenario, |x| x)
+    }
+}
+
+impl<const N: usize> AnyReference<Interval, N> {
+    /// The reference of a scenario with its decimals enclosed, smooth start and initial position too.
+    ///
+    /// # Errors
+    /// If there is no spline through the samples.
+    pub fn enclosed(scenario: &io::Scenario) -> Result<Self, io::Problems> {
+        Self::over(scenario, |x| scenario.bounds(x))
+    }
+}
+
+impl<C: Scalar, const N: usize> AnyReference<C, N> {
+    /// The reference of a scenario with its numbers, but for samples, through `number`.
+    fn over(scenario: &io::Scenario, number: impl Fn(f64) -> C) -> Result<Self, io::Problems> {
+        let vector = |values: &[f64]| vector(values).map(&number);
+        let sine = |term: &io::Term| Term {
+            amplitude: vector(&term.amplitude),
+            frequency: vector(&term.frequency),
+            phase: vector(&term.phase),
+        };
         let reference = match &scenario.reference {
             io::Reference::Sines { offset, terms } => match terms.as_slice() {
                 [term] => {
@@ -57,25 +84,20 @@ impl<const N: usize> AnyReference<N> {
                     io::Profile::Septic => Smoothstep::Septic,
                     io::Profile::Nonic => Smoothstep::Nonic,
                 };
-                let (from, to) = (vector(from), vector(to));
-                Self::PointToPoint(PointToPoint { from, to, start: *start, duration: *duration, step })
+                Self::PointToPoint(PointToPoint {
+                    from: vector(from),
+                    to: vector(to),
+                    start: number(*start),
+                    duration: number(*duration),
+                    step,
+                })
             }
-            io::Reference::Samples { t, q } => {
-                let samples: Vec<_> = t.iter().copied().zip(q.iter().map(|q| vector(q))).collect();
-                Self::Samples(Samples::new(&samples).map_err(|error| {
-                    let help = "the path must be a smooth motion: check the numbers of that sample";
-                    io::Problems::from(scenario.places.problem(
-                        "reference.file",
-                        "samples",
-                        error.to_string(),
-                        help,
-                    ))
-                })?)
-            }
+            io::Reference::Samples { t, q } => Self::Samples(path(scenario, t, q)?.map(C::from_f64)),
         };
         Ok(match scenario.smooth_start {
             Some(duration) => {
                 let from = vector(&scenario.initial.q_l);
+                let duration = number(duration);
                 Self::SmoothStart(Box::new(SmoothStart { from, duration, then: reference }))
             }
             None => reference,
@@ -83,16 +105,24 @@ impl<const N: usize> AnyReference<N> {
     }
 }
 
-fn sine<const N: usize>(term: &io::Term) -> Term<f64, N> {
-    Term {
-        amplitude: vector(&term.amplitude),
-        frequency: vector(&term.frequency),
-        phase: vector(&term.phase),
-    }
+/// The spline through the samples of a scenario.
+fn path<const N: usize>(
+    scenario: &io::Scenario,
+    t: &[f64],
+    q: &[Vec<f64>],
+) -> Result<Samples<f64, N>, io::Problems> {
+    let samples: Vec<_> = t.iter().copied().zip(q.iter().map(|q| vector(q))).collect();
+    Samples::new(&samples).map_err(|error| {
+        let help = "the path must be a smooth motion: check the numbers of that sample";
+        scenario.places.problem("reference.file", "samples", error.to_string(), help).into()
+    })
 }
 
-impl<const N: usize> Reference<f64, N> for AnyReference<N> {
-    fn on<T: Over<f64> + Piecewise>(&self, t: T) -> Vector<T, N> {
+impl<C: Scalar, const N: usize> Reference<C, N> for AnyReference<C, N>
+where
+    Samples<C, N>: Reference<C, N>,
+{
+    fn on<T: Over<C> + Piecewise>(&self, t: T) -> Vector<T, N> {
         match self {
             Self::Sine(reference) => reference.on(t),
             Self::Multisine(reference) => reference.on(t),
@@ -102,7 +132,10 @@ impl<const N: usize> Reference<f64, N> for AnyReference<N> {
         }
     }
 
-    fn at<const K: usize>(&self, t: f64) -> Vector<Jet<f64, K>, N> {
+    fn at<const K: usize>(&self, t: C) -> Vector<Jet<C, K>, N>
+    where
+        C: Over<C> + Piecewise,
+    {
         match self {
             Self::Sine(reference) => reference.at(t),
             Self::Multisine(reference) => reference.at(t),

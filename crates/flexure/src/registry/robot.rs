@@ -3,18 +3,19 @@
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links};
 use flexure_core::robots::{Body, Pendulum, PlanarTwoLink, Tree};
+use flexure_core::scalar::{Interval, Scalar};
 
 use crate::io;
 
-/// Something to do with a robot whose links and joint count are known only when it runs.
-pub trait RobotVisitor {
+/// Something to do with a robot whose links and joint count are known only when it runs, over constants of type `C`.
+pub trait RobotVisitor<C: Scalar = f64> {
     /// What comes of it.
     type Output;
     /// Does it.
-    fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) -> Self::Output;
+    fn visit<L: Links<C, N> + Sync, const N: usize>(self, robot: Fjr<C, L, N>) -> Self::Output;
 }
 
-/// Largest joint count of a tree. To raise it, add the numbers to the list in [`with_robot`] and build again.
+/// Largest joint count of a tree. To raise it, add the numbers to the list in this file and build again.
 pub const MAX_JOINTS: usize = 10;
 
 /// Calls `visitor` with the robot that `data` describes.
@@ -22,23 +23,48 @@ pub const MAX_JOINTS: usize = 10;
 /// # Errors
 /// For a tree with more than [`MAX_JOINTS`] moving joints.
 pub fn with_robot<V: RobotVisitor>(data: &io::Robot, visitor: V) -> Result<V::Output, io::Problems> {
+    over(data, &data.links, |x| x, |x| x, visitor)
+}
+
+/// Calls `visitor` with the robot over intervals that encloses what the decimals in its files say.
+///
+/// # Errors
+/// For a tree with more than [`MAX_JOINTS`] moving joints.
+pub fn with_enclosed_robot<V: RobotVisitor<Interval>>(
+    data: &io::Robot,
+    visitor: V,
+) -> Result<V::Output, io::Problems> {
+    over(data, &data.enclosed, |x| data.bounds(x), Interval::midpoint, visitor)
+}
+
+/// The robot of `links` with the other numbers of `data` through `number`; `approximate` gives a float near a constant.
+fn over<C: Scalar + Sync, V: RobotVisitor<C>>(
+    data: &io::Robot,
+    links: &io::Links<C>,
+    number: impl Fn(f64) -> C,
+    approximate: impl Fn(C) -> f64,
+    visitor: V,
+) -> Result<V::Output, io::Problems> {
+    let gravity = data.gravity.map(&number);
     macro_rules! tree {
         ($bodies:expr, $($n:literal)*) => {
             match $bodies.len() {
-                $($n => visitor.visit(robot(data, tree::<$n>($bodies, data.gravity))),)*
+                $($n => visitor.visit(robot(data, tree::<C, $n>($bodies, gravity, approximate), number)),)*
                 joints => return Err(too_many(data, joints)),
             }
         };
     }
-    Ok(match &data.links {
+    Ok(match links {
         io::Links::PlanarTwoLink { mass, length, com, inertia } => {
-            visitor.visit::<_, 2>(robot(data, PlanarTwoLink::new(*mass, length[0], *com, *inertia)))
+            visitor.visit::<_, 2>(robot(data, PlanarTwoLink::new(*mass, length[0], *com, *inertia), number))
         }
-        io::Links::Pendulum { mass, com, inertia } => {
-            let [x, y, z] = data.gravity;
-            let weight_moment = mass * com * (x * x + y * y + z * z).sqrt();
-            visitor
-                .visit::<_, 1>(robot(data, Pendulum { inertia: inertia + mass * com * com, weight_moment }))
+        &io::Links::Pendulum { mass, com, inertia } => {
+            let [x, y, z] = gravity.map(C::square);
+            let links = Pendulum {
+                inertia: inertia + mass * com.square(),
+                weight_moment: mass * com * (x + y + z).sqrt(),
+            };
+            visitor.visit::<_, 1>(robot(data, links, number))
         }
         io::Links::Tree(bodies) => tree!(bodies, 1 2 3 4 5 6 7 8 9 10),
     })
@@ -61,18 +87,27 @@ fn too_many(data: &io::Robot, joints: usize) -> io::Problems {
     data.places.problem("links", "joints", message, help).into()
 }
 
-fn robot<L, const N: usize>(data: &io::Robot, links: L) -> Fjr<f64, L, N> {
+fn robot<C: Scalar, L, const N: usize>(
+    data: &io::Robot,
+    links: L,
+    number: impl Fn(f64) -> C,
+) -> Fjr<C, L, N> {
     Fjr {
         links,
-        motor_inertia: vector(&data.motor_inertia),
-        stiffness: vector(&data.stiffness),
-        link_damping: vector(&data.link_damping),
-        motor_damping: vector(&data.motor_damping),
+        motor_inertia: vector(&data.motor_inertia).map(&number),
+        stiffness: vector(&data.stiffness).map(&number),
+        link_damping: vector(&data.link_damping).map(&number),
+        motor_damping: vector(&data.motor_damping).map(&number),
     }
 }
 
-fn tree<const N: usize>(bodies: &[Body], gravity: [f64; 3]) -> Tree<f64, N> {
-    Tree::new(&std::array::from_fn(|i| bodies[i]), gravity).expect("the reader puts parents before children")
+fn tree<C: Scalar, const N: usize>(
+    bodies: &[Body<C>],
+    gravity: [C; 3],
+    approximate: impl Fn(C) -> f64,
+) -> Tree<C, N> {
+    Tree::from_bodies(&std::array::from_fn(|i| bodies[i]), gravity, approximate)
+        .expect("the reader puts parents before children")
 }
 
 /// Per-joint data, whose length the reader has checked.

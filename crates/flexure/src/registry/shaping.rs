@@ -2,7 +2,7 @@
 
 use flexure_core::control::{CoupledTanh, Linear, Shaping, Tanh};
 use flexure_core::linalg::Vector;
-use flexure_core::scalar::Over;
+use flexure_core::scalar::{Over, Scalar};
 
 use super::Entry;
 
@@ -22,21 +22,21 @@ pub const SHAPING: &[Entry] = &[
     },
 ];
 
-/// Any registered shaping function for `N` joints.
+/// Any registered shaping function for `N` joints, with constants of type `C`.
 #[derive(Clone, Copy, Debug)]
-pub enum AnyShaping<const N: usize> {
+pub enum AnyShaping<C, const N: usize> {
     /// φ_1.
-    Tanh(Tanh<f64, N>),
+    Tanh(Tanh<C, N>),
     /// φ_2.
-    Linear(Linear<f64, N>),
+    Linear(Linear<C, N>),
     /// φ_3.
-    CoupledTanh(CoupledTanh<f64, N>),
+    CoupledTanh(CoupledTanh<C, N>),
 }
 
-impl<const N: usize> AnyShaping<N> {
+impl<C: Scalar, const N: usize> AnyShaping<C, N> {
     /// The function called `name` with gain Λ and, for `coupled-tanh`, κ. None for a name that is not registered, or
     /// if κ is missing.
-    pub fn new(name: &str, gain: Vector<f64, N>, kappa: Option<Vector<f64, N>>) -> Option<Self> {
+    pub fn new(name: &str, gain: Vector<C, N>, kappa: Option<Vector<C, N>>) -> Option<Self> {
         match name {
             "tanh" => Some(Self::Tanh(Tanh { gain })),
             "linear" => Some(Self::Linear(Linear { gain })),
@@ -46,9 +46,9 @@ impl<const N: usize> AnyShaping<N> {
     }
 }
 
-impl<const N: usize> Shaping<f64, N> for AnyShaping<N> {
+impl<C: Scalar, const N: usize> Shaping<C, N> for AnyShaping<C, N> {
     #[inline]
-    fn eval<T: Over<f64>>(&self, error: &Vector<T, N>) -> Vector<T, N> {
+    fn eval<T: Over<C>>(&self, error: &Vector<T, N>) -> Vector<T, N> {
         match self {
             Self::Tanh(phi) => phi.eval(error),
             Self::Linear(phi) => phi.eval(error),

@@ -63,8 +63,8 @@ impl RobotVisitor for Simulate<'_> {
             return Err(too_heavy(scenario).into());
         }
         let robot = &plant.robot;
-        let law: Law<N> = law(&scenario.controller);
-        let reference = AnyReference::<N>::new(scenario)?;
+        let law: Law<f64, N> = law(&scenario.controller);
+        let reference = AnyReference::<f64, N>::new(scenario)?;
         let settings = ClosedLoop {
             duration: scenario.duration,
             period: scenario.control_period,

@@ -22,25 +22,41 @@ pub enum JointKind {
     Prismatic,
 }
 
-/// A body and the joint that carries it, as data: the unit a [`Tree`] is built from.
+/// A body and the joint that carries it, as data with constants of type `C`: the unit a [`Tree`] is built from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Body {
+pub struct Body<C = f64> {
     /// Index of the body that carries the joint, smaller than the body's own; none for the base.
     pub parent: Option<usize>,
     /// Kind of joint.
     pub kind: JointKind,
     /// Unit joint axis in the joint frame.
-    pub axis: [f64; 3],
+    pub axis: [C; 3],
     /// Orientation of the joint frame at q = 0 in the parent's link frame (columns are its axes).
-    pub rotation: [[f64; 3]; 3],
+    pub rotation: [[C; 3]; 3],
     /// Origin of the joint frame in the parent's link frame in m.
-    pub translation: [f64; 3],
+    pub translation: [C; 3],
     /// Mass in kg.
-    pub mass: f64,
+    pub mass: C,
     /// Centre of mass in the link frame in m.
-    pub com: [f64; 3],
+    pub com: [C; 3],
     /// Rotational inertia about the centre of mass in link axes [kg m²].
-    pub inertia: [[f64; 3]; 3],
+    pub inertia: [[C; 3]; 3],
+}
+
+impl<C: Copy> Body<C> {
+    /// The same body with every number through `f`.
+    pub fn map<D>(&self, f: impl Fn(C) -> D) -> Body<D> {
+        Body {
+            parent: self.parent,
+            kind: self.kind,
+            axis: self.axis.map(&f),
+            rotation: self.rotation.map(|row| row.map(&f)),
+            translation: self.translation.map(&f),
+            mass: f(self.mass),
+            com: self.com.map(&f),
+            inertia: self.inertia.map(|row| row.map(&f)),
+        }
+    }
 }
 
 /// Rigid links joined in a tree, `N` joints, constants of type `C`.
@@ -58,8 +74,23 @@ impl<const N: usize> Tree<f64, N> {
     /// None if some body's parent does not come before it. The physics (positive masses and inertias, unit axes) is
     /// the caller's duty: the file reader checks it where it can point at the number.
     pub fn new(bodies: &[Body; N], gravity: [f64; 3]) -> Option<Self> {
+        Self::from_bodies(bodies, gravity, |x| x)
+    }
+}
+
+impl<C: Scalar, const N: usize> Tree<C, N> {
+    /// [`new`](Tree::new) over any constants: on intervals the tree encloses every robot whose numbers they contain.
+    ///
+    /// `approximate` gives a float near a constant. It only says which coordinate axis, of those far from the joint axis,
+    /// the turned frame of a joint starts from: the tree is the same robot with any of them. Axes that are coordinate axes
+    /// turn frames by permutations, which round nothing.
+    pub fn from_bodies(
+        bodies: &[Body<C>; N],
+        gravity: [C; 3],
+        approximate: impl Fn(C) -> f64,
+    ) -> Option<Self> {
         let ordered = bodies.iter().enumerate().all(|(i, body)| body.parent.is_none_or(|parent| parent < i));
-        let turn = |body: &Body| axis_frame(body.axis);
+        let turn = |body: &Body<C>| axis_frame(body.axis, &approximate);
         let joints = bodies.each_ref().map(|body| {
             let own = turn(body);
             // Everything that was said in the parent's link frame, in the parent's turned frame.
@@ -80,9 +111,7 @@ impl<const N: usize> Tree<f64, N> {
         });
         ordered.then_some(Self { joints, gravity: Vec3::from_array(gravity) })
     }
-}
 
-impl<C: Scalar, const N: usize> Tree<C, N> {
     /// The same robot with constants of another type.
     pub fn map<D: Scalar>(&self, f: impl Fn(C) -> D) -> Tree<D, N> {
         Tree { joints: self.joints.each_ref().map(|joint| joint.map(&f)), gravity: self.gravity.map(&f) }
@@ -91,21 +120,20 @@ impl<C: Scalar, const N: usize> Tree<C, N> {
 
 /// A rotation whose third column is the unit vector `axis`; a permutation of axes where `axis` is one of them, so
 /// that nothing is rounded.
-fn axis_frame(axis: [f64; 3]) -> Matrix<f64, 3, 3> {
-    let [x, y, z] = axis;
-    let (ax, ay, az) = (libm::fabs(x), libm::fabs(y), libm::fabs(z));
+fn axis_frame<C: Scalar>(axis: [C; 3], approximate: impl Fn(C) -> f64) -> Matrix<C, 3, 3> {
+    let [ax, ay, az] = axis.map(|x| libm::fabs(approximate(x)));
     // The coordinate axis farthest from the joint axis, made orthogonal to it, is the first column.
     let farthest = if ax <= ay && ax <= az {
-        [1.0, 0.0, 0.0]
+        [C::ONE, C::ZERO, C::ZERO]
     } else if ay <= az {
-        [0.0, 1.0, 0.0]
+        [C::ZERO, C::ONE, C::ZERO]
     } else {
-        [0.0, 0.0, 1.0]
+        [C::ZERO, C::ZERO, C::ONE]
     };
     let k = Vec3::from_array(axis);
     let e = Vec3::from_array(farthest);
     let first = e - k.scaled(k.dot(e));
-    let first = first.scaled(1.0 / libm::sqrt(first.dot(first)));
+    let first = first.scaled(first.dot(first).sqrt().recip());
     let second = k.cross(first);
     Matrix([[first.x, second.x, k.x], [first.y, second.y, k.y], [first.z, second.z, k.z]])
 }

@@ -2,7 +2,7 @@
 
 use flexure_core::linalg::Matrix;
 
-use super::rigid::Pose;
+use super::written::symmetric;
 use crate::eigenvalues::eigenvalues;
 use crate::io::quantity;
 use crate::io::site::Site;
@@ -14,26 +14,20 @@ const SLACK: f64 = 1e-9;
 /// Inertias smaller than this are nothing [kg m²]: a milligram at a tenth of a millimetre has more.
 const DUST: f64 = 1e-15;
 
-/// Reads `inertia` (ixx, ixy, ixz, iyy, iyz, izz) with `inertia_rpy`, the orientation of its axes.
-pub(super) fn read(table: &Table<'_>) -> Option<Matrix<f64, 3, 3>> {
+/// Reads `inertia` (ixx, ixy, ixz, iyy, iyz, izz) and `inertia_rpy`, the orientation of its axes.
+pub(super) fn read(table: &Table<'_>) -> Option<([f64; 6], [f64; 3])> {
     let names = "ixx, ixy, ixz, iyy, iyz, izz";
     let six = table.array("inertia", &quantity::BODY_INERTIA, names);
     let rpy = table.array_or("inertia_rpy", &quantity::ORIENTATION, "roll, pitch, yaw");
-    checked(&table.get("inertia")?.site, six?, rpy?)
+    let (six, rpy) = (six?, rpy?);
+    check(&table.get("inertia")?.site, six)?;
+    Some((six, rpy))
 }
 
-/// The inertia (ixx, ixy, ixz, iyy, iyz, izz) in axes turned by `rpy`, unless no body can have it.
-pub(in crate::io) fn checked(site: &Site<'_>, six: [f64; 6], rpy: [f64; 3]) -> Option<Matrix<f64, 3, 3>> {
-    let [xx, xy, xz, yy, yz, zz] = six;
-    let inertia = Matrix([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]);
-    check(site, &inertia)?;
-    let axes = Pose::new([0.0; 3], rpy).rotation;
-    Some(axes * inertia * axes.transpose())
-}
-
-/// Notes an error if no body has this inertia, and a warning if no body made of matter has it.
-fn check(site: &Site<'_>, inertia: &Matrix<f64, 3, 3>) -> Option<()> {
-    let [a, b, c] = principal(inertia);
+/// Notes an error if no body has the inertia (ixx, ixy, ixz, iyy, iyz, izz), and a warning if no body made of matter has
+/// it.
+pub(in crate::io) fn check(site: &Site<'_>, six: [f64; 6]) -> Option<()> {
+    let [a, b, c] = principal(&symmetric(six));
     let listed = format!("principal inertias {a:.3e}, {b:.3e}, {c:.3e} kg m^2");
     if a < -SLACK * c.abs() - DUST {
         let message = format!("{} is indefinite: {listed}, must be >= 0", site.path);
@@ -65,7 +59,8 @@ fn principal(inertia: &Matrix<f64, 3, 3>) -> [f64; 3] {
 mod tests {
     use flexure_core::linalg::Vector;
 
-    use super::{Matrix, Pose, principal};
+    use super::super::rigid::Pose;
+    use super::{Matrix, principal};
 
     /// Turning the axes of diag(1, 2, 4) leaves its eigenvalues.
     #[test]

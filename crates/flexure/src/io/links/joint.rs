@@ -1,10 +1,8 @@
 //! One `[[links.joint]]`.
 
-use flexure_core::linalg::{Matrix, Vector};
-
-use super::assembly::Joint;
+use super::assembly::{Joint, Motion};
 use super::inertia;
-use super::rigid::{Pose, Rigid};
+use super::written::{Axis, Frame, Matter};
 use super::{JointKind, MovingJoint};
 use crate::io::field::Field;
 use crate::io::quantity;
@@ -36,25 +34,25 @@ pub(super) fn read<'a>(field: &Field<'a>) -> Option<Entry<'a>> {
     let xyz = table.array_or("xyz", &quantity::POSITION, "x, y, z");
     let rpy = table.array_or("rpy", &quantity::ORIENTATION, "roll, pitch, yaw");
     let axis = axis(&table);
-    let body = body(&table);
+    let matter = matter(&table);
     let name = name?;
     let motion = match kind? {
-        None => None,
-        Some(kind) => Some((MovingJoint::new(name, kind), axis?)),
+        None => Motion::Fixed,
+        Some(kind) => Motion::Moving(MovingJoint::new(name, kind), axis?),
     };
     let site = Site { path: format!("{} ({name})", field.path), ..field.site.clone() };
-    let joint = Joint { site, parent: None, motion, pose: Pose::new(xyz?, rpy?), body: body? };
+    let joint = Joint { site, parent: None, motion, frame: Frame { xyz: xyz?, rpy: rpy? }, matter: matter? };
     Some(Entry { name, parent: parent?, joint })
 }
 
-/// The unit vector along `axis`; z without the key.
-fn axis(table: &Table<'_>) -> Option<[f64; 3]> {
-    let Some(field) = table.get("axis") else { return Some([0.0, 0.0, 1.0]) };
-    unit(&field, field.array(&quantity::AXIS, "x, y, z")?)
+/// The direction of `axis`; z without the key.
+fn axis(table: &Table<'_>) -> Option<Axis> {
+    let Some(field) = table.get("axis") else { return Some(Axis([0.0, 0.0, 1.0])) };
+    direction(&field, field.array(&quantity::AXIS, "x, y, z")?)
 }
 
 /// The direction of `axis`; notes an error if it has none.
-pub(in crate::io) fn unit(site: &Site<'_>, axis: [f64; 3]) -> Option<[f64; 3]> {
+pub(in crate::io) fn direction(site: &Site<'_>, axis: [f64; 3]) -> Option<Axis> {
     let norm = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
     if norm == 0.0 {
         site.error("axis", format!("{} is zero, must be a direction", site.path), "the z axis is [0, 0, 1]");
@@ -64,18 +62,19 @@ pub(in crate::io) fn unit(site: &Site<'_>, axis: [f64; 3]) -> Option<[f64; 3]> {
         let message = format!("{} has length {norm}, is taken as a direction", site.path);
         site.warn("axis", message, "write a unit vector");
     }
-    Some(axis.map(|x| x / norm))
+    Some(Axis(axis))
 }
 
 /// By how much a unit vector written with a few digits may miss length one.
 const ROUGH: f64 = 1e-4;
 
 /// Mass, and unless it is zero centre of mass and inertia.
-fn body(table: &Table<'_>) -> Option<Rigid> {
+fn matter(table: &Table<'_>) -> Option<Matter> {
     let mass = table.number("mass", &quantity::BODY_MASS);
     let massless = mass == Some(0.0);
     let given = |key| !massless || table.get(key).is_some();
     let com = if given("com") { table.array("com", &quantity::POSITION, "x, y, z") } else { Some([0.0; 3]) };
-    let inertia = if given("inertia") { inertia::read(table) } else { Some(Matrix::ZERO) };
-    Some(Rigid { mass: mass?, com: Vector(com?), inertia: inertia? })
+    let inertia = if given("inertia") { inertia::read(table) } else { Some(([0.0; 6], [0.0; 3])) };
+    let (inertia, inertia_rpy) = inertia?;
+    Some(Matter { mass: mass?, com: com?, inertia, inertia_rpy })
 }

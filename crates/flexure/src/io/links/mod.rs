@@ -6,48 +6,67 @@ pub(super) mod joint;
 pub(super) mod rigid;
 mod tree;
 mod urdf;
+pub(super) mod written;
 
 pub use flexure_core::robots::{Body, JointKind};
+use flexure_core::scalar::Interval;
 
 use super::base::Base;
+use super::decimals::Decimals;
 use super::field::{Field, Joints};
 use super::quantity::{self, Quantity};
 use super::table::Table;
 
-/// What the links are, as data.
+/// What the links are, as data with numbers of type `C`.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Links {
+pub enum Links<C = f64> {
     /// Two links in a horizontal plane, in closed form; gravity does not act on them.
     PlanarTwoLink {
         /// Masses \[kg\].
-        mass: [f64; 2],
+        mass: [C; 2],
         /// Lengths \[m\]; the second plays no part in the dynamics.
-        length: [f64; 2],
+        length: [C; 2],
         /// Distances of the centres of mass from the joints \[m\].
-        com: [f64; 2],
+        com: [C; 2],
         /// Rotational inertias about the centres of mass [kg m²].
-        inertia: [f64; 2],
+        inertia: [C; 2],
     },
     /// One link on a horizontal axis; q = 0 hangs along gravity.
     Pendulum {
         /// Mass \[kg\].
-        mass: f64,
+        mass: C,
         /// Distance of the centre of mass from the joint \[m\].
-        com: f64,
+        com: C,
         /// Rotational inertia about the centre of mass [kg m²]; about the joint it is `inertia` + `mass` `com`².
-        inertia: f64,
+        inertia: C,
     },
     /// A tree of moving joints, parents before children; fixed joints are already merged into the bodies.
-    Tree(Vec<Body>),
+    Tree(Vec<Body<C>>),
 }
 
-impl Links {
+impl<C: Copy> Links<C> {
     /// Number of moving joints.
     pub fn joints(&self) -> usize {
         match self {
             Self::PlanarTwoLink { .. } => 2,
             Self::Pendulum { .. } => 1,
             Self::Tree(bodies) => bodies.len(),
+        }
+    }
+
+    /// The same links with every number through `f`.
+    fn map<D>(&self, f: impl Fn(C) -> D) -> Links<D> {
+        match self {
+            Self::PlanarTwoLink { mass, length, com, inertia } => Links::PlanarTwoLink {
+                mass: mass.map(&f),
+                length: length.map(&f),
+                com: com.map(&f),
+                inertia: inertia.map(&f),
+            },
+            Self::Pendulum { mass, com, inertia } => {
+                Links::Pendulum { mass: f(*mass), com: f(*com), inertia: f(*inertia) }
+            }
+            Self::Tree(bodies) => Links::Tree(bodies.iter().map(|body| body.map(&f)).collect()),
         }
     }
 }
@@ -94,14 +113,17 @@ impl MovingJoint {
 /// What a reader of links found.
 pub(super) struct Assembled {
     pub links: Links,
+    /// The links that the decimals of the file make exactly, enclosed.
+    pub enclosed: Links<Interval>,
     /// In the order of all per-joint numbers.
     pub joints: Vec<MovingJoint>,
 }
 
 impl Assembled {
-    fn closed_form(links: Links) -> Self {
+    /// From links whose numbers stand in the file as they are.
+    fn closed_form(links: Links, decimals: Decimals) -> Self {
         let joints = MovingJoint::numbered(links.joints());
-        Self { links, joints }
+        Self { enclosed: links.map(|x| decimals.enclose(x)), links, joints }
     }
 }
 
@@ -135,13 +157,14 @@ fn planar_two_link(table: &Table<'_>, _: &Base) -> Option<Assembled> {
     let (mass, length) = (read("mass", &quantity::MASS), read("length", &quantity::LENGTH));
     let (com, inertia) = (read("com", &quantity::POSITION), read("inertia", &quantity::INERTIA));
     let links = Links::PlanarTwoLink { mass: mass?, length: length?, com: com?, inertia: inertia? };
-    Some(Assembled::closed_form(links))
+    Some(Assembled::closed_form(links, table.decimals()))
 }
 
 fn pendulum(table: &Table<'_>, _: &Base) -> Option<Assembled> {
     let (mass, com) = (table.number("mass", &quantity::MASS), table.number("com", &quantity::POSITION));
     let inertia = table.number("inertia", &quantity::INERTIA);
-    Some(Assembled::closed_form(Links::Pendulum { mass: mass?, com: com?, inertia: inertia? }))
+    let links = Links::Pendulum { mass: mass?, com: com?, inertia: inertia? };
+    Some(Assembled::closed_form(links, table.decimals()))
 }
 
 /// Notes an error if gravity has a part that the closed form leaves out.

@@ -13,7 +13,7 @@ pub(super) fn read(table: &Table<'_>, _: &Base) -> Option<Assembled> {
     let fields = table.required("joint", "[[links.joint]], once for each joint")?.tables()?;
     let entries: Vec<_> = fields.iter().map(joint::read).collect();
     let entries = entries.into_iter().collect::<Option<Vec<_>>>()?;
-    assembly::assemble(linked(entries)?, || {
+    assembly::assemble(&linked(entries)?, table.decimals(), || {
         table.error(
             "immovable",
             "links.joint: no joint moves",

@@ -23,7 +23,11 @@ pub(super) fn read(table: &Table<'_>, base: &Base) -> Option<Assembled> {
     let assembled = urdf::with(&log, |urdf| {
         let sound: Vec<_> = locked.iter().map(|(name, q, field)| urdf.can_hold(name, *q, field)).collect();
         sound.into_iter().collect::<Option<()>>()?;
-        urdf.assemble(&locked.iter().map(|(name, q, _)| (*name, *q)).collect::<Locks<'_>>())
+        file.log.note(log.decimals());
+        urdf.assemble(
+            &locked.iter().map(|(name, q, _)| (*name, *q)).collect::<Locks<'_>>(),
+            file.log.decimals(),
+        )
     });
     // What is wrong with the locks is in this file's log, not in that of the URDF.
     file.log.absorb(log.finish(Some(assembled)))?

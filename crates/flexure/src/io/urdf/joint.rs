@@ -2,8 +2,8 @@
 
 use super::link::origin;
 use super::node::Node;
-use crate::io::links::joint::unit;
-use crate::io::links::rigid::{Pose, Rigid};
+use crate::io::links::joint::direction;
+use crate::io::links::written::{Axis, Frame, Matter};
 use crate::io::links::{DriveDefaults, JointKind};
 use crate::io::quantity;
 use crate::io::site::Site;
@@ -17,12 +17,12 @@ pub(in crate::io) struct Joint<'a> {
     /// Index of the joint that carries it in [`Urdf::joints`](super::Urdf), smaller than its own; none for the base.
     pub parent: Option<usize>,
     /// Joint frame in the parent's frame.
-    pub pose: Pose,
-    /// Unit joint axis in the joint frame.
-    pub axis: [f64; 3],
+    pub frame: Frame,
+    /// Joint axis in the joint frame.
+    pub axis: Axis,
     pub drive: DriveDefaults,
     pub mimic: Option<Mimic<'a>>,
-    pub body: Rigid,
+    pub matter: Matter,
 }
 
 impl Joint<'_> {
@@ -71,21 +71,20 @@ pub(super) fn read<'a>(name: &'a str, node: &Node<'a>) -> Option<Connection<'a>>
     let (parent, child) = (end("parent"), end("child"));
     let origin = origin(node);
     let moves = kind != Some(Kind::Fixed);
-    let axis = if moves { axis(node) } else { Some([1.0, 0.0, 0.0]) };
+    let axis = if moves { axis(node) } else { Some(X) };
     let continuous = text.is_some_and(|(text, _)| text == "continuous");
     let drive = if moves { drive(node, !continuous) } else { Some(DriveDefaults::default()) };
     let mimic = mimic(node);
-    let (xyz, rpy) = origin?;
     let joint = Joint {
         site: node.site.clone(),
         name,
         kind: kind?,
         parent: None,
-        pose: Pose::new(xyz, rpy),
+        frame: origin?,
         axis: axis?,
         drive: drive?,
         mimic: mimic?,
-        body: Rigid::NOTHING,
+        matter: Matter::NOTHING,
     };
     Some(Connection { joint, parent: parent?, child: child? })
 }
@@ -108,11 +107,13 @@ fn kind(text: &str, site: &Site<'_>) -> Option<Kind> {
     found
 }
 
-/// The unit vector along `<axis>`; x without it.
-fn axis(node: &Node<'_>) -> Option<[f64; 3]> {
-    let default = [1.0, 0.0, 0.0];
-    let Some(axis) = node.child("axis")? else { return Some(default) };
-    unit(&axis.site, axis.numbers("xyz", &quantity::AXIS, "x, y, z", default)?)
+/// The axis of a joint that names none.
+const X: Axis = Axis([1.0, 0.0, 0.0]);
+
+/// The direction of `<axis>`.
+fn axis(node: &Node<'_>) -> Option<Axis> {
+    let Some(axis) = node.child("axis")? else { return Some(X) };
+    direction(&axis.site, axis.numbers("xyz", &quantity::AXIS, "x, y, z", X.0)?)
 }
 
 #[expect(clippy::option_option, reason = "bad, absent and good are three cases")]

@@ -1,16 +1,14 @@
 //! `<link>`: its body.
 
-use flexure_core::linalg::Vector;
-
 use super::node::Node;
 use crate::io::links::inertia;
-use crate::io::links::rigid::Rigid;
+use crate::io::links::written::{Frame, Matter};
 use crate::io::quantity;
 
 /// The body of a link in the frame of the joint that carries it; nothing without `<inertial>`.
-pub(super) fn body(link: &Node<'_>) -> Option<Rigid> {
-    let Some(inertial) = link.child("inertial")? else { return Some(Rigid::NOTHING) };
-    let (com, rpy) = origin(&inertial)?;
+pub(super) fn matter(link: &Node<'_>) -> Option<Matter> {
+    let Some(inertial) = link.child("inertial")? else { return Some(Matter::NOTHING) };
+    let Frame { xyz, rpy } = origin(&inertial)?;
     let mass = inertial
         .required_child("mass", "mass in kg: <mass value=\"…\"/>")
         .and_then(|node| node.number("value", &quantity::BODY_MASS));
@@ -19,14 +17,15 @@ pub(super) fn body(link: &Node<'_>) -> Option<Rigid> {
             let six = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"]
                 .map(|name| node.number(name, &quantity::BODY_INERTIA));
             let [Some(xx), Some(xy), Some(xz), Some(yy), Some(yz), Some(zz)] = six else { return None };
-            inertia::checked(&node.site, [xx, xy, xz, yy, yz, zz], rpy)
+            let six = [xx, xy, xz, yy, yz, zz];
+            inertia::check(&node.site, six).map(|()| six)
         });
-    Some(Rigid { mass: mass?, com: Vector(com), inertia: inertia? })
+    Some(Matter { mass: mass?, com: xyz, inertia: inertia?, inertia_rpy: rpy })
 }
 
 /// `<origin xyz rpy>` of a node; zeros without it.
-pub(super) fn origin(node: &Node<'_>) -> Option<([f64; 3], [f64; 3])> {
-    let Some(origin) = node.child("origin")? else { return Some(([0.0; 3], [0.0; 3])) };
+pub(super) fn origin(node: &Node<'_>) -> Option<Frame> {
+    let Some(origin) = node.child("origin")? else { return Some(Frame { xyz: [0.0; 3], rpy: [0.0; 3] }) };
     if origin.has("quat_xyzw") {
         let message = format!("{} has a quaternion, which is not read", origin.site.path);
         origin.site.error("unsupported", message, "write the orientation as rpy, in rad");
@@ -34,5 +33,5 @@ pub(super) fn origin(node: &Node<'_>) -> Option<([f64; 3], [f64; 3])> {
     }
     let xyz = origin.numbers("xyz", &quantity::POSITION, "x, y, z", [0.0; 3]);
     let rpy = origin.numbers("rpy", &quantity::ORIENTATION, "roll, pitch, yaw", [0.0; 3]);
-    Some((xyz?, rpy?))
+    Some(Frame { xyz: xyz?, rpy: rpy? })
 }

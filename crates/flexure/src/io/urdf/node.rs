@@ -1,6 +1,7 @@
 //! An element under the name that messages have for it: finding its parts, reading its attributes.
 
 use super::xml::{Attribute, Element};
+use crate::io::decimals::Decimals;
 use crate::io::document::Log;
 use crate::io::quantity::Quantity;
 use crate::io::site::Site;
@@ -131,7 +132,10 @@ impl Site<'_> {
         let word = word.trim();
         match word.parse::<f64>() {
             Ok(x) if x.abs() < DUST => Some(0.0),
-            Ok(x) if x.is_finite() => self.log.accept(&self.path, x, quantity, self.span.clone()),
+            Ok(x) if x.is_finite() => {
+                self.log.note(Decimals::of(word, x));
+                self.log.accept(&self.path, x, quantity, self.span.clone())
+            }
             Ok(_) => {
                 let message = format!("{} is {}, must be a finite number", self.path, suggest::quoted(word));
                 self.error("not-finite", message, quantity.described());

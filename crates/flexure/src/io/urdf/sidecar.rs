@@ -49,7 +49,8 @@ fn draft<'a>(urdf: Urdf<'a>, path: &str, mut locks: Locks<'a>) -> Option<(String
     let stem = Path::new(path).file_stem().map_or("robot".into(), |stem| stem.to_string_lossy());
     let is_name = |name: &&str| !name.trim().is_empty() && !name.contains(char::is_control);
     let name = urdf.name.filter(is_name).map_or_else(|| stem.into_owned(), str::to_owned);
-    let Assembled { joints, .. } = urdf.assemble(&locks)?;
+    let decimals = urdf.site.log.decimals();
+    let Assembled { joints, .. } = urdf.assemble(&locks, decimals)?;
 
     let mut toml = String::new();
     head(&mut toml, path, &name, &locks, &mimicked);

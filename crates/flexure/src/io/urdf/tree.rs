@@ -6,10 +6,11 @@ use super::joint::{self, Connection, Joint, Kind};
 use super::link;
 use super::node::Node;
 use super::xml::Element;
+use crate::io::decimals::Decimals;
 use crate::io::document::Log;
-use crate::io::links::assembly::{self, assemble};
-use crate::io::links::rigid::{Pose, Rigid};
-use crate::io::links::{Assembled, DriveDefaults, JointKind, MovingJoint};
+use crate::io::links::assembly::{self, Motion, assemble};
+use crate::io::links::written::{Hold, Matter};
+use crate::io::links::{Assembled, DriveDefaults, MovingJoint};
 use crate::io::site::Site;
 use crate::io::suggest;
 
@@ -33,7 +34,7 @@ pub(in crate::io) type Locks<'a> = BTreeMap<&'a str, f64>;
 
 /// Links and joints in the order of the file.
 struct Parts<'a> {
-    links: Vec<(&'a str, Site<'a>, Rigid)>,
+    links: Vec<(&'a str, Site<'a>, Matter)>,
     connections: Vec<Connection<'a>>,
 }
 
@@ -67,8 +68,8 @@ fn parts<'a>(root: &'a Element<'a>, log: &'a Log) -> Option<Parts<'a>> {
             node.site.error("duplicate", format!("{} stands twice", node.site.path), "names must differ");
             sound = None;
         } else if is_link {
-            match link::body(&node) {
-                Some(body) => parts.links.push((name, node.site, body)),
+            match link::matter(&node) {
+                Some(matter) => parts.links.push((name, node.site, matter)),
                 None => sound = None,
             }
         } else {
@@ -150,12 +151,12 @@ fn ordered<'a>(parts: Parts<'a>, robot: &Site<'a>) -> Option<Vec<Joint<'a>>> {
         connections.into_iter().map(|connection| Some(connection.joint)).collect();
     order
         .into_iter()
-        .map(|(i, parent)| Some(Joint { parent, body: links[children[i]].2, ..joints[i].take()? }))
+        .map(|(i, parent)| Some(Joint { parent, matter: links[children[i]].2, ..joints[i].take()? }))
         .collect()
 }
 
 /// The one link that no joint carries.
-fn root(links: &[(&str, Site<'_>, Rigid)], carrier: &[Option<usize>], robot: &Site<'_>) -> Option<usize> {
+fn root(links: &[(&str, Site<'_>, Matter)], carrier: &[Option<usize>], robot: &Site<'_>) -> Option<usize> {
     let roots: Vec<usize> = (0..links.len()).filter(|&i| carrier[i].is_none()).collect();
     match roots.as_slice() {
         [root] => Some(*root),
@@ -212,23 +213,24 @@ impl<'a> Urdf<'a> {
         Some(())
     }
 
-    /// The moving bodies, with the joints in `locks` and those that mimic them held still.
-    pub fn assemble(self, locks: &Locks<'_>) -> Option<Assembled> {
+    /// The moving bodies, with the joints in `locks` and those that mimic them held still. `decimals` are the numbers of
+    /// the URDF and of the locks.
+    pub fn assemble(self, locks: &Locks<'_>, decimals: Decimals) -> Option<Assembled> {
         let held = self.held(locks)?;
         let site = self.site;
         let joints = self.joints.into_iter().zip(held).map(|(joint, held)| fixed_or_moving(joint, held));
-        assemble(joints.collect(), || {
+        assemble(&joints.collect::<Vec<_>>(), decimals, || {
             site.error("immovable", "no joint of the robot moves", "at least one joint must stay unlocked");
         })
     }
 
     /// Where each joint is held still, if it is; notes an error at one that mimics a joint that moves.
-    fn held(&self, locks: &Locks<'_>) -> Option<Vec<Option<f64>>> {
+    fn held(&self, locks: &Locks<'_>) -> Option<Vec<Option<Hold>>> {
         let mut sound = Some(());
         let index = self.indices();
         let held = self.joints.iter().map(|joint| {
             let held = self.follow(joint, locks, &index);
-            if let (None, Some(mimic)) = (held, &joint.mimic) {
+            if let (None, Some(mimic)) = (&held, &joint.mimic) {
                 let known = index.contains_key(mimic.of);
                 let objection = if known {
                     "joints that move together are not modelled"
@@ -251,14 +253,14 @@ impl<'a> Urdf<'a> {
     }
 
     /// Where `joint` is held, through as many joints as mimic each other.
-    fn follow(&self, joint: &Joint<'_>, locks: &Locks<'_>, index: &HashMap<&str, usize>) -> Option<f64> {
-        let (mut scale, mut shift, mut joint) = (1.0, 0.0, joint);
+    fn follow(&self, joint: &Joint<'_>, locks: &Locks<'_>, index: &HashMap<&str, usize>) -> Option<Hold> {
+        let (mut mimicry, mut joint) = (Vec::new(), joint);
         for _ in 0..LONGEST_MIMICRY {
-            if let Some(position) = locks.get(joint.name) {
-                return Some(scale * position + shift);
+            if let Some(&position) = locks.get(joint.name) {
+                return Some(Hold { position, mimicry });
             }
             let mimic = joint.mimic.as_ref()?;
-            (scale, shift) = (scale * mimic.multiplier, shift + scale * mimic.offset);
+            mimicry.push((mimic.multiplier, mimic.offset));
             joint = &self.joints[*index.get(mimic.of)?];
         }
         None
@@ -286,15 +288,14 @@ impl<'a> Urdf<'a> {
     }
 }
 
-fn fixed_or_moving(joint: Joint<'_>, held: Option<f64>) -> assembly::Joint<'_> {
-    let Joint { site, name, kind, parent, pose, axis, drive, body, .. } = joint;
-    let (motion, pose) = match (kind, held) {
-        (Kind::Fixed, _) => (None, pose),
-        (Kind::Moving(JointKind::Revolute), Some(q)) => (None, pose.then(&Pose::turned(axis, q))),
-        (Kind::Moving(JointKind::Prismatic), Some(q)) => (None, pose.then(&Pose::slid(axis, q))),
+fn fixed_or_moving(joint: Joint<'_>, held: Option<Hold>) -> assembly::Joint<'_> {
+    let Joint { site, name, kind, parent, frame, axis, drive, matter, .. } = joint;
+    let motion = match (kind, held) {
+        (Kind::Fixed, _) => Motion::Fixed,
+        (Kind::Moving(kind), Some(hold)) => Motion::Held(kind, axis, hold),
         (Kind::Moving(kind), None) => {
-            (Some((MovingJoint { name: name.to_owned(), kind, drive }, axis)), pose)
+            Motion::Moving(MovingJoint { name: name.to_owned(), kind, drive }, axis)
         }
     };
-    assembly::Joint { site, parent, motion, pose, body }
+    assembly::Joint { site, parent, motion, frame, matter }
 }

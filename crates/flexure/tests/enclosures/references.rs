@@ -1,0 +1,103 @@
+//! References of scenarios, with four derivatives.
+
+use flexure::core::reference::Reference as _;
+use flexure::core::scalar::Interval;
+use flexure::io::{Profile, Reference, SCENARIOS, Scenario, load_scenario};
+use flexure::registry::AnyReference;
+
+use super::encloses;
+
+/// Times before, in and after smooth starts and motions \[s\].
+const TIMES: [f64; 6] = [0.0, 0.3, 1.0, 1.9, 2.5, 7.3];
+
+/// The reference and four derivatives at some times. Derivatives of a start in 2 s grow by 15 an order and round alike.
+fn check<const N: usize>(scenario: &Scenario) {
+    let name = &scenario.name;
+    let floats = AnyReference::<f64, N>::new(scenario).expect("a path");
+    let enclosed = AnyReference::<Interval, N>::enclosed(scenario).expect("a path");
+    for t in TIMES {
+        let (jets, bounds) = (floats.at::<5>(t), enclosed.at::<5>(Interval::point(t)));
+        for (jet, bounds) in jets.iter().zip(bounds.iter()) {
+            for k in 0..5 {
+                let (x, scale) = (jet.derivative(k), 15_f64.powi(i32::try_from(k).expect("small")));
+                encloses(
+                    bounds.derivative(k),
+                    x,
+                    1e-14 * scale,
+                    1e-13 * scale,
+                    &format!("{name}, order {k} at {t} s"),
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn references_of_all_scenarios_are_enclosed() {
+    for (name, _) in SCENARIOS {
+        let scenario = load_scenario(name).expect("built in");
+        match scenario.robot.joint_count() {
+            1 => check::<1>(&scenario),
+            2 => check::<2>(&scenario),
+            3 => check::<3>(&scenario),
+            7 => check::<7>(&scenario),
+            n => panic!("{name} has {n} joints"),
+        }
+    }
+}
+
+#[test]
+fn motions_from_rest_to_rest_are_enclosed() {
+    for profile in [Profile::Quintic, Profile::Septic, Profile::Nonic] {
+        let mut scenario = load_scenario("pendulum-tanh").expect("built in");
+        scenario.smooth_start = None;
+        scenario.reference =
+            Reference::PointToPoint { profile, from: vec![0.1], to: vec![1.1], start: 0.7, duration: 2.3 };
+        check::<1>(&scenario);
+    }
+}
+
+/// A path of ten samples, 0.4 s apart.
+fn sampled() -> Scenario {
+    let mut scenario = load_scenario("pendulum-tanh").expect("built in");
+    scenario.smooth_start = None;
+    let t: Vec<f64> = (0..10).map(|i| 0.4 * f64::from(i)).collect();
+    let q = t.iter().map(|t| vec![0.1 + (1.3 * t).sin()]).collect();
+    scenario.reference = Reference::Samples { t, q };
+    scenario
+}
+
+/// The path is the spline of floats: only evaluating it rounds.
+#[test]
+fn a_sampled_path_is_enclosed_at_instants_and_on_knots() {
+    let scenario = sampled();
+    let floats = AnyReference::<f64, 1>::new(&scenario).expect("a path");
+    let enclosed = AnyReference::<Interval, 1>::enclosed(&scenario).expect("a path");
+    for i in -2..24_i32 {
+        let t = 0.2 * f64::from(i);
+        let ([jet], [bounds]) = (floats.at::<5>(t).0, enclosed.at::<5>(Interval::point(t)).0);
+        for k in 0..5 {
+            encloses(bounds.derivative(k), jet.derivative(k), 1e-10, 1e-9, &format!("order {k} at {t} s"));
+        }
+    }
+}
+
+/// Over a span of time that meets several segments, every instant is enclosed, by `at` as by `on`.
+#[test]
+fn a_sampled_path_is_enclosed_over_spans() {
+    let scenario = sampled();
+    let floats = AnyReference::<f64, 1>::new(&scenario).expect("a path");
+    let enclosed = AnyReference::<Interval, 1>::enclosed(&scenario).expect("a path");
+    for (from, to) in [(-0.5, 0.1), (0.35, 0.45), (0.4, 0.8), (0.3, 1.3), (3.5, 4.5), (5.0, 6.0), (-1.0, 9.0)]
+    {
+        let span = Interval::new(from, to).expect("ordered");
+        let ([at], [on]) = (enclosed.at::<5>(span).0, enclosed.on(span).0);
+        for i in 0..=20 {
+            let [jet] = floats.at::<5>(from + (to - from) * f64::from(i) / 20.0).0;
+            assert!(on.contains(jet.derivative(0)), "{from} to {to}: {on:?}");
+            for k in 0..5 {
+                assert!(at.derivative(k).contains(jet.derivative(k)), "order {k}, {from} to {to}: {at:?}");
+            }
+        }
+    }
+}
