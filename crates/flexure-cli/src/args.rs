@@ -13,7 +13,9 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
     propagate_version = true,
     arg_required_else_help = true
 )]
-#[command(after_help = "Exit codes: 0 done; 1 the answer is no, as for a loop that diverges; 2 bad input.")]
+#[command(
+    after_help = "Exit codes: 0 done; 1 the answer is no, as for a loop that diverges; 2 bad input; 3 not decided\nwithin the budget."
+)]
 pub struct Cli {
     #[command(subcommand)]
     pub command: Command,
@@ -50,6 +52,8 @@ pub enum Command {
         #[arg(long, value_name = "FILE")]
         states: PathBuf,
     },
+    /// Prove how fast the closed loop contracts, and where; write a certificate that others can check.
+    Certify(Certify),
     /// Draft a robot file from a URDF, with every number that is still to be supplied marked.
     Import {
         /// URDF file.
@@ -76,6 +80,33 @@ pub struct Output {
     /// Folder for the files that are written; created if missing.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct Certify {
+    /// Scenario file, or the name of a built-in scenario.
+    pub scenario: String,
+    /// Largest position errors in rad: one number, or links then motors, one per joint.
+    #[arg(
+        long,
+        value_name = "R",
+        value_delimiter = ',',
+        allow_negative_numbers = true,
+        conflicts_with = "initial_error"
+    )]
+    pub error_box: Option<Vec<f64>>,
+    /// Position errors at the start in rad, momentum errors none: certifies the level of W that holds them.
+    #[arg(long, value_name = "E", value_delimiter = ',', allow_negative_numbers = true)]
+    pub initial_error: Option<Vec<f64>>,
+    /// Contraction rate to prove or refute, 1/s; the largest if left out.
+    #[arg(long, value_name = "RATE", allow_negative_numbers = true)]
+    pub rate: Option<f64>,
+    /// Largest unknown torque on each motor in N m: certifies the tube that errors settle in.
+    #[arg(long, value_name = "D", value_delimiter = ',', allow_negative_numbers = true)]
+    pub disturbance: Option<Vec<f64>>,
+    /// Certificate file; default out/NAME.certificate.json.
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -16,6 +16,8 @@ pub enum Failure {
     Input(Vec<Report>),
     /// The answer is no: exit code 1.
     No(Vec<Report>),
+    /// The answer was not found within the budget: exit code 3.
+    Undecided(Vec<Report>),
     /// Whoever read the output went away: nothing to say.
     Gone,
 }
@@ -33,6 +35,7 @@ impl Failure {
         let (reports, code) = match self {
             Self::Input(reports) => (reports, 2),
             Self::No(reports) => (reports, 1),
+            Self::Undecided(reports) => (reports, 3),
             Self::Gone => return ExitCode::SUCCESS,
         };
         say_all(reports);

@@ -20,6 +20,7 @@ fn main() -> ExitCode {
         Command::Run { scenario, output } => commands::run(&scenario, &output.out, json),
         Command::Eval { scenario, states } => commands::eval(&scenario, &states, json),
         Command::Model { robot, states } => commands::model(&robot, &states, json),
+        Command::Certify(options) => commands::certify(&options, json),
         Command::Check { files } => commands::check(&files, json),
         Command::Import { urdf, lock } => commands::import(&urdf, &lock, json),
         Command::List { kind } => commands::list(kind, json),

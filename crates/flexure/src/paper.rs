@@ -25,7 +25,9 @@ pub fn paper_rate(robot: &Robot, controller: &Controller, problem: &Problem, lar
         let slowest = positions(&problem.controller, &region(&problem.region, &bounds).error);
         let products = slowest.iter().flat_map(|side| {
             let a = side.slopes(&vec![false; side.joints()]);
-            (0..side.joints()).map(move |i| (side.metric(i) * side.slope(&a, i, i)).midpoint()).collect::<Vec<_>>()
+            (0..side.joints())
+                .map(move |i| (side.metric(i) * side.slope(&a, i, i)).midpoint())
+                .collect::<Vec<_>>()
         });
         smallest(&mut products.into_iter()) / largest(&[link.metric.clone(), motor.metric.clone()].concat())
     };

@@ -2,15 +2,19 @@
 
 use std::time::Instant as Clock;
 
-use flexure_core::scalar::Interval;
-use crate::certify::certificate::{
-    self, Controller, Gains, JointKind, Links, Phi, Robot,
-};
+use crate::certify::certificate::{self, BlockName, Controller, Gains, JointKind, Links, Phi, Robot};
+use crate::certify::matrix::Symmetric;
+use crate::certify::rate::Inequality;
 use crate::certify::region::level_that_holds;
-use crate::certify::{self, Certificate, Number, RateWitness, Request, Verdict, certify};
-use crate::io::{self, Problems, Scenario};
+use crate::certify::structural::positions;
+use crate::certify::witness::against;
+use crate::certify::{
+    self, Certificate, Number, RateWitness, Request, State, Undecided, Verdict, certify, momentum,
+};
+use crate::io::{self, Problem, Problems, Scenario};
 use crate::paper::paper_rate;
 use crate::sampling::{Sampled, sample};
+use flexure_core::scalar::Interval;
 
 /// What to prove of a scenario.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -62,7 +66,10 @@ pub fn problem(scenario: &Scenario, question: &Question) -> Result<certify::Prob
     if link.metric_hardening.as_ref().is_some_and(|h| h.iter().any(|&h| h != 0.0)) {
         let message = "controller.link.metric_hardening is not 0: certificates take a constant metric";
         let help = "with a Π_l that depends on the error the rate depends on the speed of the error too; leave it out";
-        return Err(scenario.places.problem("controller.link.metric_hardening", "metric", message, help).into());
+        return Err(scenario
+            .places
+            .problem("controller.link.metric_hardening", "metric", message, help)
+            .into());
     }
     let phi = match phi {
         io::Phi::Tanh => Phi::Tanh,
@@ -115,7 +122,10 @@ pub fn prove(scenario: &Scenario, question: &Question) -> Result<Proof, Problems
         scenario.robot.link_damping.iter().zip(&link.damping).map(|(a, b)| a + b).collect()
     };
     let sampled = sample(&scenario.robot, &damping)?;
-    let verdict = certify(&problem);
+    let verdict = match (certify(&problem), question.rate) {
+        (Verdict::Proved(certificate), Some(rate)) => at_rate(rate, certificate, &sampled, &damping),
+        (verdict, _) => verdict,
+    };
     Ok(Proof {
         paper_rate: paper_rate(&scenario.robot, &scenario.controller, &problem, sampled.largest_inertia),
         verdict,
@@ -123,6 +133,82 @@ pub fn prove(scenario: &Scenario, question: &Question) -> Result<Proof, Problems
         assumptions: problem.assumptions,
         wall_seconds: started.elapsed().as_secs_f64(),
     })
+}
+
+/// The verdict on a contraction rate of `rate`, from the largest one that was proved.
+fn at_rate(
+    rate: f64,
+    certificate: Certificate,
+    sampled: &Sampled,
+    damping: &[f64],
+) -> Verdict<Certificate, RateWitness> {
+    if rate <= certificate.contraction_rate.bounds().lo() {
+        return Verdict::Proved(certificate);
+    }
+    match slower(rate, &certificate, sampled, damping) {
+        Some(witness) => Verdict::Refuted(witness),
+        None => Verdict::Undecided(Undecided {
+            at: format!(
+                "{rate} 1/s is above the proved rate, {} 1/s, and no sample is slower",
+                certificate.contraction_rate.approximate()
+            ),
+            spent: 1,
+        }),
+    }
+}
+
+/// A state at which some block contracts more slowly than `rate`.
+fn slower(rate: f64, certificate: &Certificate, sampled: &Sampled, damping: &[f64]) -> Option<RateWitness> {
+    let sides = positions(&certificate.controller, &certificate.region.error);
+    let position = [BlockName::PhiL, BlockName::PhiM].into_iter().zip(&sides).find_map(|(block, side)| {
+        side.cases().iter().find_map(|case| {
+            let (direction, rate) = against(&side.inequality(&side.slopes(case)), rate)?;
+            let far: Vec<bool> = case.iter().map(|high| !high).collect();
+            let error = if far.is_empty() { vec![0.0; side.joints()] } else { side.error_at(&far) };
+            Some(RateWitness { block, state: State::Error(error), direction, rate })
+        })
+    });
+    let diagonal =
+        |d: &[Interval]| Symmetric::from_fn(d.len(), |i, j| if i == j { d[i] } else { Interval::point(0.0) });
+    let links = || {
+        let damping: Vec<_> = damping.iter().map(|&d| Interval::point(d)).collect();
+        let weight = Symmetric::from_fn(damping.len(), |i, j| Interval::point(sampled.mass_matrix[i][j]));
+        let (direction, rate) = against(&Inequality { form: diagonal(&damping), weight }, rate)?;
+        let state = State::Configuration(sampled.configuration.clone());
+        Some(RateWitness { block: BlockName::SigmaL, state, direction, rate })
+    };
+    let motors = || {
+        let robot = &certificate.robot;
+        let damping = momentum::damping(&robot.motor_damping, &certificate.controller.motor.damping);
+        let (direction, rate) = against(&momentum::motors(robot, &damping), rate)?;
+        Some(RateWitness { block: BlockName::SigmaM, state: State::Any, direction, rate })
+    };
+    position.or_else(links).or_else(motors)
+}
+
+impl Proof {
+    /// What to say where nothing was proved, and whether that is because it is wrong.
+    pub fn complaint(&self, scenario: &Scenario) -> Option<(Problem, bool)> {
+        let problem =
+            |code, message: String, help: &str| scenario.places.problem("controller", code, message, help);
+        match &self.verdict {
+            Verdict::Proved(_) => None,
+            Verdict::Refuted(witness) => {
+                let message = format!(
+                    "{}: the closed loop does not contract at the rate asked for: {:?} has {:.6e} 1/s in one direction",
+                    scenario.name, witness.block, witness.rate
+                );
+                Some((
+                    problem("refuted", message, "ask for less, raise the gains, or name a smaller region"),
+                    true,
+                ))
+            }
+            Verdict::Undecided(undecided) => {
+                let message = format!("{}: not decided: {}", scenario.name, undecided.at);
+                Some((problem("undecided", message, "name a smaller region, or ask for less"), false))
+            }
+        }
+    }
 }
 
 fn gains(scenario: &Scenario, gains: &io::SideGains) -> Gains {

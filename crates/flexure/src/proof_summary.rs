@@ -134,7 +134,10 @@ fn floats(numbers: &[Number]) -> Vec<f64> {
 impl BlockRates {
     fn of(blocks: &[Block], rate: impl Fn(&Block) -> &Number) -> Self {
         let of = |name| {
-            blocks.iter().find(|block| block.block == name).map_or(f64::NAN, |block| rate(block).approximate())
+            blocks
+                .iter()
+                .find(|block| block.block == name)
+                .map_or(f64::NAN, |block| rate(block).approximate())
         };
         Self {
             phi_l: of(BlockName::PhiL),
@@ -176,7 +179,10 @@ impl ProofSummary {
             region: certificate.map(region),
             measures: certificate.map_or_else(Vec::new, measures),
             structure: certificate.map_or_else(Vec::new, |c| {
-                c.structure.iter().map(|&Structure { name, holds, .. }| StructureSummary { name, holds }).collect()
+                c.structure
+                    .iter()
+                    .map(|&Structure { name, holds, .. }| StructureSummary { name, holds })
+                    .collect()
             }),
             mass_matrix_positive_definite: certificate.is_some(),
             sampled: proof.sampled.clone(),
@@ -199,7 +205,8 @@ fn region(certificate: &Certificate) -> RegionSummary {
         certificate.region.error.iter().map(|e| e.as_ref().map(Number::approximate)).collect();
     let level = certificate.region.level.as_ref().map(Number::approximate);
     let metric = certificate.controller.link.metric.iter().chain(&certificate.controller.motor.metric);
-    let error_at_level = level.map(|c| metric.map(|metric| (2.0 * c / metric.approximate()).sqrt()).collect());
+    let error_at_level =
+        level.map(|c| metric.map(|metric| (2.0 * c / metric.approximate()).sqrt()).collect());
     RegionSummary { error, level, error_at_level }
 }
 

@@ -22,6 +22,9 @@ pub struct Sampled {
     pub rate: f64,
     /// Where, in rad (m for prismatic joints).
     pub configuration: Vec<f64>,
+    /// M_l there, by rows [kg m²].
+    #[serde(skip)]
+    pub mass_matrix: Vec<Vec<f64>>,
     /// Largest eigenvalue of M_l at the configuration where that is largest [kg m²].
     pub largest_inertia: f64,
 }
@@ -48,12 +51,14 @@ impl RobotVisitor for Sampler<'_> {
         let ranges = ranges::<N>(self.robot);
         let rate = |q: &Vector<f64, N>| {
             let m = robot.links.mass_matrix(q);
-            1.0 / largest(Matrix::from_fn(|i, j| m[(i, j)] / (root[i] * root[j])))
+            1.0 / largest::<N>(Matrix::from_fn(|i, j| m[(i, j)] / (root[i] * root[j])))
         };
         let inertia = |q: &Vector<f64, N>| -largest(robot.links.mass_matrix(q));
         let (rate, configuration) = smallest(&ranges, &rate);
         let (negative, _) = smallest(&ranges, &inertia);
-        Sampled { rate, configuration: configuration.0.to_vec(), largest_inertia: -negative }
+        let mass_matrix = robot.links.mass_matrix(&configuration).0.map(|row| row.to_vec()).to_vec();
+        let configuration = configuration.0.to_vec();
+        Sampled { rate, configuration, mass_matrix, largest_inertia: -negative }
     }
 }
 

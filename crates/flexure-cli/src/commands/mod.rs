@@ -1,5 +1,6 @@
 //! The commands, a file each.
 
+mod certify;
 mod check;
 mod eval;
 mod import;
@@ -9,6 +10,7 @@ mod print;
 mod reproduce;
 mod run;
 
+pub use certify::certify;
 pub use check::check;
 pub use eval::eval;
 pub use import::import;

@@ -5,6 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::atomic::{WriteError, write_atomic};
+use crate::certify::Certificate;
 use crate::experiment::{Experiment, report};
 use crate::report::{html, png};
 use crate::trace::Trace;
@@ -33,6 +34,20 @@ pub fn write_report(folder: &Path, experiments: &[Experiment]) -> Result<PathBuf
     let page = html(&report(experiments));
     write_atomic(&path, |out| out.write_all(page.as_bytes()))?;
     Ok(path)
+}
+
+/// Writes a certificate as JSON, its folder created if missing.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn write_certificate(path: &Path, certificate: &Certificate) -> Result<(), WriteError> {
+    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        create(folder)?;
+    }
+    write_atomic(path, |out| {
+        serde_json::to_writer_pretty(&mut *out, certificate).map_err(io::Error::from)?;
+        writeln!(out)
+    })
 }
 
 /// Writes a trace as CSV: a header of column names, then a row an instant, numbers with the fewest digits that restore

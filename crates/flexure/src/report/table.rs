@@ -102,9 +102,7 @@ pub fn joint_table(joints: &[JointRow]) -> String {
         if joint.kind != "revolute" {
             name = format!("{name}\n({})", joint.kind);
         }
-        let numbers = columns.iter().map(|(_, show)| {
-            right(show(joint).unwrap_or(NONE.to_owned()))
-        });
+        let numbers = columns.iter().map(|(_, show)| right(show(joint).unwrap_or(NONE.to_owned())));
         table.add_row(Row::from(std::iter::once(Cell::new(name)).chain(numbers).collect::<Vec<_>>()));
     }
     table.to_string()
@@ -125,7 +123,6 @@ fn words(options: &[&str]) -> String {
 
 fn row(summary: &Summary, columns: &[Column]) -> Row {
     let words = [&summary.name, &summary.phi].map(Cell::new);
-    let numbers =
-        columns.iter().map(|(_, show)| right(show(summary)));
+    let numbers = columns.iter().map(|(_, show)| right(show(summary)));
     Row::from(words.into_iter().chain(numbers).collect::<Vec<_>>())
 }

@@ -1,0 +1,131 @@
+//! `flexure certify`: a proof and its certificate.
+
+use std::path::PathBuf;
+
+use flexure::io::{Scenario, load_scenario, write_certificate};
+use flexure::proof::{Proof, Question, Region, prove};
+use flexure::proof_summary::ProofSummary;
+use flexure::report::proof_table;
+use serde::Serialize;
+
+use super::print;
+use crate::args::Certify;
+use crate::failure::{Failure, say};
+
+/// A summary and where the certificate is.
+#[derive(Serialize)]
+struct Outcome {
+    #[serde(flatten)]
+    summary: ProofSummary,
+    /// The certificate; none if nothing was proved.
+    file: Option<PathBuf>,
+}
+
+pub fn certify(options: &Certify, json: bool) -> Result<(), Failure> {
+    let scenario = load_scenario(&options.scenario)?;
+    say(&scenario.warnings);
+    let question = question(options, &scenario)?;
+    let proof = prove(&scenario, &question)?;
+    let summary = ProofSummary::new(&scenario.name, &proof);
+    let file = match proof.verdict.proved() {
+        None => None,
+        Some(certificate) => {
+            let path = options
+                .out
+                .clone()
+                .unwrap_or_else(|| PathBuf::from(format!("out/{}.certificate.json", scenario.name)));
+            write_certificate(&path, certificate)?;
+            Some(path)
+        }
+    };
+    let ended = ending(&scenario, &proof);
+    if json {
+        print::json(&Outcome { summary, file })?;
+    } else {
+        print::line(&proof_table(&summary))?;
+        if let Some(file) = &file {
+            print::line(&format!("wrote {}", file.display()))?;
+        }
+    }
+    ended
+}
+
+/// What the options ask for, if they fit the robot.
+fn question(options: &Certify, scenario: &Scenario) -> Result<Question, Failure> {
+    let n = scenario.robot.joint_count();
+    let errors = |name: &str, values: &[f64]| {
+        per_joint(
+            name,
+            values,
+            2 * n,
+            "one number, or one per joint of the links, then of the motors, in rad",
+        )
+    };
+    let region = match (&options.error_box, &options.initial_error) {
+        (Some(values), _) => Region::Errors(positive("--error-box", errors("--error-box", values)?)?),
+        (None, Some(values)) => {
+            let start = errors("--initial-error", values)?;
+            if start.iter().all(|&e| e == 0.0) {
+                return Err(empty("--initial-error", "0"));
+            }
+            Region::Start(start.into_iter().map(f64::abs).collect())
+        }
+        (None, None) => Region::Chosen,
+    };
+    let disturbance = match &options.disturbance {
+        None => None,
+        Some(values) => {
+            let torques = per_joint(
+                "--disturbance",
+                values,
+                n,
+                "one number, or one per motor, in N m, link side of the gear",
+            )?;
+            if let Some(negative) = torques.iter().find(|&&d| d < 0.0) {
+                let message = format!("--disturbance is {negative} N m, must be >= 0");
+                return Err(Failure::input("range", message, "the largest absolute value of the torque"));
+            }
+            Some(torques)
+        }
+    };
+    Ok(Question { region, rate: options.rate, disturbance })
+}
+
+/// Largest and smallest number that an option takes: products of a few of them stay finite.
+const LARGEST: f64 = 1e30;
+
+fn per_joint(name: &str, values: &[f64], count: usize, what: &str) -> Result<Vec<f64>, Failure> {
+    if let Some(x) = values.iter().find(|x| !x.is_finite() || x.abs() > LARGEST) {
+        let message = format!("{name} is {x}, must be of a magnitude up to 1e30");
+        return Err(Failure::input("range", message, what));
+    }
+    match values {
+        [one] => Ok(vec![*one; count]),
+        many if many.len() == count => Ok(many.to_vec()),
+        many => {
+            let message = format!("{name}: 1 or {count} numbers expected; got {}", many.len());
+            Err(Failure::input("length", message, what))
+        }
+    }
+}
+
+fn positive(name: &str, values: Vec<f64>) -> Result<Vec<f64>, Failure> {
+    match values.iter().find(|&&x| x < 1.0 / LARGEST) {
+        None => Ok(values),
+        Some(x) => Err(empty(name, &x.to_string())),
+    }
+}
+
+fn empty(name: &str, value: &str) -> Failure {
+    let message = format!("{name} is {value} rad: the region is empty");
+    Failure::input("region", message, "name the largest error that shall be certified, > 0")
+}
+
+/// The exit code: 1 for what is refuted, 3 for what could not be decided.
+fn ending(scenario: &Scenario, proof: &Proof) -> Result<(), Failure> {
+    match proof.complaint(scenario) {
+        None => Ok(()),
+        Some((problem, true)) => Err(Failure::No(vec![problem.into()])),
+        Some((problem, false)) => Err(Failure::Undecided(vec![problem.into()])),
+    }
+}
