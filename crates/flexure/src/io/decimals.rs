@@ -70,13 +70,13 @@ mod tests {
         (decimals, decimals.enclose(x))
     }
 
-    /// Whether digits / 10^places < x (or =, or >), in integers: x = mantissa / 2^shift.
+    /// digits / 10^places against x, in integers: x = mantissa / 2^shift.
     fn against(digits: u128, places: u32, x: f64) -> std::cmp::Ordering {
         let bits = x.to_bits();
-        let (mantissa, exponent) =
-            ((bits & ((1 << 52) - 1)) | (1 << 52), i64::from_ne_bytes((bits >> 52).to_ne_bytes()));
-        let shift = u32::try_from(1075 - exponent).expect("below 2^53");
-        (digits << shift).cmp(&(u128::from(mantissa) * 10_u128.pow(places)))
+        let (mantissa, exponent) = ((bits & ((1 << 52) - 1)) | (1 << 52), bits >> 52);
+        let shift = |to_the_left: u64, to_the_right: u64| to_the_left.saturating_sub(to_the_right);
+        (digits << shift(1075, exponent))
+            .cmp(&((u128::from(mantissa) * 10_u128.pow(places)) << shift(exponent, 1075)))
     }
 
     #[test]
@@ -86,7 +86,9 @@ mod tests {
         // The float nearest to 1/10 is above it.
         assert_eq!((tenth.lo(), tenth.hi()), (0.1_f64.next_down(), 0.1));
         assert!(against(1, 1, tenth.lo()).is_gt() && against(1, 1, tenth.hi()).is_lt());
-        assert_eq!(read("0.3").1.lo(), 0.3, "and that of 3/10 below");
+        let (_, three_tenths) = read("0.3");
+        let ends = (three_tenths.lo(), three_tenths.hi());
+        assert_eq!(ends, (0.3, 0.3_f64.next_up()), "and that of 3/10 below");
     }
 
     #[test]

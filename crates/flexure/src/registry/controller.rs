@@ -7,7 +7,7 @@ use flexure_core::scalar::{Jet, Scalar};
 
 use super::robot::vector;
 use super::{AnyShaping, Entry};
-use crate::io::{Controller, SideGains};
+use crate::io::{Controller, Phi, SideGains};
 
 /// The registered controllers.
 pub const CONTROLLERS: &[Entry] = &[Entry {
@@ -35,10 +35,7 @@ pub fn law_over<C: Scalar, const N: usize>(controller: &Controller, number: impl
         Some(hardening) => Metric::Hardening { base, hardening: gains(hardening) },
         None => Metric::Constant(base),
     };
-    let shaping = |side: &SideGains| {
-        AnyShaping::new(phi.name(), gains(&side.shaping), side.kappa.as_deref().map(gains))
-            .expect("the reader takes registered names only, and asks for kappa where it is needed")
-    };
+    let shaping = |side: &SideGains| shaping(*phi, gains(&side.shaping), side.kappa.as_deref().map(gains));
     Vcbc {
         link: LinkGains { metric, shaping: shaping(link), damping: gains(&link.damping) },
         motor: MotorGains {
@@ -59,4 +56,13 @@ pub fn command<L: Links<f64, N>, const N: usize>(
     q_ld: &Vector<Jet<f64, 5>, N>,
 ) -> Command<f64, N> {
     law.command(robot, x, q_ld, &Input::ZERO)
+}
+
+fn shaping<C: Scalar, const N: usize>(
+    phi: Phi,
+    gain: Vector<C, N>,
+    kappa: Option<Vector<C, N>>,
+) -> AnyShaping<C, N> {
+    AnyShaping::new(phi.name(), gain, kappa)
+        .expect("the reader takes registered names only, and asks for kappa where it is needed")
 }

@@ -95,7 +95,7 @@ fn the_bodies_of_a_urdf_enclose_what_its_decimals_make() {
     let Links::Tree(bodies) = &robot.enclosed else { panic!("a tree") };
     let [body] = bodies.as_slice() else { panic!("{bodies:?}") };
     assert_eq!(body.axis.map(ends), [(0.0, 0.0), (1.0, 1.0), (0.0, 0.0)]);
-    assert_eq!(body.rotation.map(|row| row.map(|x| x.width())), [[0.0; 3]; 3]);
+    assert_eq!(body.rotation.map(|row| row.map(Interval::width)), [[0.0; 3]; 3]);
     let inertia = [body.inertia[0][0], body.inertia[1][1], body.inertia[2][2]];
     for (bounds, decimal) in [body.mass, body.com[0], body.translation[2]]
         .into_iter()
