@@ -1,8 +1,8 @@
 //! References of scenarios, with four derivatives.
 
 use flexure::core::reference::Reference as _;
-use flexure::core::scalar::Interval;
-use flexure::io::{Profile, Reference, SCENARIOS, Scenario, load_scenario};
+use flexure::core::scalar::{Interval, Jet};
+use flexure::io::{Profile, Reference, SCENARIOS, Scenario, Term, load_scenario};
 use flexure::registry::AnyReference;
 
 use super::encloses;
@@ -57,6 +57,44 @@ fn motions_from_rest_to_rest_are_enclosed() {
     }
 }
 
+/// Every number of the scenario is a tenth, and so is every number of its reference: the interval below the float.
+#[test]
+fn every_number_of_a_reference_is_its_decimal() {
+    let mut scenario = load_scenario("pendulum-tanh").expect("built in");
+    let tenth = || vec![0.1];
+    let term = || Term { amplitude: tenth(), frequency: tenth(), phase: tenth() };
+    (scenario.smooth_start, scenario.initial.q_l) = (Some(0.1), tenth());
+    let mut numbers = Vec::new();
+    for terms in [vec![term()], vec![term(), term()]] {
+        scenario.reference = Reference::Sines { offset: tenth(), terms };
+        let Ok(AnyReference::<Interval, 1>::SmoothStart(start)) = AnyReference::enclosed(&scenario) else {
+            panic!()
+        };
+        numbers.extend([start.from[0], start.duration]);
+        match start.then {
+            AnyReference::Sine(sine) => {
+                numbers.extend([sine.offset, sine.amplitude, sine.frequency, sine.phase].map(|x| x[0]));
+            }
+            AnyReference::Multisine(sines) => {
+                let terms = sines.terms.iter().flat_map(|term| [term.amplitude, term.frequency, term.phase]);
+                numbers.extend(terms.chain([sines.offset]).map(|x| x[0]));
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+    let (from, to, profile) = (tenth(), tenth(), Profile::Nonic);
+    scenario.reference = Reference::PointToPoint { profile, from, to, start: 0.1, duration: 0.1 };
+    scenario.smooth_start = None;
+    let Ok(AnyReference::<Interval, 1>::PointToPoint(motion)) = AnyReference::enclosed(&scenario) else {
+        panic!()
+    };
+    numbers.extend([motion.from[0], motion.to[0], motion.start, motion.duration]);
+    assert_eq!(numbers.len(), 6 + 9 + 4);
+    for x in numbers {
+        assert_eq!((x.lo(), x.hi()), (0.1_f64.next_down(), 0.1));
+    }
+}
+
 /// A path of ten samples, 0.4 s apart.
 fn sampled() -> Scenario {
     let mut scenario = load_scenario("pendulum-tanh").expect("built in");
@@ -92,6 +130,7 @@ fn a_sampled_path_is_enclosed_over_spans() {
     {
         let span = Interval::new(from, to).expect("ordered");
         let ([at], [on]) = (enclosed.at::<5>(span).0, enclosed.on(span).0);
+        assert_eq!([at], enclosed.on(Jet::variable(span)).0, "the segments that are left out play no part");
         for i in 0..=20 {
             let [jet] = floats.at::<5>(from + (to - from) * f64::from(i) / 20.0).0;
             assert!(on.contains(jet.derivative(0)), "{from} to {to}: {on:?}");
