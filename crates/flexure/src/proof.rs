@@ -195,8 +195,10 @@ impl Proof {
             Verdict::Proved(_) => None,
             Verdict::Refuted(witness) => {
                 let message = format!(
-                    "{}: the closed loop does not contract at the rate asked for: {:?} has {:.6e} 1/s in one direction",
-                    scenario.name, witness.block, witness.rate
+                    "{}: the closed loop does not contract at the rate asked for: {} has {:.6} 1/s in one direction",
+                    scenario.name,
+                    witness.block.name(),
+                    witness.rate
                 );
                 Some((
                     problem("refuted", message, "ask for less, raise the gains, or name a smaller region"),

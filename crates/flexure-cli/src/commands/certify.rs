@@ -88,6 +88,14 @@ fn question(options: &Certify, scenario: &Scenario) -> Result<Question, Failure>
             Some(torques)
         }
     };
+    if let Some(rate) = options.rate.filter(|rate| !(rate.is_finite() && *rate > 0.0 && *rate <= LARGEST)) {
+        let message = format!("--rate is {rate} 1/s, must be > 0 and at most 1e30");
+        return Err(Failure::input(
+            "range",
+            message,
+            "decay rate of the distance of two solutions; leave it out for the largest",
+        ));
+    }
     Ok(Question { region, rate: options.rate, disturbance })
 }
 

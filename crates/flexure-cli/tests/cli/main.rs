@@ -1,6 +1,7 @@
 //! The command as a user meets it: arguments, files, output, messages and exit codes.
 
 mod bad_input;
+mod certify;
 mod check_list;
 mod command;
 mod divergence;

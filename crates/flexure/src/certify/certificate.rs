@@ -212,6 +212,18 @@ pub enum BlockName {
     SigmaM,
 }
 
+impl BlockName {
+    /// The name in certificates.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::PhiL => "phi_l",
+            Self::PhiM => "phi_m",
+            Self::SigmaL => "sigma_l",
+            Self::SigmaM => "sigma_m",
+        }
+    }
+}
+
 /// A matrix that has to be positive definite at the claimed rates, and by how much its pivots are positive.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Case {

@@ -62,8 +62,7 @@ pub fn own_inertias(bodies: &[Body]) -> Vec<f64> {
     bodies
         .iter()
         .map(|body| {
-            let sound = body.inertia.iter().all(|x| x.bounds() == Interval::ZERO)
-                || inertia(body).smallest_pivot() > 0.0;
+            let sound = inertia(body).is_none_or(|inertia| inertia.smallest_pivot() > 0.0);
             let body = Enclosed::of(body);
             if !sound || body.mass.lo() < 0.0 {
                 return 0.0;
@@ -77,10 +76,12 @@ pub fn own_inertias(bodies: &[Body]) -> Vec<f64> {
         .collect()
 }
 
-fn inertia(body: &Body) -> Symmetric {
+/// The inertia about the centre of mass, without the axes about which there is exactly none; none if there is none at all.
+fn inertia(body: &Body) -> Option<Symmetric> {
     let [xx, xy, xz, yy, yz, zz] = body.inertia.each_ref().map(Number::bounds);
     let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-    Symmetric::from_fn(3, |i, j| rows[i][j])
+    let axes: Vec<usize> = (0..3).filter(|&i| rows[i] != [Interval::ZERO; 3]).collect();
+    (!axes.is_empty()).then(|| Symmetric::from_fn(axes.len(), |i, j| rows[axes[i]][axes[j]]))
 }
 
 impl Enclosed {

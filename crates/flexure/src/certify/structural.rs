@@ -165,7 +165,7 @@ fn measures(sides: &[&Position; 2], blocks: &[Block]) -> Vec<Measure> {
 
 fn momentum_block(block: BlockName, inequalities: &[Inequality], cases: &[String]) -> Result<Block, Failure> {
     let claim = largest(inequalities)
-        .ok_or_else(|| Failure::Reason(format!("no positive rate of {block:?} could be shown")))?;
+        .ok_or_else(|| Failure::Reason(format!("no positive rate of {} could be shown", block.name())))?;
     let margins = claim.margins.iter().map(|&margin| Number::decimal(0.5 * margin));
     let cases = cases.iter().zip(margins).map(|(case, margin)| Case {
         case: case.clone(),
@@ -190,8 +190,9 @@ fn position_block(block: BlockName, position: &Position) -> Result<Block, Failur
             match refuted {
                 Some(witness) => Failure::Witness(Box::new(witness)),
                 None => Failure::Reason(format!(
-                    "no positive rate of {block:?} on the region: slopes of φ come arbitrarily close to 0 where errors are \
-                     not bounded"
+                    "no positive rate of {} on the region: slopes of φ come arbitrarily close to 0 where errors are \
+                     large",
+                    block.name()
                 )),
             }
         })

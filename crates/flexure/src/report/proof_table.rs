@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use super::number::{NONE, engineering};
+use super::number::{NONE, engineering, short, significant};
 use super::table::{headed, right};
-use crate::certify::certificate::{BlockName, Norm, Side, StructureName};
+use crate::certify::certificate::{Norm, Side, StructureName};
 use crate::proof_summary::{BlockRates, ProofSummary, WitnessSummary};
 
 /// What was proved, refuted or left undecided, at most 100 columns wide.
@@ -21,15 +21,15 @@ pub fn proof_table(summary: &ProofSummary) -> String {
 }
 
 fn rates(summary: &ProofSummary, contraction: BlockRates, convergence: BlockRates) -> String {
-    let mut table = headed(["rate", "contraction\n[1/s]", "convergence\n[1/s]"].into_iter());
-    let number = |x: Option<f64>| right(x.map_or(NONE.to_owned(), |x| format!("{x:.6}")));
+    let mut table = headed(["block", "contraction\n[1/s]", "convergence\n[1/s]"].into_iter());
+    let number = |x: Option<f64>| right(x.map_or(NONE.to_owned(), |x| significant(x, 6)));
     let mut row = |name: &str, contraction, convergence| {
         table.add_row(vec![comfy_table::Cell::new(name), number(contraction), number(convergence)]);
     };
-    row("phi_l    link positions", Some(contraction.phi_l), Some(convergence.phi_l));
-    row("phi_m    motor positions", Some(contraction.phi_m), Some(convergence.phi_m));
-    row("sigma_l  link momenta", Some(contraction.sigma_l), Some(convergence.sigma_l));
-    row("sigma_m  motor momenta", Some(contraction.sigma_m), Some(convergence.sigma_m));
+    row("φ_l  link positions", Some(contraction.phi_l), Some(convergence.phi_l));
+    row("φ_m  motor positions", Some(contraction.phi_m), Some(convergence.phi_m));
+    row("σ_l  link momenta", Some(contraction.sigma_l), Some(convergence.sigma_l));
+    row("σ_m  motor momenta", Some(contraction.sigma_m), Some(convergence.sigma_m));
     row("closed loop", summary.contraction_rate, summary.convergence_rate);
     row("the paper's formula", Some(summary.paper_rate), None);
     table.to_string()
@@ -38,22 +38,24 @@ fn rates(summary: &ProofSummary, contraction: BlockRates, convergence: BlockRate
 fn lines(summary: &ProofSummary) -> Vec<String> {
     let mut lines = Vec::new();
     if let Some(region) = &summary.region {
-        lines.push(match (&region.error, region.level, &region.error_at_level) {
-            (Some(error), Some(level), Some(at_level)) => format!(
-                "region       errors up to {} rad; {{W <= {} J}} lies inside and is invariant: errors up to {} rad",
-                list(error),
-                engineering(level),
-                list(at_level)
-            ),
-            _ => "region       everything: any error, any speed, any configuration".to_owned(),
-        });
+        match (&region.error, region.level, &region.error_at_level) {
+            (Some(error), Some(level), Some(at_level)) => {
+                lines.push(format!("region       |q̃_i| ≤ {} rad, any speed, any configuration", list(error)));
+                lines.push(format!(
+                    "invariant    {{W ≤ {} J}}, where |q̃_i| ≤ {} rad",
+                    short(level, 3),
+                    list(at_level)
+                ));
+            }
+            _ => lines.push("region       any error, any speed, any configuration".to_owned()),
+        }
         lines.push("mass matrix  positive definite at every configuration".to_owned());
     }
     if let Some(tightness) = summary.tightness {
         lines.push(format!(
-            "tightness    sigma_l is proved to {:.2} % of the slowest of 20000 sampled configurations, {} 1/s",
-            100.0 * tightness,
-            engineering(summary.sampled.rate)
+            "tightness    σ_l: {} % of {} 1/s, the slowest configuration of a dense sample",
+            short(100.0 * tightness, 4),
+            significant(summary.sampled.rate, 6)
         ));
     }
     for side in [Side::Link, Side::Motor] {
@@ -61,28 +63,29 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
             let norm = match measure.norm {
                 Norm::One => "1",
                 Norm::Two => "2",
-                Norm::Infinity => "inf",
+                Norm::Infinity => "∞",
             };
-            format!("mu_{norm} <= {:.6}", measure.bound)
+            format!("μ_{norm} ≤ {}", significant(measure.bound, 6))
         });
         let bounds = bounds.collect::<Vec<_>>().join(", ");
         if !bounds.is_empty() {
-            let side = if side == Side::Link { "link " } else { "motor" };
-            lines.push(format!("measures     {side} slopes: {bounds} 1/s"));
+            let side = if side == Side::Link { "links: " } else { "motors:" };
+            lines.push(format!("measures     of −Θ ∂φ Θ⁻¹, {side} {bounds} 1/s"));
         }
     }
     for structure in &summary.structure {
         let name = match structure.name {
             StructureName::VariationalPh => "variational port-Hamiltonian structure",
             StructureName::PhLike => "port-Hamiltonian-like structure",
-            StructureName::StrictDifferentialPassivity => "strict differential passivity",
-            StructureName::IncrementalPassivity => "incremental passivity of Pi phi",
+            StructureName::StrictDifferentialPassivity => "strict differential passivity from δω to M⁻¹ δσ",
+            StructureName::IncrementalPassivity => "incremental passivity of χ = Π φ",
         };
-        lines.push(format!("structure    {}: {name}", if structure.holds { "kept    " } else { "not kept" }));
+        lines
+            .push(format!("structure    {} {name}", if structure.holds { "keeps the" } else { "loses the" }));
     }
     if let Some(tube) = &summary.tube {
         lines.push(format!(
-            "tube         motors disturbed by up to {} N m: W settles below {} J, errors below {} rad",
+            "tube         |d_m| ≤ {} N m: W comes below {} J, where |q̃_i| ≤ {} rad",
             list(&tube.disturbance),
             engineering(tube.level),
             list(&tube.error)
@@ -96,12 +99,7 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
 }
 
 fn witness(witness: &WitnessSummary) -> String {
-    let block = match witness.block {
-        BlockName::PhiL => "phi_l",
-        BlockName::PhiM => "phi_m",
-        BlockName::SigmaL => "sigma_l",
-        BlockName::SigmaM => "sigma_m",
-    };
+    let block = witness.block.name();
     let place = match (&witness.error, &witness.configuration) {
         (Some(error), _) => format!("at errors {} rad", list(error)),
         (_, Some(q)) => format!("at q_l = {} rad", list(q)),
@@ -117,7 +115,7 @@ fn witness(witness: &WitnessSummary) -> String {
 /// Numbers with blanks; one if all are the same.
 fn list(numbers: &[f64]) -> String {
     match numbers {
-        [first, rest @ ..] if rest.iter().all(|x| x == first) => engineering(*first),
-        _ => format!("({})", numbers.iter().map(|&x| engineering(x)).collect::<Vec<_>>().join(", ")),
+        [first, rest @ ..] if rest.iter().all(|x| x == first) => short(*first, 3),
+        _ => format!("({})", numbers.iter().map(|&x| short(x, 3)).collect::<Vec<_>>().join(", ")),
     }
 }

@@ -1,0 +1,125 @@
+//! `flexure certify`: verdicts, exit codes, files, bad input.
+
+use serde_json::Value;
+
+use crate::command::Place;
+
+/// theory.md, section 5: the paper's gains on |q̃_i| ≤ 3.
+#[test]
+fn the_papers_gains_are_certified() {
+    let folder = Place::new();
+    let found = folder.run(&["certify", "two-link-tanh", "--error-box", "3", "--json"]).done().json();
+    let number = |key: &str| found[key].as_f64().unwrap();
+    assert_eq!(found["verdict"], "proved");
+    let close = |found: f64, exact: f64| assert!(found <= exact && found >= exact * (1.0 - 1e-12), "{found}");
+    close(number("contraction_rate"), 0.295_981_114_963_205_74);
+    close(number("convergence_rate"), 9.950_547_536_867_305);
+    assert!((number("paper_rate") - 0.12685).abs() < 1e-5);
+    let blocks =
+        ["phi_l", "phi_m", "sigma_l", "sigma_m"].map(|block| found["blocks"][block].as_f64().unwrap());
+    assert!((blocks[2] - 69.01315493939306).abs() < 1e-10 && (blocks[3] - 44.34782608695652).abs() < 1e-10);
+    assert_eq!(found["region"]["error"].as_array().unwrap().len(), 4);
+    assert!(found["assumptions"].as_array().is_some() && found["wall_seconds"].as_f64().is_some());
+    let file = folder.path().join(found["file"].as_str().unwrap());
+    let certificate: Value = serde_json::from_slice(&std::fs::read(file).unwrap()).unwrap();
+    assert_eq!(certificate["format"], "flexure-certificate");
+}
+
+/// Every built-in scenario gets a certificate without options; the same bytes each time.
+#[test]
+fn every_scenario_is_certified() {
+    let folder = Place::new();
+    let listed = folder.run(&["list", "--json"]).done().json();
+    for name in listed["scenarios"].as_object().unwrap().keys() {
+        let certified = |file: &str| {
+            folder.run(&["certify", name, "--out", file]).done();
+            std::fs::read(folder.path().join(file)).unwrap()
+        };
+        assert_eq!(certified("a.json"), certified("b.json"), "{name}");
+    }
+}
+
+#[test]
+fn refuted_is_1_and_undecided_is_3() {
+    let folder = Place::new();
+    let refuted = folder.run(&["certify", "two-link-tanh", "--error-box", "3", "--rate", "0.2960", "--json"]);
+    assert_eq!(refuted.code, Some(1), "{refuted:?}");
+    let found = refuted.json();
+    assert_eq!((&found["verdict"], &found["file"]), (&Value::from("refuted"), &Value::Null));
+    assert!(found["witness"]["rate"].as_f64().unwrap() < 0.2960);
+    // Between what is proved for seven joints and what samples show.
+    let undecided = folder.run(&["certify", "panda-tanh-smooth", "--error-box", "0.01", "--rate", "4"]);
+    assert_eq!(undecided.code, Some(3), "{undecided:?}");
+    assert!(undecided.stdout.contains("undecided") && !folder.path().join("out").exists());
+}
+
+/// The level of W that holds an initial error: its box is at least that error, and the tanh law's rate is that of the box.
+#[test]
+fn an_initial_error_gets_the_level_set_that_holds_it() {
+    let folder = Place::new();
+    let found = folder
+        .run(&["certify", "two-link-tanh", "--initial-error", "0.5,0.5,0.1,0.1", "--json"])
+        .done()
+        .json();
+    let error: Vec<f64> =
+        found["region"]["error"].as_array().unwrap().iter().map(|e| e.as_f64().unwrap()).collect();
+    // ½ (55 + 30)/4 + ½ (70 + 60)/100 = 11.275 J.
+    assert!((found["region"]["level"].as_f64().unwrap() - 11.275).abs() < 1e-12);
+    for (e, metric) in error.iter().zip([55.0, 30.0, 70.0, 60.0]) {
+        assert!((e - (22.55_f64 / metric).sqrt()).abs() < 1e-14, "{e}");
+    }
+    let slope = |e: f64| 1.0 / e.cosh().powi(2);
+    let expected = (55.0 * slope(error[0])).min(30.0 * slope(error[1]));
+    assert!((found["contraction_rate"].as_f64().unwrap() - expected).abs() < 1e-11);
+}
+
+/// A disturbance larger than the region can hold is not decided; one that fits gives a tube inside it.
+#[test]
+fn tubes_lie_inside_the_region() {
+    let folder = Place::new();
+    let tube = |torque: &str| {
+        folder.run(&["certify", "two-link-tanh", "--error-box", "1", "--disturbance", torque, "--json"])
+    };
+    let found = tube("0.5").done().json();
+    let level = |key: &str| found[key]["level"].as_f64().unwrap();
+    assert!(level("tube") < level("region") && level("tube") > 0.0);
+    assert_eq!(tube("500").code, Some(3));
+}
+
+#[test]
+fn bad_options_are_told_apart() {
+    let folder = Place::new();
+    let hardening = |damping: &str| format!("metric_hardening = [1.0, 0.0]\n{damping}");
+    let (link, motor) = ("damping = [15.0", "damping = [10.0");
+    folder.scenario("hardening.toml", &[(link, &hardening(link))]);
+    folder.scenario("motor.toml", &[(motor, &hardening(motor))]);
+    folder.scenario("phi.toml", &[("\"tanh\"", "\"tahn\"")]);
+    folder.scenario("metric.toml", &[("[55.0, 30.0]", "[55.0, -30.0]")]);
+    let cases: [(&[&str], &str); 17] = [
+        (&["two-link-tanh", "--error-box", "0"], "empty"),
+        (&["two-link-tanh", "--error-box", "-1"], "empty"),
+        (&["two-link-tanh", "--error-box", "nan"], "magnitude"),
+        (&["two-link-tanh", "--error-box", "1e400"], "magnitude"),
+        (&["two-link-tanh", "--error-box", "1,2,3"], "1 or 4 numbers"),
+        (&["two-link-tanh", "--error-box", "wide"], "invalid"),
+        (&["two-link-tanh", "--error-box", "1e-300"], "empty"),
+        (&["two-link-tanh", "--initial-error", "0"], "empty"),
+        (&["two-link-tanh", "--initial-error", "1", "--error-box", "1"], "cannot be used with"),
+        (&["two-link-tanh", "--rate", "-1"], "must be > 0"),
+        (&["two-link-tanh", "--disturbance", "-1"], "must be >= 0"),
+        (&["two-link-tanh", "--disturbance", "1,2,3"], "1 or 2 numbers"),
+        (&["hardening.toml"], "metric_hardening"),
+        (&["motor.toml"], "not integrable"),
+        (&["phi.toml"], "tahn"),
+        (&["metric.toml"], "must be > 0"),
+        (&["no-such-scenario"], "no built-in scenario"),
+    ];
+    for (arguments, complaint) in cases {
+        let outcome = folder.run(&[&["certify"], arguments].concat());
+        assert_eq!(outcome.code, Some(2), "{arguments:?}: {outcome:?}");
+        assert!(outcome.stderr.contains(complaint), "{arguments:?}: {}", outcome.stderr);
+        assert!(outcome.stdout.is_empty() && !folder.path().join("out").exists(), "{arguments:?}");
+    }
+    let unwritable = folder.run(&["certify", "two-link-tanh", "--out", "phi.toml/x.json"]);
+    assert_eq!(unwritable.code, Some(2), "{unwritable:?}");
+}
