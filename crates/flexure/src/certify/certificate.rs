@@ -12,6 +12,7 @@ pub const VERSION: u32 = 1;
 
 /// A proof in numbers.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct Certificate {
     /// "flexure-certificate".
     pub format: String,
@@ -49,6 +50,7 @@ pub struct Certificate {
 
 /// A flexible-joint robot in decimals.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct Robot {
     /// Its name.
     pub name: String,
@@ -99,6 +101,7 @@ pub enum Links {
 
 /// A body of a tree and the joint that carries it.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct Body {
     /// Index of the body that carries the joint; none for the base.
     pub parent: Option<usize>,
@@ -133,6 +136,7 @@ pub enum JointKind {
 
 /// The law with its gains.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct Controller {
     /// Shaping function of both sides.
     pub phi: Phi,
@@ -156,6 +160,7 @@ pub enum Phi {
 
 /// The gains of one side, one number per joint.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct Gains {
     /// Metric Π [N m/rad].
     pub metric: Vec<Number>,
@@ -169,6 +174,7 @@ pub struct Gains {
 
 /// Where the claims hold.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct Region {
     /// Largest |q̃_i| in rad, links then motors; none for no bound.
     pub error: Vec<Option<Number>>,
@@ -178,6 +184,7 @@ pub struct Region {
 
 /// The variational closed loop in words that do not commute.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct ClosedLoop {
     /// d/dt of δq̃_l, δq̃_m, δσ_l, δσ_m from δq̃_l, δq̃_m, δs_l, δs_m.
     pub rows: [[String; 4]; 4],
@@ -187,6 +194,7 @@ pub struct ClosedLoop {
 
 /// The rates of one block.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct Block {
     /// Which.
     pub block: BlockName,
@@ -226,6 +234,7 @@ impl BlockName {
 
 /// A matrix that has to be positive definite at the claimed rates, and by how much its pivots are positive.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct Case {
     /// Which ends of their ranges the variables are at: a letter each, L or H.
     pub case: String,
@@ -237,6 +246,7 @@ pub struct Case {
 
 /// Lower bounds of pivots of the mass matrix.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct MassMatrix {
     /// One per case or body.
     pub margins: Vec<Number>,
@@ -244,6 +254,7 @@ pub struct MassMatrix {
 
 /// An upper bound of a matrix measure of −Θ ∂φ Θ⁻¹.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct Measure {
     /// Whose φ.
     pub side: Side,
@@ -279,6 +290,7 @@ pub enum Norm {
 
 /// Whether the closed loop keeps a structure.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct Structure {
     /// Which.
     pub name: StructureName,
@@ -304,6 +316,7 @@ pub enum StructureName {
 
 /// An error at which two numbers differ that a structure wants equal.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct Witness {
     /// Whose φ.
     pub side: Side,
@@ -319,6 +332,7 @@ pub struct Witness {
 
 /// An error tube under a disturbance torque of the motors.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct Tube {
     /// Largest |d_i| [N m].
     pub disturbance: Vec<Number>,
