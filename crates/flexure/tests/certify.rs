@@ -1,7 +1,11 @@
 //! Certificates of the two-link robot with the paper's gains: the figures of the theory.
 
-use flexure::certify::certificate::{BlockName, Controller, Gains, Links, Phi, Robot};
-use flexure::certify::{Certificate, Number, Problem, Request, Verdict, certify};
+use flexure::certify::certificate::{BlockName, Body, Controller, Gains, JointKind, Links, Phi, Robot};
+use flexure::certify::{Certificate, Number, Problem, Request, State, Verdict, certify};
+use flexure::io::{SCENARIOS, load_scenario};
+use flexure::proof::{Question, prove};
+use flexure_core::control::{CoupledTanh, Shaping};
+use flexure_core::linalg::Vector;
 
 fn decimals(numbers: &[f64]) -> Vec<Number> {
     numbers.iter().map(|&x| Number::decimal(x)).collect()
@@ -89,6 +93,99 @@ fn block_rates_are_the_exact_ones() {
         }
         tight(&certificate.contraction_rate, contraction);
         tight(&certificate.convergence_rate, convergence);
-        println!("{}", serde_json::to_string_pretty(&certificate).unwrap());
     }
+}
+
+/// A larger region never has a larger rate, and the level set lies inside its box.
+#[test]
+fn rates_fall_as_regions_grow() {
+    for phi in [Phi::Tanh, Phi::Linear, Phi::CoupledTanh] {
+        let mut last = f64::INFINITY;
+        for error in [0.1, 0.5, 1.0, 2.0, 5.0, 12.0] {
+            let Verdict::Proved(certificate) = certify(&problem(phi, Request::Box(decimals(&[error; 4]))))
+            else {
+                panic!("{phi:?} at {error}");
+            };
+            let rate = certificate.contraction_rate.bounds();
+            // Rates that do not depend on the region are found anew each time, to 1e-13.
+            assert!(rate.lo() <= last * (1.0 + 1e-12), "{phi:?} at {error}: {rate:?} after {last}");
+            last = rate.hi();
+            let level = certificate.region.level.unwrap().bounds();
+            assert!(level.hi() <= 0.5 * 30.0 * error * error, "30 is the smallest metric");
+        }
+    }
+}
+
+/// The tanh law has no rate everywhere: undecided, not a rate of zero.
+#[test]
+fn tanh_has_no_rate_everywhere() {
+    match certify(&problem(Phi::Tanh, Request::Everywhere)) {
+        Verdict::Undecided(undecided) => assert!(undecided.at.contains("phi_l"), "{}", undecided.at),
+        other => panic!("{other:?}"),
+    }
+    for phi in [Phi::Linear, Phi::CoupledTanh] {
+        assert!(certify(&problem(phi, Request::Everywhere)).proved().is_some());
+    }
+}
+
+/// A metric far from Λ makes the coupling of φ_3 too strong for it: refuted, and the slope of the very φ says so in f64.
+#[test]
+fn a_refutation_is_confirmed_by_the_law() {
+    let mut bad = problem(Phi::CoupledTanh, Request::Box(decimals(&[3.0; 4])));
+    let metric = [1.0, 10_000.0];
+    bad.controller.link.metric = decimals(&metric);
+    let Verdict::Refuted(witness) = certify(&bad) else { panic!("not refuted") };
+    let State::Error(error) = &witness.state else { panic!("{witness:?}") };
+    assert_eq!(witness.block, BlockName::PhiL);
+    let phi = CoupledTanh::new(Vector([10.0, 8.0]), &Vector([55.0, 30.0]));
+    let slope = phi.slope(&Vector([error[0], error[1]]));
+    let d = &witness.direction;
+    let form = |i: usize, j: usize| d[i] * metric[i] * slope[(i, j)] * d[j];
+    let (value, weight) = (
+        form(0, 0) + form(0, 1) + form(1, 0) + form(1, 1),
+        metric[0] * d[0] * d[0] + metric[1] * d[1] * d[1],
+    );
+    assert!(value < 0.0, "{value}");
+    assert!((value / weight - witness.rate).abs() < 1e-9 * witness.rate.abs());
+}
+
+/// What is proved for the links' momenta never exceeds what the mass matrix shows at any configuration, for every robot.
+#[test]
+fn proved_rates_lie_below_samples() {
+    for (name, _) in SCENARIOS {
+        let scenario = load_scenario(name).unwrap();
+        let proof = prove(&scenario, &Question::default()).unwrap();
+        let certificate = proof.verdict.proved().unwrap_or_else(|| panic!("{name}: {:?}", proof.verdict));
+        let sigma_l =
+            &certificate.blocks.iter().find(|block| block.block == BlockName::SigmaL).unwrap().contraction;
+        let tightness = sigma_l.bounds().hi() / proof.sampled.rate;
+        // Seven joints of the most general kind are bounded to 76 %, three to 96 %.
+        assert!(tightness <= 1.0 + 1e-12 && tightness > 0.75, "{name}: {tightness}");
+    }
+}
+
+/// A joint that slides without limits has no bound on its inertia; with limits it does.
+#[test]
+fn travel_bounds_a_sliding_joint() {
+    let body = |kind, parent, travel: Option<[f64; 2]>| Body {
+        parent,
+        kind,
+        axis: [0.0, 0.0, 1.0].map(Number::decimal),
+        rotation: [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]].map(|row| row.map(Number::decimal)),
+        translation: [0.0, 0.0, 0.0].map(Number::decimal),
+        mass: Number::decimal(2.0),
+        com: [0.0, 0.0, 0.0].map(Number::decimal),
+        inertia: [0.1, 0.0, 0.0, 0.1, 0.0, 0.1].map(Number::decimal),
+        travel: travel.map(|ends| ends.map(Number::decimal)),
+    };
+    let rate = |travel| {
+        let mut problem = problem(Phi::Linear, Request::Everywhere);
+        let bodies = vec![body(JointKind::Revolute, None, None), body(JointKind::Prismatic, Some(0), travel)];
+        problem.robot.links = Links::Tree { bodies };
+        certify(&problem).proved().map(|certificate| certificate.blocks[2].contraction.bounds().midpoint())
+    };
+    // The slider moves across the first axis, 3 m from it at most: inertia 0.2 + 2 · 9 against 15.8, and 2 kg against 10.55.
+    let found = rate(Some([-1.0, 3.0])).expect("bounded");
+    assert!((0.5..=15.8 / 18.2).contains(&found), "{found}");
+    assert!(rate(None).is_none());
 }

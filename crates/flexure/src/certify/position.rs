@@ -124,7 +124,12 @@ impl Position {
         (0..n).map(|i| sum(i).hi()).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// √ of the bounds: an error inside the region, R where `far`, else 0; 1 rad where there is no bound.
+    /// Whether errors have bounds on all joints that are `far` out.
+    pub fn bounded(&self, far: &[bool]) -> bool {
+        far.iter().zip(&self.error).all(|(&far, error)| !far || error.is_some())
+    }
+
+    /// An error inside the region in rad: the largest on each joint that is `far` out, 1 where there is none, else 0.
     pub fn error_at(&self, far: &[bool]) -> Vec<f64> {
         let entry = |(&far, error): (&bool, &Option<Interval>)| match (far, error) {
             (false, _) => 0.0,

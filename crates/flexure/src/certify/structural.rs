@@ -184,7 +184,8 @@ fn position_block(block: BlockName, position: &Position) -> Result<Block, Failur
                 let (direction, value) = against(inequality, 0.0)?;
                 // Slopes are 1 at no error and smallest at the largest.
                 let far: Vec<bool> = case.iter().map(|high| !high).collect();
-                let state = State::Error(position.error_at(&far));
+                // A slope that is only approached, where errors have no bound, has no state.
+                let state = State::Error(position.bounded(&far).then(|| position.error_at(&far))?);
                 Some(RateWitness { block, state, direction, rate: value })
             });
             match refuted {
