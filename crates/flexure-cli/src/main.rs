@@ -22,6 +22,7 @@ fn main() -> ExitCode {
         Command::Model { robot, states } => commands::model(&robot, &states, json),
         Command::Check { files } => commands::check(&files, json),
         Command::Import { urdf, lock } => commands::import(&urdf, &lock, json),
+        Command::Verify { certificate } => commands::verify(&certificate, json),
         Command::List { kind } => commands::list(kind, json),
     };
     match done {

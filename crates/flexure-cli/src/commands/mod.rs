@@ -8,6 +8,7 @@ mod model;
 mod print;
 mod reproduce;
 mod run;
+mod verify;
 
 pub use check::check;
 pub use eval::eval;
@@ -16,3 +17,4 @@ pub use list::list;
 pub use model::model;
 pub use reproduce::reproduce;
 pub use run::run;
+pub use verify::verify;

@@ -10,3 +10,4 @@ mod pipes;
 mod reproduce;
 mod run;
 mod urdf;
+mod verify;
