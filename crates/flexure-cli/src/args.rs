@@ -68,6 +68,12 @@ pub enum Command {
         #[arg(required = true, value_name = "FILE")]
         files: Vec<String>,
     },
+    /// Check a certificate's claims without what made it.
+    Verify {
+        /// Certificate, a JSON file as docs/certificate.md has it.
+        #[arg(value_name = "CERTIFICATE")]
+        certificate: PathBuf,
+    },
     /// List what is registered.
     List {
         /// What to list; everything if left out.

@@ -30,6 +30,13 @@ impl Failure {
         ])
     }
 
+    /// The answer is no, as a sentence and a hint tell.
+    pub fn no(code: &str, message: String, hint: &str) -> Self {
+        Self::No(vec![
+            MietteDiagnostic::new(message).with_code(format!("error[{code}]")).with_help(hint).into(),
+        ])
+    }
+
     /// Says it on stderr and gives the exit code.
     pub fn report(self) -> ExitCode {
         let (reports, code) = match self {

@@ -23,6 +23,7 @@ fn main() -> ExitCode {
         Command::Certify(options) => commands::certify(&options, json),
         Command::Check { files } => commands::check(&files, json),
         Command::Import { urdf, lock } => commands::import(&urdf, &lock, json),
+        Command::Verify { certificate } => commands::verify(&certificate, json),
         Command::List { kind } => commands::list(kind, json),
     };
     match done {

@@ -9,6 +9,7 @@ mod model;
 mod print;
 mod reproduce;
 mod run;
+mod verify;
 
 pub use certify::certify;
 pub use check::check;
@@ -18,3 +19,4 @@ pub use list::list;
 pub use model::model;
 pub use reproduce::reproduce;
 pub use run::run;
+pub use verify::verify;

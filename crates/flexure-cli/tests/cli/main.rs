@@ -11,3 +11,4 @@ mod pipes;
 mod reproduce;
 mod run;
 mod urdf;
+mod verify;

@@ -1,0 +1,68 @@
+//! Checking certificates: `docs/certificate.md` is the statement.
+//!
+//! Nothing here is shared with the rest of the program but the number type
+//! [`Interval`](flexure_core::scalar::Interval): no robot model, no linear algebra, no reader of files, and nothing of what
+//! writes certificates. A mistake would have to be made twice to go unnoticed.
+
+mod block;
+mod coupling;
+mod document;
+mod field;
+mod json;
+mod mass;
+mod matrix;
+mod measures;
+mod momentum;
+mod number;
+mod position;
+mod reach;
+mod region;
+mod robot;
+mod shaping;
+mod structure;
+mod tube;
+mod vector;
+mod verdict;
+mod words;
+
+pub use verdict::{Claim, Rejected, Report};
+
+/// Checks every claim of a certificate.
+///
+/// ```
+/// use flexure::verify::{Rejected, verify};
+/// let text = include_str!("../../tests/certificates/two-link-linear.json");
+/// let report = verify(text).unwrap();
+/// assert_eq!(report.convergence_rate, report.contraction_rate);
+/// let other = text.replace("\"format\"", "\"Format\"");
+/// assert!(matches!(verify(&other), Err(Rejected::Malformed { .. })));
+/// ```
+///
+/// # Errors
+/// [`Rejected::Malformed`] if the text is no certificate, [`Rejected::False`] if a claim does not hold.
+pub fn verify(text: &str) -> Result<Report, Rejected> {
+    let certificate = document::read(text)?;
+    let checks = [
+        robot::check,
+        coupling::check,
+        region::check,
+        mass::check,
+        position::check,
+        momentum::check,
+        block::check_rates,
+        measures::check,
+        structure::check,
+        tube::check,
+    ];
+    let mut claims = Vec::new();
+    for check in checks {
+        claims.extend(check(&certificate)?);
+    }
+    Ok(Report {
+        name: certificate.name,
+        assumptions: certificate.assumptions,
+        claims,
+        contraction_rate: certificate.contraction_rate.to_string(),
+        convergence_rate: certificate.convergence_rate.to_string(),
+    })
+}

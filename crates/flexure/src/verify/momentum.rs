@@ -1,0 +1,73 @@
+//! Momentum blocks: the damping outweighs the inertia at every configuration.
+
+use flexure_core::scalar::Interval;
+
+use super::block;
+use super::document::{Certificate, Side};
+use super::mass::{pendulum_mass, planar_mass};
+use super::matrix::Symmetric;
+use super::number::Number;
+use super::reach::mass_bound;
+use super::robot::Links;
+use super::shaping::Rate;
+use super::verdict::{Claim, Rejected, ensure};
+
+pub(super) fn check(certificate: &Certificate) -> Result<Vec<Claim>, Rejected> {
+    Ok(vec![links(certificate)?, motors(certificate)?])
+}
+
+/// D + K_d.
+fn damping(damper: &[Number], gain: &[Number]) -> Vec<Interval> {
+    damper.iter().zip(gain).map(|(d, k)| d.value + k.value).collect()
+}
+
+fn links(certificate: &Certificate) -> Result<Claim, Rejected> {
+    let block = block::find(certificate, "sigma_l")?;
+    let robot = &certificate.robot;
+    let damping = damping(&robot.link_damping, &certificate.controller.gains(Side::Link).damping);
+    // B − β M.
+    let pivot = |mass: &dyn Fn(usize, usize) -> Interval, rate: Rate| {
+        let beta = block.rate(rate).value;
+        let entry = |i: usize, j: usize| {
+            let inertia = beta * mass(i, j);
+            if i == j { damping[i] - inertia } else { -inertia }
+        };
+        Symmetric::from_fn(robot.joints, entry).smallest_pivot()
+    };
+    let one = [String::new()];
+    equal_rates(block)?;
+    match &robot.links {
+        Links::PlanarTwoLink { .. } => {
+            let ends = ["L".to_owned(), "H".to_owned()];
+            block::check(block, &ends, |case, rate| {
+                let mass = planar_mass(&robot.links, if case == "L" { -1.0 } else { 1.0 });
+                pivot(&|i, j| mass[i + j], rate)
+            })
+        }
+        Links::Pendulum { .. } => {
+            let mass = pendulum_mass(&robot.links);
+            block::check(block, &one, |_, rate| pivot(&|_, _| mass, rate))
+        }
+        Links::Tree(bodies) => {
+            let bound = mass_bound(bodies)?;
+            block::check(block, &one, |_, rate| pivot(&|i, j| bound[i][j], rate))
+        }
+    }
+}
+
+fn motors(certificate: &Certificate) -> Result<Claim, Rejected> {
+    let block = block::find(certificate, "sigma_m")?;
+    let robot = &certificate.robot;
+    let damping = damping(&robot.motor_damping, &certificate.controller.gains(Side::Motor).damping);
+    equal_rates(block)?;
+    block::check(block, &[String::new()], |_, rate| {
+        let entry = |(d, m): (&Interval, &Number)| (*d - block.rate(rate).value * m.value).lo();
+        damping.iter().zip(&robot.motor_inertia).map(entry).fold(f64::INFINITY, f64::min)
+    })
+}
+
+fn equal_rates(block: &super::document::Block) -> Result<(), Rejected> {
+    ensure(block.contraction.is(&block.convergence), format!("blocks.{}", block.name), || {
+        format!("both rates are equal in this block, not {} and {}", block.contraction, block.convergence)
+    })
+}

@@ -1,0 +1,42 @@
+//! Checking certificates: what holds is verified, and everything that claims more is refused, by both checkers.
+//!
+//! The certificates in `tests/certificates` were made without this program's prover, from the formulas of
+//! `docs/certificate.md` in 40 digits: rates are 1e-13 below the exact ones, relatively, so that nothing more can be
+//! claimed, and margins half of the pivots.
+
+mod accepted;
+mod lists;
+mod mangled;
+mod mutants;
+mod python;
+mod signs;
+mod values;
+
+use serde_json::Value;
+
+/// Names and texts of the certificates.
+const CERTIFICATES: [(&str, &str); 5] = [
+    ("pendulum", include_str!("../certificates/pendulum.json")),
+    ("tree", include_str!("../certificates/tree.json")),
+    ("two-link-coupled-tanh", include_str!("../certificates/two-link-coupled-tanh.json")),
+    ("two-link-linear", include_str!("../certificates/two-link-linear.json")),
+    ("two-link-tanh", include_str!("../certificates/two-link-tanh.json")),
+];
+
+/// Name and content of each certificate.
+fn certificates() -> impl Iterator<Item = (&'static str, Value)> {
+    CERTIFICATES.into_iter().map(|(name, text)| (name, serde_json::from_str(text).unwrap()))
+}
+
+/// Splitmix64: the same choices on every run.
+struct Noise(u64);
+
+impl Noise {
+    fn below(&mut self, bound: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        usize::try_from((z ^ (z >> 31)) % bound.max(1) as u64).unwrap()
+    }
+}
