@@ -2,6 +2,7 @@
 //!
 //! Trusted base: the interval type, the core, and this module; it imports neither `sim` nor `io`.
 
+pub mod direct;
 pub mod matrix;
 pub mod verdict;
 
