@@ -62,7 +62,13 @@ fn jacobi(a: &mut [Vec<f64>]) -> Vec<Vec<f64>> {
     let n = a.len();
     let mut vectors: Vec<Vec<f64>> =
         (0..n).map(|i| (0..n).map(|j| if i == j { 1.0 } else { 0.0 }).collect()).collect();
+    let size: f64 = a.iter().flatten().map(|x| x * x).sum();
     for _ in 0..SWEEPS {
+        let rest: f64 =
+            (0..n).flat_map(|i| (0..i).map(move |j| (i, j))).map(|(i, j)| a[i][j] * a[i][j]).sum();
+        if rest <= 1e-36 * size {
+            break;
+        }
         for p in 0..n {
             for q in p + 1..n {
                 if a[p][q] == 0.0 {
