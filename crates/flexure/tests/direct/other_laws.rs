@@ -163,7 +163,7 @@ fn a_weight_must_be_a_metric() {
     let mut system = Regulated::<Interval>::new();
     system.metric[1][1] = Interval::from_decimal("-0.1").expect("a decimal");
     let point = {
-        Regulated::<f64> { metric: system.metric.map(|row| row.map(|x| x.midpoint())), ..Regulated::new() }
+        Regulated::<f64> { metric: system.metric.map(|row| row.map(Interval::midpoint)), ..Regulated::new() }
     };
     let flow = Twins { bounds: system, point, coordinates: regulated(0.1).coordinates };
     for rate in [-1e6, 1e-3] {

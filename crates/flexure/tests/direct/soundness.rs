@@ -1,7 +1,9 @@
 //! Interval matrices contain those of points, and what was not shown is not claimed.
 
 use flexure::certify::Verdict;
-use flexure::certify::direct::{Balance, ClosedLoop, Flow, Region, best_rate, prove, vcbc};
+use flexure::certify::direct::{
+    Balance, ClosedLoop, Coordinate, Flow, Form, Region, System, Twins, best_rate, prove, vcbc,
+};
 use flexure_core::control::{LinkGains, Metric, MotorGains, Tanh, Vcbc};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links};
@@ -193,6 +195,40 @@ fn hardening_metric() {
     let unbounded = Region { velocity_error_l: [Interval::ENTIRE; 2], ..small };
     let verdict = prove(&flow(&unbounded), 0.1, 500);
     assert!(verdict.proved().is_none(), "{verdict:?}");
+}
+
+/// One variable whose rate is 1 but for a dip of width 1e-4 at `place`, where W grows.
+struct Dip {
+    place: f64,
+}
+
+impl<C: Scalar> System<C> for Dip {
+    fn balance(&self, at: &[C]) -> Balance<C> {
+        let far = (at[0] - C::from_f64(self.place)) * C::from_f64(1e4);
+        let dip = C::from_f64(1.5) * (-far.square()).exp();
+        Balance {
+            dissipation: Form::from_fn(1, |_, _| C::ONE - dip),
+            weight: Form::from_fn(1, |_, _| C::ONE),
+        }
+    }
+}
+
+/// What no sample sees, the boxes do, wherever it is.
+#[test]
+fn a_dip_between_the_samples() {
+    let mut r = Numbers(21);
+    for _ in 0..50 {
+        let place = 0.999 * r.next();
+        let coordinates = vec![Coordinate { name: "x".to_owned(), unit: "rad", range: around(0.0, 1.0) }];
+        let flow = Twins { bounds: Dip { place }, point: Dip { place }, coordinates };
+        for beta in [0.5, 0.01] {
+            let Verdict::Refuted(witness) = prove(&flow, beta, 1_000) else { panic!("{place}") };
+            assert!((witness.at.get("x").expect("one coordinate") - place).abs() < 2e-4, "{witness:?}");
+        }
+        // The true rate at the bottom of the dip.
+        let best = best_rate(&flow, 1_000);
+        assert_eq!(best.word(), "refuted", "{best:?}");
+    }
 }
 
 /// Seven joints: whatever the verdict, it comes within the budget.

@@ -1,4 +1,5 @@
 //! Small dense matrices in `f64`: what suggests, and never proves.
+#![expect(clippy::needless_range_loop, reason = "rows and columns by their numbers, as on paper")]
 
 use super::Form;
 

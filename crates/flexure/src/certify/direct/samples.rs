@@ -86,6 +86,6 @@ fn radical_inverse(mut n: usize, base: usize) -> f64 {
 
 /// Prime number `k`, from 2.
 fn prime(k: usize) -> usize {
-    let is_prime = |n: &usize| (2..*n).take_while(|d| d * d <= *n).all(|d| n % d != 0);
+    let is_prime = |n: &usize| (2..*n).take_while(|d| d * d <= *n).all(|d| !n.is_multiple_of(d));
     (2..).filter(is_prime).nth(k).unwrap_or(2)
 }
