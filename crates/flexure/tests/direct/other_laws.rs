@@ -157,17 +157,29 @@ fn regulation_about_a_set_point() {
     }
 }
 
+/// One variable, dissipation 1, weight 1 − 2 x²: negative where |x| > 0.7.
+struct NoMetric;
+
+impl<C: Scalar> System<C> for NoMetric {
+    fn balance(&self, at: &[C]) -> Balance<C> {
+        let square = at[0].square();
+        let weight = C::ONE - (square + square);
+        Balance { dissipation: Form::from_fn(1, |_, _| C::ONE), weight: Form::from_fn(1, |_, _| weight) }
+    }
+}
+
 /// A weight that is no metric proves nothing, however large the dissipation.
 #[test]
 fn a_weight_must_be_a_metric() {
-    let mut system = Regulated::<Interval>::new();
-    system.metric[1][1] = Interval::from_decimal("-0.1").expect("a decimal");
-    let point = {
-        Regulated::<f64> { metric: system.metric.map(|row| row.map(Interval::midpoint)), ..Regulated::new() }
+    let flow = |range| {
+        let coordinates = vec![Coordinate { name: "x".to_owned(), unit: "rad", range }];
+        Twins { bounds: NoMetric, point: NoMetric, coordinates }
     };
-    let flow = Twins { bounds: system, point, coordinates: regulated(0.1).coordinates };
-    for rate in [-1e6, 1e-3] {
-        assert!(prove(&flow, rate, 1_000).proved().is_none());
+    assert!(prove(&flow(around(0.0, 0.5)), 1.0 - 1e-9, 1_000).proved().is_some());
+    for range in [around(0.0, 1.0), around(2.0, 1.0)] {
+        let verdict = prove(&flow(range), 0.5, 1_000);
+        assert!(verdict.proved().is_none(), "{verdict:?}");
+        assert!(best_rate(&flow(range), 1_000).proved().is_none());
     }
 }
 

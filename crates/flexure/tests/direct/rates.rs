@@ -50,8 +50,8 @@ fn tanh_contracts() {
     best("φ_1", &flow, TANH);
     no_more_than("φ_1", &flow, TANH);
     let Verdict::Refuted(witness) = prove(&flow, TANH * 1.01, 100) else { panic!("a corner refutes it") };
-    let slow = witness.at.get("e_l[1]").map(f64::abs);
-    assert_eq!(slow, Some(3.0), "{witness:?}");
+    // The second link is slow where its error is large: 30 sech² e ≤ 1.01 · 30 sech² 3.
+    assert!(witness.at.get("e_l[1]").is_some_and(|e| e.abs() > 2.99), "{witness:?}");
 }
 
 #[test]

@@ -21,8 +21,20 @@ pub struct Proved {
 ///
 /// [`Verdict::Proved`] is rigorous for every value of constants that are intervals, and so is [`Verdict::Refuted`].
 pub fn prove(flow: &dyn Flow, beta: f64, budget: usize) -> Verdict<Proved, Witness> {
-    let refuted = samples::weakest(flow).and_then(|sample| sample.refutes(flow, beta));
-    refuted.map_or_else(|| bisect(flow, beta, budget).0, Verdict::Refuted)
+    /// Boxes before samples: most rates that hold with room to spare take no more, and samples cost as much as hundreds.
+    const FEW: usize = 32;
+    let (verdict, spent) = bisect(flow, beta, budget.min(FEW));
+    if !matches!(verdict, Verdict::Undecided(_)) {
+        return verdict;
+    }
+    if let Some(witness) = samples::weakest(flow).and_then(|sample| sample.refutes(flow, beta)) {
+        return Verdict::Refuted(witness);
+    }
+    match bisect(flow, beta, budget - spent).0 {
+        Verdict::Proved(proved) => Verdict::Proved(Proved { boxes: spent + proved.boxes, ..proved }),
+        Verdict::Undecided(at) => Verdict::Undecided(Undecided { spent: spent + at.spent, ..at }),
+        refuted @ Verdict::Refuted(_) => refuted,
+    }
 }
 
 /// [`prove`] without looking at samples first, only boxes that resist are searched for witnesses; and the boxes it took.
