@@ -82,7 +82,7 @@ fn dominant(a: &Symmetric) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{Definite, Interval, Symmetric, definite, dominant};
+    use super::{Definite, Form, Interval, Symmetric, congruent, definite, dense, dominant};
 
     fn around(x: f64, radius: f64) -> Interval {
         Interval::new(x - radius, x + radius).expect("ordered")
@@ -124,5 +124,58 @@ mod tests {
         assert!(dominant(&Symmetric::from_fn(2, |i, j| Interval::point(entries[i][j]))));
         let entries = [[1.0, 0.0], [11.0, 100.0]];
         assert!(!dominant(&Symmetric::from_fn(2, |i, j| Interval::point(entries[i][j]))));
+    }
+
+    /// It is the lower end of the diagonal that counts.
+    #[test]
+    fn wide_diagonals() {
+        let wide = |i: usize, j: usize| if i == j { around(1.5, 1.0) } else { Interval::point(0.75) };
+        assert!(!dominant(&Symmetric::from_fn(2, wide)));
+        assert!(matches!(definite(&Symmetric::from_fn(2, wide)), Definite::Unknown(_)));
+    }
+
+    /// R A Rᵀ by hand.
+    #[test]
+    fn congruence() {
+        let a = Symmetric::from_fn(3, |i, j| Interval::point((1 + 4 * i + 2 * j) as f64));
+        let root = vec![vec![2.0, 0.0, 0.0], vec![-1.0, 3.0, 0.0], vec![5.0, -2.0, 1.0]];
+        let got = congruent(&a, &root);
+        for (i, row) in root.iter().enumerate() {
+            for (j, other) in root.iter().enumerate() {
+                let product = |k: usize, l: usize| row[k] * a.at(k, l).midpoint() * other[l];
+                let sum: f64 = (0..9).map(|k| product(k / 3, k % 3)).sum();
+                assert_eq!(got.at(i, j), Interval::point(sum), "({i}, {j})");
+            }
+        }
+    }
+
+    /// Random matrices around the border: of those found definite, every corner that is tried is.
+    #[test]
+    fn corners_of_what_is_definite_are_definite() {
+        let mut state = 7_u64;
+        let mut next = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        };
+        let mut decided = 0;
+        for _ in 0..2_000 {
+            let entries: Vec<Interval> = (0..16).map(|_| around(next(), 0.3 * next().abs())).collect();
+            let shift = Interval::point(1.5);
+            let entry =
+                |i: usize, j: usize| entries[4 * i + j] + if i == j { shift } else { Interval::point(0.0) };
+            let matrix = Symmetric::from_fn(4, entry);
+            if definite(&matrix) != Definite::Yes {
+                continue;
+            }
+            decided += 1;
+            for _ in 0..40 {
+                let corner = Form::from_fn(4, |i, j| {
+                    let x = matrix.at(i, j);
+                    if next() > 0.0 { x.lo() } else { x.hi() }
+                });
+                assert!(dense::cholesky(&corner).is_some(), "{corner:?}");
+            }
+        }
+        assert!((200..1_800).contains(&decided), "{decided}");
     }
 }
