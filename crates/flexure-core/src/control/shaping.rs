@@ -63,16 +63,23 @@ impl<C: Scalar, const N: usize> Shaping<C, N> for Tanh<C, N> {
 impl<C: Scalar, const N: usize> Shaping<C, N> for CoupledTanh<C, N> {
     #[inline]
     fn eval<T: Over<C>>(&self, error: &Vector<T, N>) -> Vector<T, N> {
-        // Σ_{j≠i} θ_j tanh(q̃_j): all of them once, so that the cost is O(n).
-        let others = i32::try_from(N).unwrap_or(i32::MAX).saturating_sub(1).max(1);
+        // Σ_{j≠i} θ_j tanh(q̃_j): the sum before i and the sum after, O(n) for all. The sum of all less the i-th would have
+        // a derivative that cancels only up to the width of an interval.
+        let divisor = i32::try_from(N).unwrap_or(i32::MAX).saturating_sub(1).max(1);
         let weighted = self.theta.diag_mul(&error.map(T::tanh));
-        let mut total = T::ZERO;
-        for w in weighted.iter() {
-            total += w;
+        let mut others = Vector::<T, N>::ZERO;
+        let (mut before, mut after) = (T::ZERO, T::ZERO);
+        for i in 0..N {
+            others[i] = before;
+            before += weighted[i];
+        }
+        for i in (0..N).rev() {
+            others[i] += after;
+            after += weighted[i];
         }
         Vector::from_fn(|i| {
-            let share = C::from_ratio(1, others) / self.theta[i];
-            error[i].scale(C::ONE + self.kappa[i]) + (total - weighted[i]).scale(share)
+            let share = C::from_ratio(1, divisor) / self.theta[i];
+            error[i].scale(C::ONE + self.kappa[i]) + others[i].scale(share)
         })
     }
 }

@@ -1,7 +1,7 @@
 //! Error coordinates x̃ = (q̃, σ) and the dynamics that the law gives them.
 
 use crate::control::{Input, Shaping, Vcbc};
-use crate::linalg::Vector;
+use crate::linalg::{Matrix, Vector};
 use crate::model::{Fjr, LinkMatrices, Links, MassFactor, Motion, State};
 use crate::scalar::{Jet, Over, Scalar};
 
@@ -16,6 +16,19 @@ pub struct ErrorState<T, const N: usize> {
     pub sigma_l: Vector<T, N>,
     /// Motor momentum error σ_m = p_mv − p_mr [kg m²/s].
     pub sigma_m: Vector<T, N>,
+}
+
+/// The error with velocities in place of momenta, (q̃_l, q̃_m, s_l, s_m): what the law computes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VelocityErrors<T, const N: usize> {
+    /// Link position error q̃_l in rad.
+    pub e_l: Vector<T, N>,
+    /// Motor position error q̃_m in rad.
+    pub e_m: Vector<T, N>,
+    /// Link velocity error s_l = M_l⁻¹ σ_l [rad/s].
+    pub s_l: Vector<T, N>,
+    /// Motor velocity error s_m = M_m⁻¹ σ_m [rad/s].
+    pub s_m: Vector<T, N>,
 }
 
 /// The error of the virtual state `x_v` under the law, along the real motion `x`. Paper, eq. changeofcoordinatesError
@@ -79,20 +92,47 @@ where
     Pl: Shaping<C, N>,
     Pm: Shaping<C, N>,
 {
-    let ErrorState { e_l, e_m, sigma_l, sigma_m } = error;
-    let s_l = robot.links.factor(&x.q_l).solve(sigma_l);
-    let s_m = robot.motor_inertia.map(C::recip).diag_mul(sigma_m);
+    let errors = VelocityErrors {
+        e_l: error.e_l,
+        e_m: error.e_m,
+        s_l: robot.links.factor(&x.q_l).solve(&error.sigma_l),
+        s_m: robot.motor_inertia.map(C::recip).diag_mul(&error.sigma_m),
+    };
     let E_l = LinkMatrices::new(&robot.links, &x.q_l, &x.v_l).workless();
-    let coupling = law.motor.metric.map(C::recip).diag_mul(&robot.stiffness.diag_mul(&s_l));
+    velocity_error_rates(robot, law, &errors, &E_l, omega)
+}
+
+/// [`closed_loop`] at velocity errors: the rates of (q̃_l, q̃_m, σ_l, σ_m), without solving with a mass matrix.
+///
+/// `E_l` [N m s/rad] is [`LinkMatrices::workless`] of the real motion, all that enters of it. It is constant where errors
+/// vary, so that it may be computed on a cheaper number and lifted: Jacobians with respect to the errors need no dual
+/// numbers in the model.
+#[inline]
+pub fn velocity_error_rates<T, C, L, Pl, Pm, const N: usize>(
+    robot: &Fjr<C, L, N>,
+    law: &Vcbc<C, Pl, Pm, N>,
+    errors: &VelocityErrors<T, N>,
+    E_l: &Matrix<T, N, N>,
+    omega: &Input<T, N>,
+) -> ErrorState<T, N>
+where
+    T: Over<C>,
+    C: Scalar,
+    L: Links<C, N>,
+    Pl: Shaping<C, N>,
+    Pm: Shaping<C, N>,
+{
+    let VelocityErrors { e_l, e_m, s_l, s_m } = errors;
+    let coupling = law.motor.metric.map(C::recip).diag_mul(&robot.stiffness.diag_mul(s_l));
     let damping_l = robot.link_damping + law.link.damping;
     let damping_m = robot.motor_damping + law.motor.damping;
     ErrorState {
-        e_l: s_l - law.link.shaping.eval(e_l),
-        e_m: s_m - law.motor.shaping.eval(e_m) - coupling,
+        e_l: *s_l - law.link.shaping.eval(e_l),
+        e_m: *s_m - law.motor.shaping.eval(e_m) - coupling,
         sigma_l: robot.stiffness.diag_mul(e_m) + omega.link.map(|w| w.coefficient(0))
             - law.link.metric.integral(e_l)
-            - E_l * s_l
-            - damping_l.diag_mul(&s_l),
-        sigma_m: omega.motor - law.motor.metric.diag_mul(e_m) - damping_m.diag_mul(&s_m),
+            - *E_l * *s_l
+            - damping_l.diag_mul(s_l),
+        sigma_m: omega.motor - law.motor.metric.diag_mul(e_m) - damping_m.diag_mul(s_m),
     }
 }

@@ -9,5 +9,5 @@ mod error;
 mod structure;
 
 pub use dynamics::virtual_dynamics;
-pub use error::{ErrorState, closed_loop, error_coordinates};
+pub use error::{ErrorState, VelocityErrors, closed_loop, error_coordinates, velocity_error_rates};
 pub use structure::{Blocks, Structure};

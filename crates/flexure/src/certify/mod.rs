@@ -8,6 +8,7 @@
 
 pub mod certificate;
 pub mod coupling;
+pub mod direct;
 pub mod matrix;
 pub mod momentum;
 pub mod number;
