@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use crate::certificates;
 use crate::mutants::{Mutant, all_refused, each};
 
 /// By what a claimed number has to be multiplied to claim more; none if there is no claim at this path.
@@ -52,12 +53,62 @@ pub fn mutants() -> Vec<Mutant> {
         }
         _ => Vec::new(),
     }));
+    mutants.extend(several());
     mutants
+}
+
+/// Changes in several places, after which everything holds but one thing.
+fn several() -> Vec<Mutant> {
+    let cases: [(&str, &str, &[(&str, &str)]); 6] = [
+        ("a witness outside the region", "two-link-tanh", &[("/structure/1/witness/error/0", "3.5")]),
+        ("gains that are not the metric", "two-link-linear", &[("/controller/link/shaping/0", "56")]),
+        (
+            "a tube that leaves the region",
+            "two-link-tanh",
+            &[
+                ("/tube/level", "1000"),
+                ("/tube/error/0", "100"),
+                ("/tube/error/1", "100"),
+                ("/tube/error/2", "100"),
+                ("/tube/error/3", "100"),
+            ],
+        ),
+        (
+            "rates that are negative everywhere they can be",
+            "two-link-linear",
+            &[
+                ("/contraction_rate", "-1"),
+                ("/convergence_rate", "-1"),
+                ("/blocks/0/contraction", "-1"),
+                ("/blocks/0/convergence", "-1"),
+            ],
+        ),
+        ("an axis that is not of unit length", "tree", &[("/robot/links/bodies/2/axis/0", "0.99")]),
+        ("a travel the wrong way round", "tree", &[("/robot/links/bodies/2/travel/0", "0.26")]),
+    ];
+    let changed = |(what, name, changes): (&str, &str, &[(&str, &str)])| {
+        let (_, mut content) = certificates().find(|(known, _)| *known == name).unwrap();
+        for (path, value) in changes {
+            *content.pointer_mut(path).unwrap() = Value::from(*value);
+        }
+        Mutant::new(name, "", what, &content)
+    };
+    cases.into_iter().map(changed).collect()
 }
 
 /// Texts that are not checked.
 fn is_free(path: &str) -> bool {
     matches!(path, "/name" | "/made_by" | "/robot/name") || path.starts_with("/assumptions")
+}
+
+/// Less is claimed, but the statement has one rate in these blocks.
+#[test]
+fn momentum_blocks_have_one_rate() {
+    let mutants = each("claims less", |path, _| match path.split('/').collect::<Vec<_>>().as_slice() {
+        ["", "blocks", "2" | "3", "contraction"] => vec![Value::from("0.1")],
+        _ => Vec::new(),
+    });
+    all_refused(&mutants, 10);
 }
 
 #[test]
