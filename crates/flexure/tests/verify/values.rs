@@ -11,14 +11,14 @@ fn more(path: &str, value: &Value) -> Option<f64> {
     let keys: Vec<_> = path.split('/').collect();
     let (up, down) = (1.0 + 1e-6, 1.0 - 1e-6);
     Some(match *keys.as_slice() {
-        ["", "contraction_rate" | "convergence_rate"] => up,
-        ["", "blocks", _, "contraction" | "convergence"] => up,
+        ["", "contraction_rate" | "convergence_rate"]
+        | ["", "blocks", _, "contraction" | "convergence"]
+        | ["", "region", "level"]
+        | ["", "tube", "disturbance", _]
+        | ["", "structure", _, "witness", "difference"] => up,
         // Margins are half of what there is.
         ["", "blocks", _, "cases", ..] | ["", "mass_matrix", ..] => 2.0 * up,
-        ["", "region", "level"] => up,
         ["", "tube", "level"] | ["", "tube", "error", _] => down,
-        ["", "tube", "disturbance", _] => up,
-        ["", "structure", _, "witness", "difference"] => up,
         // A measure that is negative claims more farther below 0.
         ["", "measures", _, "bound"] => {
             if number < 0.0 {
@@ -57,9 +57,12 @@ pub fn mutants() -> Vec<Mutant> {
     mutants
 }
 
+/// What is wrong, the certificate, and places with what is to stand there.
+type Change = (&'static str, &'static str, &'static [(&'static str, &'static str)]);
+
 /// Changes in several places, after which everything holds but one thing.
 fn several() -> Vec<Mutant> {
-    let cases: [(&str, &str, &[(&str, &str)]); 6] = [
+    let cases: [Change; 6] = [
         ("a witness outside the region", "two-link-tanh", &[("/structure/1/witness/error/0", "3.5")]),
         ("gains that are not the metric", "two-link-linear", &[("/controller/link/shaping/0", "56")]),
         (
@@ -86,7 +89,7 @@ fn several() -> Vec<Mutant> {
         ("an axis that is not of unit length", "tree", &[("/robot/links/bodies/2/axis/0", "0.99")]),
         ("a travel the wrong way round", "tree", &[("/robot/links/bodies/2/travel/0", "0.26")]),
     ];
-    let changed = |(what, name, changes): (&str, &str, &[(&str, &str)])| {
+    let changed = |(what, name, changes): Change| {
         let (_, mut content) = certificates().find(|(known, _)| *known == name).unwrap();
         for (path, value) in changes {
             *content.pointer_mut(path).unwrap() = Value::from(*value);
