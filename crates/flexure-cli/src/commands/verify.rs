@@ -15,7 +15,7 @@ const ENOUGH: u64 = (4 << 20) + 1;
 
 /// What is printed with `--json`.
 #[derive(Serialize)]
-struct Verdict {
+struct Answer {
     verdict: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     name: Option<String>,
@@ -38,7 +38,7 @@ pub fn verify(file: &Path, json: bool) -> Result<(), Failure> {
     })?;
     match verify::verify(&text) {
         Ok(report) => verified(report, json),
-        Err(Rejected::False { claim, reason }) => rejected(file, claim, reason, json),
+        Err(Rejected::False { claim, reason }) => rejected(file, &claim, &reason, json),
         Err(Rejected::Malformed { place, reason, line, column }) => {
             Err(malformed(file, &place, &reason, line, column))
         }
@@ -55,7 +55,7 @@ fn read(file: &Path) -> io::Result<String> {
 fn verified(report: Report, json: bool) -> Result<(), Failure> {
     let Report { name, assumptions, claims, contraction_rate, convergence_rate } = report;
     if json {
-        return print::json(&Verdict {
+        return print::json(&Answer {
             verdict: "verified",
             name: Some(name),
             claims,
@@ -83,11 +83,11 @@ fn shown(text: &str) -> String {
     text.chars().filter(|c| !c.is_control()).collect()
 }
 
-fn rejected(file: &Path, claim: String, reason: String, json: bool) -> Result<(), Failure> {
-    let (claim, reason) = (shown(&claim), shown(&reason));
+fn rejected(file: &Path, claim: &str, reason: &str, json: bool) -> Result<(), Failure> {
+    let (claim, reason) = (shown(claim), shown(reason));
     let message = format!("{}: {claim} does not hold: {reason}", file.display());
     if json {
-        print::json(&Verdict {
+        print::json(&Answer {
             verdict: "rejected",
             name: None,
             claims: Vec::new(),

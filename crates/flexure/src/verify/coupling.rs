@@ -52,11 +52,11 @@ fn cancels(rows: &[Vec<Sum>]) -> Result<(), Rejected> {
         let block = rows[i][j].after(METRIC[i]);
         if (i, j) == (2, 2) { block.plus(&sum("-1/2 R")) } else { block }
     };
-    for i in 0..4 {
+    for (i, loss) in DISSIPATION.into_iter().enumerate() {
         for j in 0..=i {
             let mut rest = work(i, j).plus(&work(j, i).transposed());
             if i == j {
-                let loss = sum(DISSIPATION[i]);
+                let loss = sum(loss);
                 rest = rest.plus(&loss).plus(&loss.transposed());
             }
             ensure(rest.is_zero(), "closed_loop", || format!("block ({i}, {j}) of G + G' leaves {rest:?}"))?;

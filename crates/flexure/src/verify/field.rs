@@ -118,7 +118,7 @@ impl<'a> Field<'a> {
         let number = match self.node {
             Node::Text(text) => Number::decimal(text),
             Node::List(_) => {
-                let [lower, upper] = self.array(|end| end.text())?;
+                let [lower, upper] = self.array(Field::text)?;
                 Number::between(lower, upper)
             }
             _ => return Err(self.not("a number written as a text, or a pair of them")),

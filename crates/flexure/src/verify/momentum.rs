@@ -37,14 +37,14 @@ fn links(certificate: &Certificate) -> Result<Claim, Rejected> {
     let one = [String::new()];
     equal_rates(block)?;
     match &robot.links {
-        Links::PlanarTwoLink { .. } => {
+        Links::PlanarTwoLink(_) => {
             let ends = ["L".to_owned(), "H".to_owned()];
             block::check(block, &ends, |case, rate| {
                 let mass = planar_mass(&robot.links, if case == "L" { -1.0 } else { 1.0 });
                 pivot(&|i, j| mass[i + j], rate)
             })
         }
-        Links::Pendulum { .. } => {
+        Links::Pendulum(_) => {
             let mass = pendulum_mass(&robot.links);
             block::check(block, &one, |_, rate| pivot(&|_, _| mass, rate))
         }

@@ -15,9 +15,17 @@ pub(super) struct Robot {
 }
 
 pub(super) enum Links {
-    PlanarTwoLink { mass: [Number; 2], length: Number, com: [Number; 2], inertia: [Number; 2] },
-    Pendulum { mass: Number, com: Number, inertia: Number },
+    PlanarTwoLink(Box<PlanarTwoLink>),
+    /// Mass, distance of the centre of mass, inertia about it.
+    Pendulum(Box<[Number; 3]>),
     Tree(Vec<Body>),
+}
+
+pub(super) struct PlanarTwoLink {
+    pub mass: [Number; 2],
+    pub length: Number,
+    pub com: [Number; 2],
+    pub inertia: [Number; 2],
 }
 
 pub(super) struct Body {
@@ -50,8 +58,8 @@ pub(super) fn read(field: &Field<'_>) -> Result<Robot, Rejected> {
     }
     let links = self::links(&links, n)?;
     let needed = match &links {
-        Links::PlanarTwoLink { .. } => 2,
-        Links::Pendulum { .. } => 1,
+        Links::PlanarTwoLink(_) => 2,
+        Links::Pendulum(_) => 1,
         Links::Tree(bodies) => bodies.len(),
     };
     if n != needed {
@@ -73,16 +81,16 @@ fn links(field: &Field<'_>, n: usize) -> Result<Links, Rejected> {
         0 => {
             let [_, mass, length, com, inertia] =
                 field.object(["kind", "mass", "length", "com", "inertia"])?;
-            Ok(Links::PlanarTwoLink {
+            Ok(Links::PlanarTwoLink(Box::new(PlanarTwoLink {
                 mass: mass.array(Field::number)?,
                 length: length.number()?,
                 com: com.array(Field::number)?,
                 inertia: inertia.array(Field::number)?,
-            })
+            })))
         }
         1 => {
             let [_, mass, com, inertia] = field.object(["kind", "mass", "com", "inertia"])?;
-            Ok(Links::Pendulum { mass: mass.number()?, com: com.number()?, inertia: inertia.number()? })
+            Ok(Links::Pendulum(Box::new([mass.number()?, com.number()?, inertia.number()?])))
         }
         _ => {
             let [_, bodies] = field.object(["kind", "bodies"])?;
@@ -139,12 +147,13 @@ pub(super) fn check(certificate: &Certificate) -> Result<Vec<Claim>, Rejected> {
     nonnegative("robot.link_damping", &robot.link_damping)?;
     nonnegative("robot.motor_damping", &robot.motor_damping)?;
     match &robot.links {
-        Links::PlanarTwoLink { mass, length, inertia, .. } => {
-            positive("robot.links.mass", mass)?;
-            positive("robot.links.length", [length])?;
-            positive("robot.links.inertia", inertia)?;
+        Links::PlanarTwoLink(arm) => {
+            positive("robot.links.mass", &arm.mass)?;
+            positive("robot.links.length", [&arm.length])?;
+            positive("robot.links.inertia", &arm.inertia)?;
         }
-        Links::Pendulum { mass, inertia, .. } => {
+        Links::Pendulum(body) => {
+            let [mass, _, inertia] = body.as_ref();
             nonnegative("robot.links.mass", [mass])?;
             nonnegative("robot.links.inertia", [inertia])?;
         }

@@ -68,3 +68,30 @@ pub(super) fn rotation(rows: [Vec3; 3]) -> Option<[Vec3; 3]> {
 fn widened(defect: f64) -> Option<Interval> {
     if defect <= DEFECT { Interval::new(-defect, defect) } else { None }
 }
+
+#[cfg(test)]
+mod tests {
+    use flexure_core::scalar::Interval;
+
+    use super::{rotation, unit};
+
+    fn point<const N: usize>(numbers: [f64; N]) -> [Interval; N] {
+        numbers.map(Interval::point)
+    }
+
+    #[test]
+    fn rounded_axes_and_rotations_hold_the_exact_one_and_others_are_refused() {
+        let third = unit(point([0.577350269, 0.577350269, 0.577350269])).unwrap();
+        assert!(third[0].contains(1.0 / 3.0_f64.sqrt()) && third[0].width() < 1e-8);
+        assert_eq!(unit(point([0.6, 0.0, 0.0])), None);
+        assert_eq!(unit(point([1.00001, 0.0, 0.0])), None);
+        let turned =
+            |c: f64, s: f64| rotation([point([c, -s, 0.0]), point([s, c, 0.0]), point([0.0, 0.0, 1.0])]);
+        let half = turned(0.866025404, 0.5).unwrap();
+        assert!(half[0][0].contains(3.0_f64.sqrt() / 2.0) && half[0][0].width() < 1e-8);
+        assert!(turned(0.866, 0.5).is_none() && turned(1.0, 0.5).is_none());
+        assert!(
+            rotation([point([1.0, 0.0, 0.0]), point([0.0, 1.0, 0.0]), point([0.0, 0.0, -1.0])]).is_none()
+        );
+    }
+}

@@ -63,6 +63,7 @@ impl Sum {
     }
 
     /// `−self`.
+    #[cfg(test)]
     pub(super) fn negated(&self) -> Self {
         Self(self.0.iter().map(|(word, halves)| (word.clone(), -halves)).collect())
     }

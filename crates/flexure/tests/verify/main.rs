@@ -15,12 +15,14 @@ mod values;
 use serde_json::Value;
 
 /// Names and texts of the certificates.
-const CERTIFICATES: [(&str, &str); 5] = [
+const CERTIFICATES: [(&str, &str); 6] = [
     ("pendulum", include_str!("../certificates/pendulum.json")),
     ("tree", include_str!("../certificates/tree.json")),
     ("two-link-coupled-tanh", include_str!("../certificates/two-link-coupled-tanh.json")),
     ("two-link-linear", include_str!("../certificates/two-link-linear.json")),
     ("two-link-tanh", include_str!("../certificates/two-link-tanh.json")),
+    // Metric and gains differ, so that rows and columns of the slope's matrix do.
+    ("two-link-uneven", include_str!("../certificates/two-link-uneven.json")),
 ];
 
 /// Name and content of each certificate.

@@ -113,6 +113,11 @@ fn what_is_no_certificate_is_malformed() {
         assert!(text.contains(from), "{from}");
         malformed(&text.replacen(from, to, 1));
     }
+    let (tree, arm) = (CERTIFICATES[1].1, CERTIFICATES[4].1);
+    for (text, from, to) in [(tree, "\"parent\": 1", "\"parent\": 2"), (arm, "\"row\": 0", "\"row\": 2")] {
+        assert!(text.contains(from), "{from}");
+        malformed(&text.replacen(from, to, 1));
+    }
     let position = verify("{\n  \"format\": ,\n}").unwrap_err();
     assert!(matches!(position, Rejected::Malformed { line: Some(2), column: Some(13), .. }), "{position:?}");
 }

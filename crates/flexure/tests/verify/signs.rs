@@ -48,6 +48,7 @@ const TRUE_ANYWAY: &[(&str, &[&str])] = &[
             "two-link-coupled-tanh/robot/links/com/0",
             "two-link-linear/robot/links/com/0",
             "two-link-tanh/robot/links/com/0",
+            "two-link-uneven/robot/links/com/0",
         ],
     ),
     (
@@ -63,6 +64,10 @@ const TRUE_ANYWAY: &[(&str, &[&str])] = &[
             "two-link-coupled-tanh/structure/1/witness/error/1",
             "two-link-tanh/structure/1/witness/error/0",
             "two-link-tanh/structure/1/witness/error/1",
+            "two-link-uneven/structure/0/witness/error/0",
+            "two-link-uneven/structure/0/witness/error/1",
+            "two-link-uneven/structure/1/witness/error/0",
+            "two-link-uneven/structure/1/witness/error/1",
         ],
     ),
     (

@@ -53,11 +53,8 @@ fn number(x: f64) -> Number {
 
 /// The same body as core and as this checker have it.
 fn body(noise: &mut Noise, k: usize) -> (robots::Body, Body) {
-    let parent = if k == 0 {
-        None
-    } else {
-        Some(((noise.next().abs() * 2.0) as usize).min(1).abs_diff(k - 1).min(k - 1))
-    };
+    // Mostly chains, and now and then a branch.
+    let parent = k.checked_sub(if k > 1 && noise.next() > 0.0 { 2 } else { 1 });
     let prismatic = noise.next() > 0.5;
     let (axis, rotation, translation) = (noise.unit(), noise.rotation(), noise.vector());
     let (mass, com) = (noise.next().abs(), noise.vector().map(|x| 0.3 * x));
@@ -78,6 +75,28 @@ fn body(noise: &mut Noise, k: usize) -> (robots::Body, Body) {
         inertia: [diagonal[0], a, b, diagonal[1], c, diagonal[2]].map(number),
     };
     (robots::Body { parent, kind, axis, rotation, translation, mass, com, inertia }, own)
+}
+
+/// What a slider carries is as far out as the slider goes: here the bound is reached.
+#[test]
+fn the_travel_of_a_joint_on_the_way_counts() {
+    let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let body = |parent, axis: [f64; 3], slides: bool, mass| Body {
+        parent,
+        travel: slides.then(|| [number(-0.25), number(0.5)]),
+        axis: axis.map(number),
+        rotation: unit.map(|row| row.map(number)),
+        translation: [0.0; 3].map(number),
+        mass: number(mass),
+        com: [0.125, 0.0, 0.0].map(number),
+        inertia: [0.0; 6].map(number),
+    };
+    let (x, z) = ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0]);
+    let bound =
+        mass_bound(&[body(None, z, false, 0.0), body(Some(0), x, true, 0.0), body(Some(1), z, false, 2.0)]);
+    let reached = 2.0 * 0.625 * 0.625;
+    let bound = bound.unwrap()[0][0].hi();
+    assert!(reached <= bound && bound < reached + 1e-12, "{bound}, reached {reached}");
 }
 
 #[test]
