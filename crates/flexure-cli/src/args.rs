@@ -110,6 +110,15 @@ pub struct Certify {
     /// Largest unknown torque on each motor in N m: certifies the tube that errors settle in.
     #[arg(long, value_name = "D", value_delimiter = ',', allow_negative_numbers = true)]
     pub disturbance: Option<Vec<f64>>,
+    /// Prove the rate once more, from the full inequality without any theorem.
+    #[arg(long)]
+    pub direct: bool,
+    /// With --direct: largest speed of the links, rad/s.
+    #[arg(long, value_name = "V", default_value_t = 5.0, allow_negative_numbers = true)]
+    pub speed: f64,
+    /// With --direct: boxes that may be looked at.
+    #[arg(long, value_name = "BOXES", default_value_t = 1000)]
+    pub budget: usize,
     /// Certificate file; default out/NAME.certificate.json.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,

@@ -3,6 +3,7 @@
 pub use flexure_core as core;
 
 pub mod certify;
+pub mod confirmation;
 mod eigenvalues;
 pub mod evaluate;
 pub mod experiment;

@@ -11,6 +11,7 @@ use crate::certify::witness::against;
 use crate::certify::{
     self, Certificate, Number, RateWitness, Request, State, Undecided, Verdict, certify, momentum,
 };
+use crate::confirmation::{Confirmation, confirm};
 use crate::io::{self, Problem, Problems, Scenario};
 use crate::paper::paper_rate;
 use crate::sampling::{Sampled, sample};
@@ -25,6 +26,17 @@ pub struct Question {
     pub rate: Option<f64>,
     /// Largest unknown torque on each motor [N m].
     pub disturbance: Option<Vec<f64>>,
+    /// Whether the direct engine shall prove the rate once more, and how hard it may try.
+    pub direct: Option<Direct>,
+}
+
+/// How hard the direct engine may try.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Direct {
+    /// Largest speed of the links in its region [rad/s].
+    pub speed: f64,
+    /// Boxes that it may look at.
+    pub budget: usize,
 }
 
 /// Where a claim shall hold.
@@ -51,6 +63,8 @@ pub struct Proof {
     pub paper_rate: f64,
     /// The links' momentum block sampled over all configurations.
     pub sampled: Sampled,
+    /// What the direct engine says, if it was asked.
+    pub confirmation: Option<Confirmation>,
     /// Options that were not given, and numbers that no source vouches for.
     pub assumptions: Vec<String>,
     /// Time that it took in s.
@@ -126,7 +140,14 @@ pub fn prove(scenario: &Scenario, question: &Question) -> Result<Proof, Problems
         (Verdict::Proved(certificate), Some(rate)) => at_rate(rate, certificate, &sampled, &damping),
         (verdict, _) => verdict,
     };
+    let confirmation = match (verdict.proved(), question.direct) {
+        (Some(certificate), Some(Direct { speed, budget })) => {
+            Some(confirm(scenario, certificate, speed, budget)?)
+        }
+        _ => None,
+    };
     Ok(Proof {
+        confirmation,
         paper_rate: paper_rate(&scenario.robot, &scenario.controller, &problem, sampled.largest_inertia),
         verdict,
         sampled,
@@ -192,7 +213,16 @@ impl Proof {
         let problem =
             |code, message: String, help: &str| scenario.places.problem("controller", code, message, help);
         match &self.verdict {
-            Verdict::Proved(_) => None,
+            Verdict::Proved(_) => match &self.confirmation {
+                Some(Verdict::Refuted(witness)) => {
+                    let message = format!(
+                        "{}: the direct engine finds {:.6e} 1/s at {:?}, below the certified rate: one of both is wrong",
+                        scenario.name, witness.rate, witness.at
+                    );
+                    Some((problem("contradiction", message, "do not trust the certificate; report it"), true))
+                }
+                _ => None,
+            },
             Verdict::Refuted(witness) => {
                 let message = format!(
                     "{}: the closed loop does not contract at the rate asked for: {} has {:.6} 1/s in one direction",

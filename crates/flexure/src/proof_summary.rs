@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::certify::certificate::{Block, BlockName, Norm, Side, Structure, StructureName};
 use crate::certify::{Certificate, Number, State, Verdict};
+use crate::confirmation::Confirmation;
 use crate::proof::Proof;
 use crate::sampling::Sampled;
 
@@ -36,6 +37,8 @@ pub struct ProofSummary {
     pub sampled: Sampled,
     /// Proved rate of the links' momentum block over the sampled one.
     pub tightness: Option<f64>,
+    /// What the direct engine says of the contraction rate; none if it was not asked.
+    pub direct: Option<DirectSummary>,
     /// Error tube under a disturbance.
     pub tube: Option<TubeSummary>,
     /// Where a claim fails.
@@ -90,6 +93,19 @@ pub struct StructureSummary {
     pub name: StructureName,
     /// Whether it is kept.
     pub holds: bool,
+}
+
+/// What the direct engine says.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DirectSummary {
+    /// `proved`, `refuted` or `undecided`.
+    pub verdict: &'static str,
+    /// The rate that it proved [1/s].
+    pub rate: Option<f64>,
+    /// Boxes looked at; none if it found a state that speaks against it.
+    pub boxes: Option<usize>,
+    /// Where it got stuck.
+    pub at: Option<String>,
 }
 
 /// An error tube.
@@ -187,6 +203,7 @@ impl ProofSummary {
             mass_matrix_positive_definite: certificate.is_some(),
             sampled: proof.sampled.clone(),
             tightness: certificate.map(|c| sigma_l(c) / proof.sampled.rate),
+            direct: proof.confirmation.as_ref().map(direct),
             tube: certificate.and_then(|c| c.tube.as_ref()).map(|tube| TubeSummary {
                 disturbance: floats(&tube.disturbance),
                 level: tube.level.approximate(),
@@ -198,6 +215,16 @@ impl ProofSummary {
             wall_seconds: proof.wall_seconds,
         }
     }
+}
+
+fn direct(confirmation: &Confirmation) -> DirectSummary {
+    let verdict = confirmation.word();
+    let (rate, boxes, at) = match confirmation {
+        Verdict::Proved(proved) => (Some(proved.rate), Some(proved.boxes), None),
+        Verdict::Refuted(witness) => (None, None, Some(format!("{:?}", witness.at))),
+        Verdict::Undecided(undecided) => (None, Some(undecided.spent), Some(undecided.at.clone())),
+    };
+    DirectSummary { verdict, rate, boxes, at }
 }
 
 fn region(certificate: &Certificate) -> RegionSummary {

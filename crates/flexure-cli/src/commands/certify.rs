@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use flexure::io::{Scenario, load_scenario, write_certificate};
-use flexure::proof::{Proof, Question, Region, prove};
+use flexure::proof::{Direct, Proof, Question, Region, prove};
 use flexure::proof_summary::ProofSummary;
 use flexure::report::proof_table;
 use serde::Serialize;
@@ -96,7 +96,13 @@ fn question(options: &Certify, scenario: &Scenario) -> Result<Question, Failure>
             "decay rate of the distance of two solutions; leave it out for the largest",
         ));
     }
-    Ok(Question { region, rate: options.rate, disturbance })
+    let (speed, budget) = (options.speed, options.budget);
+    if !(speed >= 0.0 && speed <= LARGEST) {
+        let message = format!("--speed is {speed} rad/s, must be >= 0 and at most 1e30");
+        return Err(Failure::input("range", message, "the largest speed of the links that is looked at"));
+    }
+    let direct = options.direct.then_some(Direct { speed, budget });
+    Ok(Question { region, rate: options.rate, disturbance, direct })
 }
 
 /// Largest and smallest number that an option takes: products of a few of them stay finite.

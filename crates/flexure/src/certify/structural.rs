@@ -17,6 +17,9 @@ use super::structure::{self, SideOf};
 use super::verdict::{Undecided, Verdict};
 use super::witness::{RateWitness, State, against};
 
+/// By how much the bound of a measure stays above what was found, relative to it: others may round differently.
+const RESERVE: f64 = 1e-13;
+
 /// What is to be proved of a closed loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
@@ -149,7 +152,7 @@ fn measures(sides: &[&Position; 2], blocks: &[Block]) -> Vec<Measure> {
     let entries = [Side::Link, Side::Motor].into_iter().zip(sides).zip(blocks);
     entries
         .flat_map(|((side, position), block)| {
-            let up = |x: f64| Number::decimal(x.next_up());
+            let up = |x: f64| Number::decimal(x + RESERVE * x.abs());
             let negative = |rate: &Number| match rate {
                 Number::Decimal(text) | Number::Between([text, _]) => Number::Decimal(format!("-{text}")),
             };

@@ -9,7 +9,9 @@ mod shaping;
 pub use controller::{CONTROLLERS, Law, command, law, law_over};
 pub use reference::{AnyReference, REFERENCES};
 pub(crate) use robot::vector;
-pub use robot::{MAX_JOINTS, RobotVisitor, supported, with_enclosed_robot, with_robot};
+pub use robot::{
+    MAX_JOINTS, RobotVisitor, TwinVisitor, supported, with_enclosed_robot, with_robot, with_twins,
+};
 pub use shaping::{AnyShaping, SHAPING};
 
 /// A registered name and what it stands for.

@@ -2,7 +2,7 @@
 
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links};
-use flexure_core::robots::{Body, Pendulum, PlanarTwoLink, Tree};
+use flexure_core::robots::{self, Body, Tree};
 use flexure_core::scalar::{Interval, Scalar};
 
 use crate::io;
@@ -15,8 +15,25 @@ pub trait RobotVisitor<C: Scalar = f64> {
     fn visit<L: Links<C, N> + Sync, const N: usize>(self, robot: Fjr<C, L, N>) -> Self::Output;
 }
 
-/// Largest joint count of a tree. To raise it, add the numbers to the list in this file and build again.
+/// Something to do with a robot twice over: with the decimals of its files enclosed, and in `f64`.
+pub trait TwinVisitor {
+    /// What comes of it.
+    type Output;
+    /// Does it.
+    fn visit<E: Links<Interval, N>, F: Links<f64, N>, const N: usize>(
+        self,
+        enclosed: Fjr<Interval, E, N>,
+        point: Fjr<f64, F, N>,
+    ) -> Self::Output;
+}
+
+/// Largest joint count of a tree. To raise it, add the numbers to the list below and build again.
 pub const MAX_JOINTS: usize = 10;
+
+/// Hands the joint counts that this program is built for to another macro, after its other arguments.
+macro_rules! joint_counts {
+    ($then:ident, $($argument:expr),+) => { $then!($($argument),+, 1 2 3 4 5 6 7 8 9 10) };
+}
 
 /// Calls `visitor` with the robot that `data` describes.
 ///
@@ -35,6 +52,43 @@ pub fn with_enclosed_robot<V: RobotVisitor<Interval>>(
     visitor: V,
 ) -> Result<V::Output, io::Problems> {
     over(data, &data.enclosed, |x| data.bounds(x), Interval::midpoint, visitor)
+}
+
+/// Calls `visitor` with the robot that `data` describes, enclosed and in `f64`.
+///
+/// # Errors
+/// For a tree with more than [`MAX_JOINTS`] moving joints.
+pub fn with_twins<V: TwinVisitor>(data: &io::Robot, visitor: V) -> Result<V::Output, io::Problems> {
+    let bounds = |x| data.bounds(x);
+    let gravity = data.gravity.map(bounds);
+    macro_rules! tree {
+        ($enclosed:expr, $bodies:expr, $($n:literal)*) => {
+            match $bodies.len() {
+                $($n => visitor.visit(
+                    robot(data, tree::<_, $n>($enclosed, gravity, Interval::midpoint), bounds),
+                    robot(data, tree::<_, $n>($bodies, data.gravity, |x| x), |x| x),
+                ),)*
+                joints => return Err(too_many(data, joints)),
+            }
+        };
+    }
+    use io::Links::{Pendulum, PlanarTwoLink, Tree};
+    Ok(match (&data.enclosed, &data.links) {
+        (Tree(enclosed), Tree(bodies)) => joint_counts!(tree, enclosed, bodies),
+        (
+            &PlanarTwoLink { mass, length, com, inertia },
+            &PlanarTwoLink { mass: m, length: l, com: c, inertia: i },
+        ) => visitor.visit::<_, _, 2>(
+            robot(data, robots::PlanarTwoLink::new(mass, length[0], com, inertia), bounds),
+            robot(data, robots::PlanarTwoLink::new(m, l[0], c, i), |x| x),
+        ),
+        (&Pendulum { mass, com, inertia }, &Pendulum { mass: m, com: c, inertia: i }) => visitor
+            .visit::<_, _, 1>(
+                robot(data, pendulum(mass, com, inertia, gravity), bounds),
+                robot(data, pendulum(m, c, i, data.gravity), |x| x),
+            ),
+        _ => unreachable!("enclosed links are of the same kind"),
+    })
 }
 
 /// The robot of `links` with the other numbers of `data` through `number`; `approximate` gives a float near a constant.
@@ -56,18 +110,22 @@ fn over<C: Scalar + Sync, V: RobotVisitor<C>>(
     }
     Ok(match links {
         io::Links::PlanarTwoLink { mass, length, com, inertia } => {
-            visitor.visit::<_, 2>(robot(data, PlanarTwoLink::new(*mass, length[0], *com, *inertia), number))
+            let links = robots::PlanarTwoLink::new(*mass, length[0], *com, *inertia);
+            visitor.visit::<_, 2>(robot(data, links, number))
         }
         &io::Links::Pendulum { mass, com, inertia } => {
-            let [x, y, z] = gravity.map(C::square);
-            let links = Pendulum {
-                inertia: inertia + mass * com.square(),
-                weight_moment: mass * com * (x + y + z).sqrt(),
-            };
-            visitor.visit::<_, 1>(robot(data, links, number))
+            visitor.visit::<_, 1>(robot(data, pendulum(mass, com, inertia, gravity), number))
         }
-        io::Links::Tree(bodies) => tree!(bodies, 1 2 3 4 5 6 7 8 9 10),
+        io::Links::Tree(bodies) => joint_counts!(tree, bodies),
     })
+}
+
+fn pendulum<C: Scalar>(mass: C, com: C, inertia: C, gravity: [C; 3]) -> robots::Pendulum<C> {
+    let [x, y, z] = gravity.map(C::square);
+    robots::Pendulum {
+        inertia: inertia + mass * com.square(),
+        weight_moment: mass * com * (x + y + z).sqrt(),
+    }
 }
 
 /// Whether this program is built for the robot's joint count.

@@ -83,6 +83,21 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
         lines
             .push(format!("structure    {} {name}", if structure.holds { "keeps the" } else { "loses the" }));
     }
+    if let Some(direct) = &summary.direct {
+        lines.push(match (direct.rate, direct.boxes, &direct.at) {
+            (Some(rate), Some(boxes), _) => format!(
+                "direct       {} 1/s proved from the full inequality, {boxes} {}",
+                significant(rate, 6),
+                if boxes == 1 { "box" } else { "boxes" }
+            ),
+            (_, boxes, at) => format!(
+                "direct       {} after {} boxes, at {}",
+                direct.verdict,
+                boxes.unwrap_or_default(),
+                at.as_deref().unwrap_or(NONE)
+            ),
+        });
+    }
     if let Some(tube) = &summary.tube {
         lines.push(format!(
             "tube         |d_m| ≤ {} N m: W comes below {} J, where |q̃_i| ≤ {} rad",
