@@ -1,7 +1,11 @@
 //! What proofs cost: `cargo bench -p flexure --bench certify`. The rates that they prove are printed first.
 
 use divan::{Bencher, black_box};
-use flexure::certify::direct::{Flow, best_rate, prove};
+use flexure::certify::direct::{self, Flow, best_rate};
+use flexure::certify::{Certificate, Number, Problem, certify};
+use flexure::io::load_scenario;
+use flexure::proof::{Question, Region, prove};
+use flexure::verify::verify;
 use flexure_core::control::{CoupledTanh, Linear, Tanh};
 
 #[path = "../tests/direct/arm.rs"]
@@ -18,7 +22,56 @@ const TANH: f64 = 0.295_981_114_963_205_7;
 const LINEAR: f64 = 30.0;
 const COUPLED_TANH: f64 = 10.0 - std::f64::consts::SQRT_2;
 
+/// Block rates on |q̃_i| ≤ 3: σ_l at q_l2 = 0, σ_m, and φ_1's convergence rate 30 tanh(3)/3.
+const SIGMA_L: f64 = 69.013_154_939_393_064;
+const SIGMA_M: f64 = 44.347_826_086_956_522;
+const TANH_CONVERGENCE: f64 = 9.950_547_536_867_305;
+
+/// A built-in scenario with errors of up to `error` rad.
+fn problem(scenario: &str, error: f64) -> Problem {
+    let scenario = load_scenario(scenario).expect("built in");
+    let region = Region::Errors(vec![error; 2 * scenario.robot.joint_count()]);
+    flexure::proof::problem(&scenario, &Question { region, ..Question::default() })
+        .expect("a constant metric")
+}
+
+fn certificate(scenario: &str, error: f64) -> Certificate {
+    certify(&problem(scenario, error)).proved().expect("proved").clone()
+}
+
+fn structural() {
+    println!("structural engine, share of the exact rate that is proved:");
+    let share = |name: &str, rate: &Number, exact: f64| {
+        println!(
+            "  {name}: {} 1/s, exact rate times 1 − {:.0e}",
+            rate.approximate(),
+            1.0 - rate.approximate() / exact
+        );
+    };
+    let tanh = certificate("two-link-tanh", 3.0);
+    share("σ_l", &tanh.blocks[2].contraction, SIGMA_L);
+    share("σ_m", &tanh.blocks[3].contraction, SIGMA_M);
+    share("φ_1", &tanh.contraction_rate, TANH);
+    share("φ_1, convergence", &tanh.convergence_rate, TANH_CONVERGENCE);
+    share("φ_2", &certificate("two-link-linear", 3.0).contraction_rate, LINEAR);
+    share("φ_3", &certificate("two-link-coupled-tanh", 3.0).contraction_rate, COUPLED_TANH);
+    println!("σ_l of trees, proved over densely sampled:");
+    for name in
+        ["planar-2r-tanh", "planar-3r-tanh", "tomei-3r-tanh", "tomei-3r-5kg-tanh", "panda-tanh-smooth"]
+    {
+        let proof =
+            prove(&load_scenario(name).expect("built in"), &Question::default()).expect("a constant metric");
+        let proved = proof.verdict.proved().expect("proved").blocks[2].contraction.approximate();
+        println!(
+            "  {name}: {proved:.6} of {:.6} 1/s, {:.2} %",
+            proof.sampled.rate,
+            100.0 * proved / proof.sampled.rate
+        );
+    }
+}
+
 fn main() {
+    structural();
     println!("direct engine, share of the true rate that is proved:");
     for (name, flow, exact) in
         [("φ_1", &phi_1() as &dyn Flow, TANH), ("φ_2", &phi_2(), LINEAR), ("φ_3", &phi_3(), COUPLED_TANH)]
@@ -48,12 +101,32 @@ fn phi_3() -> ArmFlow<CoupledTanh<Interval, 2>, CoupledTanh<f64, 2>> {
     flow(coupled_tanh, coupled_tanh, &region())
 }
 
+/// A certificate, and checking it.
+mod structural {
+    use super::{Bencher, black_box, certificate, certify, problem, verify};
+
+    const SCENARIOS: [&str; 4] =
+        ["two-link-tanh", "two-link-linear", "two-link-coupled-tanh", "panda-tanh-smooth"];
+
+    #[divan::bench(args = SCENARIOS)]
+    fn prove(bencher: Bencher, scenario: &str) {
+        let problem = problem(scenario, 3.0);
+        bencher.bench_local(|| certify(black_box(&problem)));
+    }
+
+    #[divan::bench(args = SCENARIOS)]
+    fn check(bencher: Bencher, scenario: &str) {
+        let text = serde_json::to_string(&certificate(scenario, 3.0)).expect("no maps");
+        bencher.bench_local(|| verify(black_box(&text)).is_ok());
+    }
+}
+
 /// One attempt at a rate that is given.
 mod direct_proof {
-    use super::{BUDGET, Bencher, COUPLED_TANH, Flow, TANH, black_box, phi_1, phi_3, prove};
+    use super::{BUDGET, Bencher, COUPLED_TANH, Flow, TANH, black_box, direct, phi_1, phi_3};
 
     fn time(bencher: Bencher, flow: &dyn Flow, exact: f64) {
-        bencher.bench_local(|| prove(black_box(flow), 0.9999 * exact, BUDGET));
+        bencher.bench_local(|| direct::prove(black_box(flow), 0.9999 * exact, BUDGET));
     }
 
     #[divan::bench]

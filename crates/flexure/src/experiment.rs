@@ -3,8 +3,12 @@
 use rayon::prelude::*;
 
 use crate::io::{self, Controller, Hold, Problems, Scenario, load_scenario};
+use crate::proof::{Direct, Proof, Question, Region, certified_rate, prove};
+use crate::proof_summary::ProofSummary;
 use crate::report::number::engineering;
-use crate::report::{Assumption, FigureOptions, Report, RunReport, comparison, four_panel};
+use crate::report::{
+    Assumption, CertificateReport, FigureOptions, Report, RunReport, comparison, four_panel,
+};
 use crate::run::{Run, run};
 use crate::summary::Summary;
 
@@ -35,13 +39,51 @@ impl Experiment {
     /// # Errors
     /// If the robot has too many joints or the reference is no path.
     pub fn new(scenario: Scenario, progress: &(dyn Fn(f64) + Sync)) -> Result<Self, Problems> {
-        let run = run(&scenario, progress)?;
+        let mut run = run(&scenario, progress)?;
+        run.summary.rate_certified = certified_rate(&scenario)?;
         let ended = run.divergence.map(|divergence| format!("; diverged at t = {:.3} s", divergence.time));
         let subtitle = describe(&scenario) + &ended.unwrap_or_default();
         let options = FigureOptions { title: scenario.name.clone(), subtitle };
         let figure = four_panel(&run.trace, &options);
         Ok(Self { scenario, run, figure })
     }
+}
+
+/// The experiments whose rates are proved in the report: one for each shaping function.
+pub const CERTIFIED: [&str; 3] = ["two-link-tanh", "two-link-linear", "two-link-coupled-tanh"];
+
+/// What is asked of them: position errors of up to 3 rad, as far as the arm turns, and both engines.
+fn question(scenario: &Scenario) -> Question {
+    let errors = vec![3.0; 2 * scenario.robot.joint_count()];
+    Question {
+        region: Region::Errors(errors),
+        direct: Some(Direct { speed: 5.0, budget: 1000 }),
+        ..Question::default()
+    }
+}
+
+/// A proof, and what it is about.
+#[derive(Clone, Debug)]
+pub struct Certified {
+    /// The scenario.
+    pub scenario: Scenario,
+    /// What was proved of it.
+    pub proof: Proof,
+}
+
+/// Proves the rates of the paper's experiments.
+///
+/// # Errors
+/// Only if a built-in file is broken.
+pub fn certificates() -> Result<Vec<Certified>, Problems> {
+    CERTIFIED
+        .par_iter()
+        .map(|name| {
+            let scenario = load_scenario(name)?;
+            let proof = prove(&scenario, &question(&scenario))?;
+            Ok(Certified { scenario, proof })
+        })
+        .collect()
 }
 
 /// One line about a scenario.
@@ -79,13 +121,14 @@ pub fn reproduce(progress: &(dyn Fn(usize, f64) + Sync)) -> Result<Vec<Experimen
 }
 
 /// The report of some experiments.
-pub fn report(experiments: &[Experiment]) -> Report {
+pub fn report(experiments: &[Experiment], certificates: &[Certified]) -> Report {
     let traces: Vec<_> = experiments.iter().map(|e| (e.scenario.name.as_str(), &e.run.trace)).collect();
     Report {
         title: "Virtual-contraction control of a flexible-joint robot".to_owned(),
         introduction: INTRODUCTION.to_owned(),
         runs: experiments.iter().map(run_report).collect(),
         comparison_svg: Some(comparison(&traces)),
+        certificates: certificates.iter().map(certificate_report).collect(),
         assumptions: assumptions(experiments),
         provenance: vec![
             format!("flexure {}", env!("CARGO_PKG_VERSION")),
@@ -100,6 +143,21 @@ const INTRODUCTION: &str = "The experiments of Reyes-Báez, van der Schaft, Jaya
     in simulation: a planar two-link arm with elastic joints follows sin t on both joints under the three shaping \
     functions of the paper. Each runs twice: from rest at zero, where the reference already moves at 1 rad/s, and \
     with a reference that joins the sine smoothly from rest.";
+
+fn certificate_report(certified: &Certified) -> CertificateReport {
+    let Certified { scenario, proof } = certified;
+    let Controller::Vcbc { phi, .. } = &scenario.controller;
+    CertificateReport {
+        summary: ProofSummary::new(&scenario.name, proof),
+        phi: phi.name().to_owned(),
+        file: certificate_name(&scenario.name),
+    }
+}
+
+/// Name of the certificate file of a scenario.
+pub fn certificate_name(scenario: &str) -> String {
+    format!("{scenario}.certificate.json")
+}
 
 fn run_report(experiment: &Experiment) -> RunReport {
     RunReport {

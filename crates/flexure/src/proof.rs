@@ -77,13 +77,8 @@ pub struct Proof {
 /// Where no certificate can speak of it: with the place and the reason.
 pub fn problem(scenario: &Scenario, question: &Question) -> Result<certify::Problem, Problems> {
     let io::Controller::Vcbc { phi, link, motor } = &scenario.controller;
-    if link.metric_hardening.as_ref().is_some_and(|h| h.iter().any(|&h| h != 0.0)) {
-        let message = "controller.link.metric_hardening is not 0: certificates take a constant metric";
-        let help = "with a Π_l that depends on the error the rate depends on the speed of the error too; leave it out";
-        return Err(scenario
-            .places
-            .problem("controller.link.metric_hardening", "metric", message, help)
-            .into());
+    if let Some(problem) = uneven_metric(scenario) {
+        return Err(problem.into());
     }
     let phi = match phi {
         io::Phi::Tanh => Phi::Tanh,
@@ -122,6 +117,16 @@ pub fn problem(scenario: &Scenario, question: &Question) -> Result<certify::Prob
         region,
         disturbance,
     })
+}
+
+/// What to say of a metric that depends on the error, if it does.
+fn uneven_metric(scenario: &Scenario) -> Option<Problem> {
+    let io::Controller::Vcbc { link, .. } = &scenario.controller;
+    link.metric_hardening.as_ref().filter(|hardening| hardening.iter().any(|&h| h != 0.0))?;
+    let message = "controller.link.metric_hardening is not 0: certificates take a constant metric";
+    let help =
+        "with a Π_l that depends on the error the rate depends on the speed of the error too; leave it out";
+    Some(scenario.places.problem("controller.link.metric_hardening", "metric", message, help))
 }
 
 /// Proves what `question` asks of `scenario`.
@@ -241,6 +246,18 @@ impl Proof {
             }
         }
     }
+}
+
+/// The contraction rate that is proved of `scenario` without further options [1/s]; none if none is.
+///
+/// # Errors
+/// If its level set cannot be found.
+pub fn certified_rate(scenario: &Scenario) -> Result<Option<f64>, Problems> {
+    if uneven_metric(scenario).is_some() {
+        return Ok(None);
+    }
+    let problem = problem(scenario, &Question::default())?;
+    Ok(certify(&problem).proved().map(|certificate| certificate.contraction_rate.approximate()))
 }
 
 fn gains(scenario: &Scenario, gains: &io::SideGains) -> Gains {

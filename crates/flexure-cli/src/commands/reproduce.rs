@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use flexure::experiment::{REPRODUCED, reproduce as experiments};
-use flexure::io::{prepare, write_experiment, write_report};
-use flexure::report::summary_table;
+use flexure::experiment::{REPRODUCED, certificates, reproduce as experiments};
+use flexure::io::{prepare, write_certificates, write_experiment, write_report};
+use flexure::proof_summary::ProofSummary;
+use flexure::report::{certificate_table, summary_table};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -16,6 +17,8 @@ use crate::progress::Progress;
 #[derive(Serialize)]
 struct Reproduction<'a> {
     scenarios: Vec<Outcome<'a>>,
+    certificates: Vec<ProofSummary>,
+    certificate_files: Vec<PathBuf>,
     report: PathBuf,
 }
 
@@ -30,15 +33,22 @@ pub fn reproduce(out: &Path, json: bool) -> Result<(), Failure> {
         .par_iter()
         .map(|experiment| write_experiment(out, experiment))
         .collect::<Result<_, _>>()?;
-    let report = write_report(out, &experiments)?;
+    let certified = certificates()?;
+    let certificate_files = write_certificates(out, &certified)?;
+    let report = write_report(out, &experiments, &certified)?;
+    let certificates: Vec<_> = certified
+        .iter()
+        .map(|certified| ProofSummary::new(&certified.scenario.name, &certified.proof))
+        .collect();
     if json {
         let scenarios = experiments.iter().zip(files).map(|(e, files)| Outcome::new(e, files)).collect();
-        print::json(&Reproduction { scenarios, report })?;
+        print::json(&Reproduction { scenarios, certificates, certificate_files, report })?;
     } else {
         let summaries: Vec<_> = experiments.iter().map(|e| e.run.summary.clone()).collect();
         print::line(&summary_table(&summaries))?;
+        print::line(&certificate_table(&certificates))?;
         print::line(&format!(
-            "wrote {}, and figures (svg, png) and traces (csv) beside it",
+            "wrote {}, and figures (svg, png), traces (csv) and certificates (json) beside it",
             report.display()
         ))?;
     }

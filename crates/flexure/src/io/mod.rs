@@ -52,7 +52,9 @@ pub use document::Places;
 pub use initial::Initial;
 pub use joints::Limits;
 pub use links::{Body, DriveDefaults, JointKind, Links, MovingJoint};
-pub use outputs::{prepare, write_certificate, write_experiment, write_report, write_trace};
+pub use outputs::{
+    prepare, write_certificate, write_certificates, write_experiment, write_report, write_trace,
+};
 pub use plant::Plant;
 pub use provenance::Assumption;
 pub use reference::{Profile, Reference, Term};

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::atomic::{WriteError, write_atomic};
 use crate::certify::Certificate;
-use crate::experiment::{Experiment, report};
+use crate::experiment::{Certified, Experiment, certificate_name, report};
 use crate::report::{html, png};
 use crate::trace::Trace;
 
@@ -24,14 +24,34 @@ pub fn write_experiment(folder: &Path, experiment: &Experiment) -> Result<Vec<Pa
     Ok(vec![trace, svg, picture])
 }
 
+/// Writes the certificates into `folder`, which is created if missing; returns their paths.
+///
+/// # Errors
+/// If one cannot be written.
+pub fn write_certificates(folder: &Path, certificates: &[Certified]) -> Result<Vec<PathBuf>, WriteError> {
+    let mut paths = Vec::new();
+    for Certified { scenario, proof } in certificates {
+        if let Some(certificate) = proof.verdict.proved() {
+            let path = folder.join(certificate_name(&scenario.name));
+            write_certificate(&path, certificate)?;
+            paths.push(path);
+        }
+    }
+    Ok(paths)
+}
+
 /// Writes `report.html` into `folder`, which is created if missing; returns its path.
 ///
 /// # Errors
 /// If it cannot be written.
-pub fn write_report(folder: &Path, experiments: &[Experiment]) -> Result<PathBuf, WriteError> {
+pub fn write_report(
+    folder: &Path,
+    experiments: &[Experiment],
+    certificates: &[Certified],
+) -> Result<PathBuf, WriteError> {
     create(folder)?;
     let path = folder.join("report.html");
-    let page = html(&report(experiments));
+    let page = html(&report(experiments, certificates));
     write_atomic(&path, |out| out.write_all(page.as_bytes()))?;
     Ok(path)
 }

@@ -2,6 +2,7 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 
+use super::certificates::{self, CertificateReport};
 use super::markdown::{ERRATA, body, subscripts};
 use super::number::{NONE, engineering};
 use crate::summary::Summary;
@@ -17,6 +18,8 @@ pub struct Report {
     pub runs: Vec<RunReport>,
     /// Figure with all runs in one axis, from [`comparison`](super::comparison()).
     pub comparison_svg: Option<String>,
+    /// What was proved.
+    pub certificates: Vec<CertificateReport>,
     /// Numbers that no source gives.
     pub assumptions: Vec<Assumption>,
     /// How the numbers came about: version, seeds, what makes them reproducible.
@@ -81,6 +84,9 @@ pub fn html(report: &Report) -> String {
                         }
                     }
                 }
+                @if !report.certificates.is_empty() {
+                    section id="certificates" { h2 { "Certificates" } (certificates::section(&report.certificates)) }
+                }
                 section id="assumptions" { h2 { "Assumptions" } (assumptions(&report.assumptions)) }
                 section id="errata" { h2 { "Slips of the paper" } div.scroll.prose { (PreEscaped(body(ERRATA))) } }
                 footer { h2 { "How this page was made" }
@@ -102,6 +108,7 @@ fn contents(report: &Report) -> Markup {
             a href="#summary" { "Summary" }
             @for (index, run) in report.runs.iter().enumerate() { a href={ "#run-" (index + 1) } { (run.summary.name) } }
             @if report.comparison_svg.is_some() { a href="#comparison" { "Comparison" } }
+            @if !report.certificates.is_empty() { a href="#certificates" { "Certificates" } }
             a href="#assumptions" { "Assumptions" }
             a href="#errata" { "Slips of the paper" }
         }
@@ -166,14 +173,14 @@ fn summary_table(runs: &[RunReport]) -> Markup {
         p.note {
             "Settling time: after it every " (symbols("|e_l|")) " stays below 1 mrad; — if that never happens. "
             "Rate sampled: the smallest contraction rate evaluated along the run, a sample and not a proof. "
-            @if runs.iter().any(|run| run.summary.rate_certified.is_none()) { "— as rate certified: proof not part of this version. " }
+            "Rate certified: proved, on the region that `flexure certify` takes by itself; — where nothing was proved. "
             "Energy drift: the energy balance's residual, relative to the energy that went through the robot."
         }
     }
 }
 
 /// `u_m` with its subscript lowered.
-fn symbols(text: &str) -> Markup {
+pub(super) fn symbols(text: &str) -> Markup {
     markup! { (PreEscaped(subscripts(text))) }
 }
 

@@ -3,6 +3,7 @@
 //! Nothing here reads a clock, a file or a font of the machine: the same runs give the same bytes everywhere.
 
 mod axes;
+mod certificates;
 pub mod comparison;
 mod curve;
 pub mod decimate;
@@ -18,9 +19,10 @@ mod sheet;
 mod style;
 pub mod table;
 
+pub use certificates::CertificateReport;
 pub use comparison::comparison;
 pub use figure::{FigureOptions, four_panel};
 pub use html::{Assumption, Report, RunReport, html};
-pub use proof_table::proof_table;
+pub use proof_table::{certificate_table, proof_table};
 pub use raster::{RasterError, png};
 pub use table::{joint_table, summary_table};

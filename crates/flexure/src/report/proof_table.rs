@@ -20,6 +20,36 @@ pub fn proof_table(summary: &ProofSummary) -> String {
     text
 }
 
+/// What was proved of several scenarios, a row each.
+pub fn certificate_table(summaries: &[ProofSummary]) -> String {
+    let titles = [
+        "proved",
+        "errors\nup to\n[rad]",
+        "con-\ntraction\n[1/s]",
+        "conver-\ngence\n[1/s]",
+        "paper's\nformula\n[1/s]",
+        "σ_l\n\n[1/s]",
+        "σ_m\n\n[1/s]",
+        "full\ninequality\n[1/s]",
+    ];
+    let mut table = headed(titles.into_iter());
+    let rate = |rate: Option<f64>| right(rate.map_or(NONE.to_owned(), |rate| significant(rate, 6)));
+    for summary in summaries {
+        let region = summary.region.as_ref().and_then(|region| region.error.as_ref());
+        table.add_row(vec![
+            comfy_table::Cell::new(&summary.name),
+            right(region.map_or("any".to_owned(), |errors| list(errors))),
+            rate(summary.contraction_rate),
+            rate(summary.convergence_rate),
+            right(short(summary.paper_rate, 4)),
+            rate(summary.blocks.map(|blocks| blocks.sigma_l)),
+            rate(summary.blocks.map(|blocks| blocks.sigma_m)),
+            rate(summary.direct.as_ref().and_then(|direct| direct.rate)),
+        ]);
+    }
+    table.to_string()
+}
+
 fn rates(summary: &ProofSummary, contraction: BlockRates, convergence: BlockRates) -> String {
     let mut table = headed(["block", "contraction\n[1/s]", "convergence\n[1/s]"].into_iter());
     let number = |x: Option<f64>| right(x.map_or(NONE.to_owned(), |x| significant(x, 6)));
