@@ -105,6 +105,20 @@ impl<C: Scalar, const N: usize> AnyReference<C, N> {
     }
 }
 
+impl<const N: usize> AnyReference<Interval, N> {
+    /// Times in s at which the fourth derivative may jump; anywhere else it is continuous. Between the samples of a path
+    /// derivatives are continuous up to the rounding of its coefficients only, so that all of them count.
+    pub fn breaks(&self) -> Vec<Interval> {
+        match self {
+            Self::Sine(_) | Self::Multisine(_) => Vec::new(),
+            Self::PointToPoint(PointToPoint { step: Smoothstep::Nonic, .. }) => Vec::new(),
+            Self::PointToPoint(motion) => vec![motion.start, motion.start + motion.duration],
+            Self::Samples(path) => path.knots().collect(),
+            Self::SmoothStart(joined) => joined.then.breaks(),
+        }
+    }
+}
+
 /// The spline through the samples of a scenario.
 fn path<const N: usize>(
     scenario: &io::Scenario,
