@@ -100,8 +100,8 @@ impl<R> RobotVisitor<Interval> for Build<'_, R> {
         suitable(scenario)?;
         let reference = AnyReference::<Interval, N>::enclosed(scenario)?;
         let law = law_over(&scenario.controller, |x| scenario.bounds(x));
-        let breaks = reference.breaks();
-        Ok((self.then)(&Enclosed { robot, law, reference, breaks }))
+        let [breaks, kinks] = [reference.breaks(), reference.kinks()];
+        Ok((self.then)(&Enclosed { robot, law, reference, breaks, kinks }))
     }
 }
 
@@ -195,7 +195,7 @@ fn verdict(
 fn storage(scenario: &Scenario, system: &dyn ClosedLoop) -> f64 {
     let initial = &scenario.initial;
     let enclosed = |values: &[f64]| values.iter().map(|&x| scenario.bounds(x)).collect::<Vec<_>>();
-    let constant = |values: &[f64]| enclosed(values).into_iter().map(Slope::constant).collect::<Vec<_>>();
+    let constant = |values: &[f64]| enclosed(values).into_iter().map(Slope::value).collect::<Vec<_>>();
     let x = Place {
         q_l: constant(&initial.q_l),
         q_m: constant(&initial.q_m),
@@ -203,13 +203,16 @@ fn storage(scenario: &Scenario, system: &dyn ClosedLoop) -> f64 {
         v_m: constant(&initial.dq_m),
     };
     let jets = system.reference(Interval::ZERO);
-    let q_ld: Vec<_> = jets.iter().map(|jet| std::array::from_fn(|k| Slope::constant(jet[k]))).collect();
+    let q_ld: Vec<_> = jets.iter().map(|jet| std::array::from_fn(|k| Slope::value(jet[k]))).collect();
     let answer = system.command(&x, &q_ld);
     let [link, motor, inertia] = system.metrics();
     let form = |metric: &[Interval], e: &[Slope]| {
-        metric.iter().zip(e).fold(Interval::ZERO, |sum, (&metric, e)| sum + metric * e.value.square())
+        metric
+            .iter()
+            .zip(e)
+            .fold(Interval::ZERO, |sum, (&metric, e)| sum + metric * e.coefficient(0).square())
     };
-    let s_l: Vec<_> = answer.s_l.iter().map(|s| s.value).collect();
+    let s_l: Vec<_> = answer.s_l.iter().map(|s| s.coefficient(0)).collect();
     let twice = form(&link, &answer.e_l)
         + form(&motor, &answer.e_m)
         + form(&inertia, &answer.s_m)

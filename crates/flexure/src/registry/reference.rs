@@ -117,6 +117,19 @@ impl<const N: usize> AnyReference<Interval, N> {
             Self::SmoothStart(joined) => joined.then.breaks(),
         }
     }
+
+    /// Times in s at which the fifth derivative may jump, beside the [`breaks`](Self::breaks); anywhere else all
+    /// derivatives are continuous.
+    pub fn kinks(&self) -> Vec<Interval> {
+        match self {
+            Self::Sine(_) | Self::Multisine(_) | Self::Samples(_) => Vec::new(),
+            Self::PointToPoint(motion) => vec![motion.start, motion.start + motion.duration],
+            Self::SmoothStart(joined) => {
+                let ends = [Interval::ZERO, joined.duration];
+                joined.then.kinks().into_iter().chain(ends).collect()
+            }
+        }
+    }
 }
 
 /// The spline through the samples of a scenario.

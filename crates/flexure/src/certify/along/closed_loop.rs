@@ -1,16 +1,16 @@
-//! A robot under its law along a reference, over intervals with one derivative, for callers that know its size only when
+//! A robot under its law along a reference, over intervals with derivatives, for callers that know its size only when
 //! they run.
 
 use flexure_core::control::{Command, Input, Metric, Shaping, Vcbc};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, MassFactor, Motion};
 use flexure_core::reference::Reference;
-use flexure_core::scalar::{Dual, Interval, Jet, Scalar};
+use flexure_core::scalar::{Interval, Jet, Scalar};
 
 use crate::certify::matrix::Symmetric;
 
-/// A number over a box and its derivative in one direction.
-pub type Slope = Dual<Interval, 1>;
+/// A number over a box as a series in one direction: its value, its first derivative and half its second.
+pub type Slope = Jet<Interval, 3>;
 
 /// A motion, one number per joint each: positions in rad, velocities [rad/s].
 #[derive(Clone, Debug)]
@@ -47,9 +47,11 @@ pub trait ClosedLoop: Sync {
     /// Number of joints.
     fn joints(&self) -> usize;
     /// Taylor coefficients of the reference in rad/sᵏ over the times `t` in s.
-    fn reference(&self, t: Interval) -> Vec<[Interval; 6]>;
+    fn reference(&self, t: Interval) -> Vec<[Interval; 7]>;
     /// Times in s at which the reference's fourth derivative may jump.
     fn breaks(&self) -> &[Interval];
+    /// Times in s at which its fifth derivative may jump, beside those.
+    fn kinks(&self) -> &[Interval];
     /// φ_l [rad/s] at the link position errors `e_l` in rad.
     fn approach(&self, e_l: &[Slope]) -> Vec<Slope>;
     /// What the law says at `x`, with the Taylor coefficients `q_ld` of the reference in rad/sᵏ.
@@ -62,7 +64,7 @@ pub trait ClosedLoop: Sync {
     fn metrics(&self) -> [Vec<Interval>; 3];
 }
 
-/// A robot, its law with a constant Π_l, a reference and the times where its fourth derivative may jump.
+/// A robot, its law with a constant Π_l, a reference and the times where its derivatives may jump.
 #[derive(Clone, Debug)]
 pub struct Enclosed<L, Pl, Pm, R, const N: usize> {
     /// The robot.
@@ -71,8 +73,10 @@ pub struct Enclosed<L, Pl, Pm, R, const N: usize> {
     pub law: Vcbc<Interval, Pl, Pm, N>,
     /// The reference in rad.
     pub reference: R,
-    /// Times in s.
+    /// Times in s at which its fourth derivative may jump.
     pub breaks: Vec<Interval>,
+    /// Times in s at which its fifth derivative may.
+    pub kinks: Vec<Interval>,
 }
 
 impl<L, Pl, Pm, R, const N: usize> ClosedLoop for Enclosed<L, Pl, Pm, R, N>
@@ -86,13 +90,17 @@ where
         N
     }
 
-    fn reference(&self, t: Interval) -> Vec<[Interval; 6]> {
-        let jets: Vector<Jet<Interval, 6>, N> = self.reference.at(t);
+    fn reference(&self, t: Interval) -> Vec<[Interval; 7]> {
+        let jets: Vector<Jet<Interval, 7>, N> = self.reference.at(t);
         jets.iter().map(|jet| std::array::from_fn(|k| jet.coefficient(k))).collect()
     }
 
     fn breaks(&self) -> &[Interval] {
         &self.breaks
+    }
+
+    fn kinks(&self) -> &[Interval] {
+        &self.kinks
     }
 
     fn approach(&self, e_l: &[Slope]) -> Vec<Slope> {
@@ -127,7 +135,7 @@ where
     }
 }
 
-/// The law over intervals with one derivative. Compiled once per robot, out of line: it is much code.
+/// The law over intervals with two derivatives. Compiled once per robot, out of line: it is much code.
 #[inline(never)]
 fn command<L, Pl, Pm, const N: usize>(
     law: &Vcbc<Interval, Pl, Pm, N>,

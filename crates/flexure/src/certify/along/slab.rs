@@ -1,10 +1,11 @@
-//! What the robot may do in the tube over a slab of time, by the mean value theorem.
+//! What the robot may do in the tube over a slab of time, by Taylor's theorem.
 //!
-//! On the way from the reference at the slab's middle to any time in it and any error x̃ in the tube, what is asked for
-//! changes by ∂_t · (t − t_c) + g·x̃, with derivatives taken somewhere on the way: over the whole slab and tube.
-//! Positions and velocities of the motors, which the law's derivatives depend on, are enclosed in the same manner first.
+//! On the reference, what is asked for at a time t of the slab follows from value and slope at its middle and from the second
+//! derivative over all of it. From there to any error x̃ in the tube it changes by g·x̃, with derivatives g taken somewhere
+//! on the way. Positions and velocities of the motors, which the law's derivatives depend on, are enclosed in the same manner
+//! first.
 
-use flexure_core::scalar::{Dual, Interval, Scalar};
+use flexure_core::scalar::{Interval, Jet, Scalar};
 
 use super::closed_loop::{Answer, ClosedLoop, Place, Slope};
 use super::tube::Tube;
@@ -30,7 +31,7 @@ pub struct Slab {
     pub time: Interval,
     /// The errors and the metric of W.
     pub tube: Tube,
-    /// The quantities on the reference: at the middle, or over all times where the reference is not smooth.
+    /// The quantities on the reference at the middle.
     pub nominal: Vec<Interval>,
     /// Their derivatives by the errors q̃_l, q̃_m, s_l, s_m.
     pub gradients: Vec<Vec<Interval>>,
@@ -41,37 +42,36 @@ pub struct Slab {
 impl Slab {
     /// The tube of level `level` in J over the times `time` in s.
     pub fn new(system: &dyn ClosedLoop, level: f64, time: Interval) -> Self {
-        let smooth = !system.breaks().iter().any(|at| at.intersection(time).is_some());
-        let center = if smooth { Interval::point(time.midpoint()) } else { time };
         let jets = system.reference(time);
         let tube = Tube::new(system, level, &jets.iter().map(|jet| jet[0]).collect::<Vec<_>>());
-        let still = vec![Interval::ZERO; 4 * system.joints()];
-        let slab = Way {
-            system,
-            on: Seed { jets: &system.reference(center), errors: &still },
-            around: Seed { jets: &jets, errors: &tube.errors() },
-            offset: if smooth { time - center } else { Interval::ZERO },
+        let middle = Interval::point(time.midpoint());
+        let way = Way {
+            n: system.joints(),
+            smooth: Smooth::over(system, time),
+            middle: system.reference(middle),
+            all: jets,
+            offset: time - middle,
+            errors: tube.errors(),
             tube: &tube,
         };
         // The law wants motor positions and velocities where it tells what they should be: what it tells does not depend
         // on them, so that any will do.
-        let nothing = vec![Slope::ZERO; system.joints()];
-        let q_m = slab.along(&|seed| {
+        let nothing = vec![Slope::ZERO; way.n];
+        let q_m = way.along(&|seed| {
             let answer = seed.answer(system, &nothing, &nothing);
             sums(&answer.q_md, seed.part(1))
         });
-        let v_m = slab.along(&|seed| {
+        let v_m = way.along(&|seed| {
             let answer = seed.answer(system, &q_m.at(seed), &nothing);
             sums(&differences(&nothing, &answer.s_m), seed.part(3))
         });
-        let all = slab.along(&|seed| {
+        let all = way.along(&|seed| {
             let (q_m, v_m) = (q_m.at(seed), v_m.at(seed));
             let (q_l, v_l) = seed.links(system);
             [v_l, differences(&q_m, &q_l), seed.answer(system, &q_m, &v_m).u_m].concat()
         });
-        let Spread { nominal, ranges, slopes } = all;
-        let gradients = (0..nominal.len()).map(|k| slopes[1..].iter().map(|slope| slope[k]).collect());
-        Self { time, gradients: gradients.collect(), nominal, ranges, tube }
+        let nominal = all.middle.iter().map(|x| x.coefficient(0)).collect();
+        Self { time, nominal, gradients: all.gradients, ranges: all.ranges, tube }
     }
 
     /// Upper bound of the absolute value of quantity `k`.
@@ -87,32 +87,44 @@ impl Slab {
     }
 }
 
-/// Numbers at one direction: the reference over some times, the errors, and what is differentiated by.
+/// How smooth the reference is over a slab.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Smooth {
+    /// The torque may jump.
+    Not,
+    /// Its rate may.
+    Once,
+    /// Neither.
+    Twice,
+}
+
+impl Smooth {
+    fn over(system: &dyn ClosedLoop, time: Interval) -> Self {
+        let meets = |times: &[Interval]| times.iter().any(|at| at.intersection(time).is_some());
+        match (meets(system.breaks()), meets(system.kinks())) {
+            (true, _) => Self::Not,
+            (_, true) => Self::Once,
+            _ => Self::Twice,
+        }
+    }
+}
+
+/// Where numbers are looked at, and by what they are differentiated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum View {
+    /// On the reference at the middle of the slab, by time.
+    Middle,
+    /// On the reference over the slab, by time.
+    Track,
+    /// Over slab and tube, by this error.
+    Tube(usize),
+}
+
+/// Reference and errors in a view.
 struct Seeded {
     q_ld: Vec<[Slope; 5]>,
     errors: Vec<Slope>,
-    /// 0 for time, 1 + i for error i; none on the reference.
-    direction: Option<usize>,
-}
-
-/// Reference and errors without a direction.
-struct Seed<'a> {
-    jets: &'a [[Interval; 6]],
-    errors: &'a [Interval],
-}
-
-impl Seed<'_> {
-    fn towards(&self, direction: Option<usize>) -> Seeded {
-        // d/dt of coefficient k is k + 1 times the next.
-        let slope = |jet: &[Interval; 6], k: usize| match direction {
-            Some(0) => jet[k + 1] * Interval::point((k + 1) as f64),
-            _ => Interval::ZERO,
-        };
-        let q_ld = self.jets.iter().map(|jet| std::array::from_fn(|k| dual(jet[k], slope(jet, k))));
-        let unit = |i: usize| if direction == Some(1 + i) { Interval::ONE } else { Interval::ZERO };
-        let errors = self.errors.iter().enumerate().map(|(i, &error)| dual(error, unit(i)));
-        Seeded { q_ld: q_ld.collect(), errors: errors.collect(), direction }
-    }
+    view: View,
 }
 
 impl Seeded {
@@ -137,52 +149,108 @@ impl Seeded {
 
 /// From the reference to everywhere in the slab's tube.
 struct Way<'a> {
-    system: &'a dyn ClosedLoop,
-    on: Seed<'a>,
-    around: Seed<'a>,
-    /// t − t_c in s; zero where `on` has all times.
+    n: usize,
+    smooth: Smooth,
+    /// The reference at the middle.
+    middle: Vec<[Interval; 7]>,
+    /// The reference over the slab.
+    all: Vec<[Interval; 7]>,
+    /// t − t_c in s.
     offset: Interval,
+    /// The box around the tube.
+    errors: Vec<Interval>,
     tube: &'a Tube,
 }
 
-/// Numbers on the reference, everywhere, and their derivatives by direction.
+/// Numbers in all views.
 struct Spread {
-    nominal: Vec<Interval>,
+    middle: Vec<Slope>,
+    track: Vec<Slope>,
+    /// Over slab and tube.
     ranges: Vec<Interval>,
-    slopes: Vec<Vec<Interval>>,
+    /// Their derivatives by the errors.
+    gradients: Vec<Vec<Interval>>,
 }
 
 impl Way<'_> {
+    fn seeded(&self, view: View) -> Seeded {
+        let jets = if view == View::Middle { &self.middle } else { &self.all };
+        // Coefficient k at t + τ is Σ_j C(k + j, j) c_(k+j) τʲ.
+        let in_time = |jet: &[Interval; 7], k: usize| match view {
+            View::Tube(_) => Slope::value(jet[k]),
+            _ => Jet::new([
+                jet[k],
+                jet[k + 1] * Interval::point((k + 1) as f64),
+                jet[k + 2] * Interval::point(((k + 1) * (k + 2) / 2) as f64),
+            ]),
+        };
+        let error = |(i, &error): (usize, &Interval)| match view {
+            View::Tube(direction) if i == direction => Slope::variable(error),
+            View::Tube(_) => Slope::value(error),
+            _ => Slope::ZERO,
+        };
+        Seeded {
+            q_ld: jets.iter().map(|jet| std::array::from_fn(|k| in_time(jet, k))).collect(),
+            errors: self.errors.iter().enumerate().map(error).collect(),
+            view,
+        }
+    }
+
     /// The numbers that `f` makes, over the tube and the slab.
     fn along(&self, f: &dyn Fn(&Seeded) -> Vec<Slope>) -> Spread {
-        let nominal: Vec<_> = f(&self.on.towards(None)).iter().map(|x| x.value).collect();
-        let passes: Vec<Vec<Slope>> =
-            (0..=4 * self.system.joints()).map(|d| f(&self.around.towards(Some(d)))).collect();
-        let slopes: Vec<Vec<_>> =
-            passes.iter().map(|pass| pass.iter().map(|x| x.gradient[0]).collect()).collect();
-        let range = |(i, &nominal): (usize, &Interval)| {
-            let gradient: Vec<_> = slopes[1..].iter().map(|slope: &Vec<Interval>| slope[i]).collect();
-            let mean = nominal + slopes[0][i] * self.offset + self.tube.reach(&gradient);
+        let middle = f(&self.seeded(View::Middle));
+        let track: Vec<_> = f(&self.seeded(View::Track));
+        let track: Vec<_> =
+            middle.iter().zip(track).map(|(middle, track)| self.expanded(middle, &track)).collect();
+        let passes: Vec<Vec<Slope>> = (0..4 * self.n).map(|i| f(&self.seeded(View::Tube(i)))).collect();
+        let gradients: Vec<Vec<_>> =
+            (0..track.len()).map(|k| passes.iter().map(|pass| pass[k].coefficient(1)).collect()).collect();
+        let range = |(k, gradient): (usize, &Vec<Interval>)| {
+            let mean = track[k].coefficient(0) + self.tube.reach(gradient);
             // Both enclose it.
-            mean.intersection(passes[0][i].value).unwrap_or(mean)
+            mean.intersection(passes[0][k].coefficient(0)).unwrap_or(mean)
         };
-        let ranges = nominal.iter().enumerate().map(range).collect();
-        Spread { nominal, ranges, slopes }
+        let ranges = gradients.iter().enumerate().map(range).collect();
+        Spread { middle, track, ranges, gradients }
     }
-}
 
-impl Spread {
-    /// The numbers with their derivatives where `seed` looks.
-    fn at(&self, seed: &Seeded) -> Vec<Slope> {
-        match seed.direction {
-            None => self.nominal.iter().map(|&x| Slope::constant(x)).collect(),
-            Some(d) => self.ranges.iter().zip(&self.slopes[d]).map(|(&x, &slope)| dual(x, slope)).collect(),
+    /// A number on the reference over the slab: what its evaluation there says, and what follows from the middle.
+    fn expanded(&self, middle: &Slope, track: &Slope) -> Slope {
+        let both = |a: Interval, b: Interval| a.intersection(b).unwrap_or(a);
+        let [value, slope, curvature] = [0, 1, 2].map(|k| track.coefficient(k));
+        let [at, rate] = [0, 1].map(|k| middle.coefficient(k));
+        match self.smooth {
+            Smooth::Not => *track,
+            Smooth::Once => Jet::new([both(at + slope * self.offset, value), slope, curvature]),
+            Smooth::Twice => {
+                let linear = rate + curvature * self.offset * Interval::point(2.0);
+                let slope = both(linear, slope);
+                let first = both(
+                    at + rate * self.offset + curvature * self.offset.square(),
+                    at + slope * self.offset,
+                );
+                Jet::new([both(first, value), slope, curvature])
+            }
         }
     }
 }
 
-fn dual(value: Interval, slope: Interval) -> Slope {
-    Dual { value, gradient: [slope] }
+impl Spread {
+    /// The numbers in the view of `seed`.
+    fn at(&self, seed: &Seeded) -> Vec<Slope> {
+        match seed.view {
+            View::Middle => self.middle.clone(),
+            View::Track => self.track.clone(),
+            View::Tube(i) => {
+                let slopes = self.gradients.iter().map(|gradient| gradient[i]);
+                self.ranges
+                    .iter()
+                    .zip(slopes)
+                    .map(|(&x, slope)| Jet::new([x, slope, Interval::ZERO]))
+                    .collect()
+            }
+        }
+    }
 }
 
 fn sums(a: &[Slope], b: &[Slope]) -> Vec<Slope> {
