@@ -110,9 +110,10 @@ impl<const N: usize> AnyReference<Interval, N> {
     /// derivatives are continuous up to the rounding of its coefficients only, so that all of them count.
     pub fn breaks(&self) -> Vec<Interval> {
         match self {
-            Self::Sine(_) | Self::Multisine(_) => Vec::new(),
-            Self::PointToPoint(PointToPoint { step: Smoothstep::Nonic, .. }) => Vec::new(),
-            Self::PointToPoint(motion) => vec![motion.start, motion.start + motion.duration],
+            Self::PointToPoint(motion) if motion.step != Smoothstep::Nonic => {
+                vec![motion.start, motion.start + motion.duration]
+            }
+            Self::Sine(_) | Self::Multisine(_) | Self::PointToPoint(_) => Vec::new(),
             Self::Samples(path) => path.knots().collect(),
             Self::SmoothStart(joined) => joined.then.breaks(),
         }

@@ -8,7 +8,10 @@ pub mod slab;
 pub mod tube;
 pub mod witness;
 
+use std::collections::BTreeSet;
+
 use flexure_core::scalar::Interval;
+use rayon::prelude::*;
 
 use closed_loop::ClosedLoop;
 use slab::Slab;
@@ -47,39 +50,41 @@ const GAIN: f64 = 0.002;
 /// Bounds everything that `request` asks for.
 pub fn course(system: &dyn ClosedLoop, request: &Request) -> Course {
     let first = request.budget.clamp(1, FIRST);
-    let cut = |i: usize| request.duration * (i as f64 / first as f64);
-    let slab = |from: f64, to: f64| {
+    let cut =
+        |i: usize| if i == first { request.duration } else { request.duration * (i as f64 / first as f64) };
+    let slab = |(from, to): (f64, f64)| {
         let time = Interval::new(from, to).unwrap_or(Interval::ENTIRE);
         Slab::new(system, request.level, time)
     };
-    let mut pieces: Vec<Piece> = (0..first)
-        .map(|i| Piece::new(slab(cut(i), if i + 1 == first { request.duration } else { cut(i + 1) }), None))
-        .collect();
+    // In parallel, but in the order of time: the outcome does not depend on the number of cores.
+    let begin: Vec<_> = (0..first).map(|i| (cut(i), cut(i + 1))).collect();
+    let mut pieces: Vec<Piece> = begin.into_par_iter().map(|times| Piece::new(slab(times), None)).collect();
     let mut spent = first;
     loop {
-        let goals = goals(&pieces, &request.limits);
-        let mut marked: Vec<(usize, f64)> =
-            pieces.iter().map(|piece| piece.excess(&goals)).enumerate().filter(|(_, e)| *e > 1.0).collect();
-        marked.sort_by(|a, b| b.1.total_cmp(&a.1));
-        marked.truncate(request.budget.saturating_sub(spent) / 2);
+        let marked = marked(&pieces, request, (request.budget - spent.min(request.budget)) / 2);
         if marked.is_empty() {
             break;
         }
         spent += 2 * marked.len();
-        let marked: std::collections::BTreeSet<usize> = marked.into_iter().map(|(i, _)| i).collect();
-        let cut = |(i, piece): (usize, Piece)| {
+        let halves = |(i, piece): (usize, Piece)| {
             if !marked.contains(&i) {
                 return vec![piece];
             }
             let (left, right) = piece.slab.time.split();
-            [left, right]
-                .map(|half| Piece::new(slab(half.lo(), half.hi()), Some(&piece)))
-                .into_iter()
-                .collect()
+            [left, right].map(|half| Piece::new(slab((half.lo(), half.hi())), Some(&piece))).into()
         };
-        pieces = pieces.into_iter().enumerate().flat_map(cut).collect();
+        pieces = pieces.into_par_iter().enumerate().flat_map_iter(halves).collect();
     }
     Course { slabs: pieces.into_iter().map(|piece| piece.slab).collect(), spent }
+}
+
+/// Which pieces to cut next: those that are farthest above their goals, at most `most`.
+fn marked(pieces: &[Piece], request: &Request, most: usize) -> BTreeSet<usize> {
+    let goals = goals(pieces, &request.limits);
+    let excess = pieces.iter().map(|piece| piece.excess(&goals)).enumerate();
+    let mut marked: Vec<(usize, f64)> = excess.filter(|(_, excess)| *excess > 1.0).collect();
+    marked.sort_by(|a, b| b.1.total_cmp(&a.1));
+    marked.into_iter().take(most).map(|(i, _)| i).collect()
 }
 
 impl Course {
