@@ -9,9 +9,9 @@ use flexure::certify::Number;
 use flexure::core::control::Input;
 use flexure::core::linalg::Vector;
 use flexure::core::model::{Links, Motion};
-use flexure::core::reference::Reference;
+use flexure::core::reference::Reference as _;
 use flexure::core::virtual_system::{Structure, error_coordinates};
-use flexure::io::{Scenario, load_scenario};
+use flexure::io::{Profile, Reference, Scenario, load_scenario};
 use flexure::proof::{Question, Region, prove};
 use floats::{Floats, Numbers};
 
@@ -55,8 +55,8 @@ fn sampled<L: Links<f64, N>, const N: usize>(system: &Floats<L, N>, found: &Alon
     bounds.iter().zip(&largest).map(|(bound, largest)| bound / largest).collect()
 }
 
-/// No random state is beyond the bounds, and the bounds are less than a third above the largest of them. (Random directions
-/// in eight dimensions miss the worst one by some percent.)
+/// No random state is beyond the bounds, and the bounds are less than half above the largest of them. (Random directions in
+/// eight dimensions miss the worst one by some percent.)
 #[test]
 fn bounds_hold_and_are_tight() {
     for (name, disturbance) in [
@@ -83,8 +83,46 @@ fn bounds_hold_and_are_tight() {
             found.slabs,
             bounds(&found)
         );
-        assert!(ratios.iter().all(|&ratio| ratio < 1.33), "{name} {disturbance}: {ratios:?}");
+        assert!(ratios.iter().all(|&ratio| ratio < 1.5), "{name} {disturbance}: {ratios:?}");
     }
+}
+
+/// The torque of a septic motion jumps at both ends: no slab is smooth there.
+#[test]
+fn torques_that_jump_are_bounded() {
+    let mut scenario = load_scenario("two-link-coupled-tanh-smooth").unwrap();
+    (scenario.smooth_start, scenario.duration) = (None, 2.0);
+    scenario.reference = Reference::PointToPoint {
+        profile: Profile::Septic,
+        from: vec![0.0, 0.0],
+        to: vec![1.0, -0.5],
+        start: 0.3,
+        duration: 0.9,
+    };
+    let found = along(&scenario, &level(&scenario, 1e-6), 2000).unwrap();
+    let system = floats::arm(&scenario);
+    let mut largest = [0.0_f64; 2];
+    for t in [0.3_f64, 1.2].iter().flat_map(|&t| [t - 1e-9, t, t + 1e-9]) {
+        let x = system.motion(t, [Vector::ZERO; 4]);
+        for (i, u) in system.values(t, &x).quantities[4..].iter().enumerate() {
+            largest[i] = largest[i].max(u.abs());
+        }
+    }
+    println!("at the jumps {largest:?}, bounds {:?}, {} slabs", found.torque.bound, found.slabs);
+    let ratios = sampled(&system, &found, scenario.duration);
+    println!("{ratios:.3?}");
+    assert!(largest.iter().zip(&found.torque.bound).all(|(u, bound)| u <= bound));
+    assert!(ratios.iter().all(|&ratio| ratio < 1.5), "{ratios:?}");
+
+    scenario.reference = Reference::PointToPoint {
+        profile: Profile::Quintic,
+        from: vec![0.0, 0.0],
+        to: vec![1.0, -0.5],
+        start: 0.3,
+        duration: 0.9,
+    };
+    let problems = along(&scenario, &Number::decimal(1e-6), 10).unwrap_err();
+    assert!(problems.to_string().contains("quintic jumps"), "{problems}");
 }
 
 /// W at the start, from the virtual system's own error coordinates and storage.
@@ -116,7 +154,7 @@ fn seven_joints() {
     scenario.duration = 0.04;
     let found = along(&scenario, &level, 8).unwrap();
     for (bound, nominal) in found.torque.bound.iter().zip(&found.torque.nominal) {
-        assert!(nominal <= bound && *bound < nominal + 0.1, "{bound} {nominal}");
+        assert!(nominal <= bound && *bound < nominal + 0.3, "{bound} {nominal}");
     }
 }
 
