@@ -3,6 +3,7 @@
 mod floats;
 mod limits;
 mod simulated;
+mod slabs;
 
 use flexure::along::{Along, along, start_level};
 use flexure::certify::Number;
