@@ -80,6 +80,18 @@ fn slabs_with_jumps_contain_both_sides() {
     scenario.reference =
         Reference::PointToPoint { profile: Profile::Septic, from, to, start: 0.3, duration: 0.4 };
     contained(&scenario, &[0.2, 0.02]);
+    // However short: Taylor's theorem does not lead across.
+    let (system, floats) = (enclosed(&scenario), floats::arm(&scenario));
+    for half in [1e-3, 1e-6] {
+        let slab = Slab::new(&system, 1e-18, Interval::new(0.3 - half, 0.3 + half).unwrap());
+        for t in [0.3 - half, 0.3 + half] {
+            let values = floats.values(t, &floats.motion(t, [Vector::ZERO; 4])).quantities;
+            assert!(
+                slab.ranges.iter().zip(&values).all(|(range, &value)| range.contains(value)),
+                "{half} {t}"
+            );
+        }
+    }
 }
 
 /// √(2c gᵀ P⁻¹ g) with the mass matrix in floats: the box of a thin tube is all but a point.
