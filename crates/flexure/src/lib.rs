@@ -2,6 +2,7 @@
 
 pub use flexure_core as core;
 
+pub mod along;
 pub mod certify;
 pub mod confirmation;
 mod eigenvalues;

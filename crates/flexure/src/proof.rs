@@ -2,10 +2,11 @@
 
 use std::time::Instant as Clock;
 
+use crate::along::{Along, Limit, along, start_level};
 use crate::certify::certificate::{self, BlockName, Controller, Gains, JointKind, Links, Phi, Robot};
 use crate::certify::matrix::Symmetric;
 use crate::certify::rate::Inequality;
-use crate::certify::region::level_that_holds;
+use crate::certify::region::{level_that_holds, region};
 use crate::certify::structural::positions;
 use crate::certify::witness::against;
 use crate::certify::{
@@ -51,6 +52,9 @@ pub enum Region {
     Start(Vec<f64>),
 }
 
+/// Slabs of time that bounds along a reference may look at.
+const SLABS: usize = 4000;
+
 /// Largest error where none is named and φ has no rate everywhere \[rad\].
 const ASSUMED_ERROR: f64 = 1.0;
 
@@ -65,17 +69,25 @@ pub struct Proof {
     pub sampled: Sampled,
     /// What the direct engine says, if it was asked.
     pub confirmation: Option<Confirmation>,
+    /// An upper bound of W at the scenario's start, in J; none where W is not defined or jumps.
+    pub start: Option<f64>,
+    /// Bounds along the reference inside the tube, if a disturbance was named.
+    pub along: Option<Along>,
     /// Options that were not given, and numbers that no source vouches for.
     pub assumptions: Vec<String>,
     /// Time that it took in s.
     pub wall_seconds: f64,
 }
 
-/// The closed loop of `scenario` as the prover takes it.
+/// The closed loop of `scenario` as the prover takes it; `start` is W where the run begins, from above, if it is known.
 ///
 /// # Errors
 /// Where no certificate can speak of it: with the place and the reason.
-pub fn problem(scenario: &Scenario, question: &Question) -> Result<certify::Problem, Problems> {
+pub fn problem(
+    scenario: &Scenario,
+    question: &Question,
+    start: Option<f64>,
+) -> Result<certify::Problem, Problems> {
     let io::Controller::Vcbc { phi, link, motor } = &scenario.controller;
     if let Some(problem) = uneven_metric(scenario) {
         return Err(problem.into());
@@ -92,18 +104,15 @@ pub fn problem(scenario: &Scenario, question: &Question) -> Result<certify::Prob
         .map(|assumed| format!("{}: {} = {}: {}", assumed.file, assumed.key, assumed.value, assumed.note))
         .collect();
     let errors = |errors: &[f64]| errors.iter().map(|&e| Number::decimal(e)).collect::<Vec<_>>();
+    let metric: Vec<_> =
+        controller.link.metric.iter().chain(&controller.motor.metric).map(Number::bounds).collect();
     let region = match &question.region {
         Region::Errors(largest) => Request::Box(errors(largest)),
-        Region::Start(start) => {
-            let metric: Vec<_> =
-                controller.link.metric.iter().chain(&controller.motor.metric).map(Number::bounds).collect();
-            Request::Level(level_that_holds(&errors(start), &metric))
-        }
+        Region::Start(start) => Request::Level(level_that_holds(&errors(start), &metric)),
         Region::Chosen if phi == Phi::Tanh => {
-            assumptions.push(format!(
-                "no region was named and tanh has no rate everywhere: errors of up to {ASSUMED_ERROR} rad are assumed"
-            ));
-            Request::Box(errors(&vec![ASSUMED_ERROR; 2 * scenario.robot.joint_count()]))
+            let (request, note) = chosen(&metric, start);
+            assumptions.push(format!("no region was named and tanh has no rate everywhere: {note} is taken"));
+            request
         }
         Region::Chosen => Request::Everywhere,
     };
@@ -117,6 +126,16 @@ pub fn problem(scenario: &Scenario, question: &Question) -> Result<certify::Prob
         region,
         disturbance,
     })
+}
+
+/// The smallest level of W that holds the start, or errors of up to [`ASSUMED_ERROR`] if that is more.
+fn chosen(metric: &[Interval], start: Option<f64>) -> (Request, String) {
+    let errors = vec![Number::decimal(ASSUMED_ERROR); metric.len()];
+    let inside = region(&Request::Box(errors.clone()), metric).level.map_or(0.0, |level| level.bounds().lo());
+    match start.filter(|&start| start > inside) {
+        Some(start) => (Request::Level(start), "the level of W at the scenario's start".to_owned()),
+        None => (Request::Box(errors), format!("|q̃_i| up to {ASSUMED_ERROR} rad")),
+    }
 }
 
 /// What to say of a metric that depends on the error, if it does.
@@ -135,7 +154,8 @@ fn uneven_metric(scenario: &Scenario) -> Option<Problem> {
 /// Where no certificate can speak of it: with the place and the reason.
 pub fn prove(scenario: &Scenario, question: &Question) -> Result<Proof, Problems> {
     let started = Clock::now();
-    let problem = problem(scenario, question)?;
+    let start = start_level(scenario).ok();
+    let problem = problem(scenario, question, start)?;
     let damping: Vec<f64> = {
         let io::Controller::Vcbc { link, .. } = &scenario.controller;
         scenario.robot.link_damping.iter().zip(&link.damping).map(|(a, b)| a + b).collect()
@@ -151,8 +171,12 @@ pub fn prove(scenario: &Scenario, question: &Question) -> Result<Proof, Problems
         }
         _ => None,
     };
+    let tube = verdict.proved().and_then(|certificate| certificate.tube.as_ref());
+    let along = tube.map(|tube| along(scenario, &tube.level, SLABS)).transpose()?;
     Ok(Proof {
         confirmation,
+        start,
+        along,
         paper_rate: paper_rate(&scenario.robot, &scenario.controller, &problem, sampled.largest_inertia),
         verdict,
         sampled,
@@ -226,7 +250,7 @@ impl Proof {
                     );
                     Some((problem("contradiction", message, "do not trust the certificate; report it"), true))
                 }
-                _ => None,
+                _ => self.limits(scenario),
             },
             Verdict::Refuted(witness) => {
                 let message = format!(
@@ -248,6 +272,28 @@ impl Proof {
     }
 }
 
+impl Proof {
+    /// What to say of the robot's limits where the tube may exceed them; one that it does exceed comes first.
+    fn limits(&self, scenario: &Scenario) -> Option<(Problem, bool)> {
+        let limits = &self.along.as_ref()?.limits;
+        let refuted = limits.iter().find(|limit| matches!(limit.verdict, Verdict::Refuted(_)));
+        let limit = refuted.or_else(|| limits.iter().find(|limit| limit.verdict.proved().is_none()))?;
+        let Limit { joint, key, limit, verdict } = limit;
+        let name = &scenario.robot.joints[*joint].name;
+        let (code, message) = match verdict {
+            Verdict::Proved(_) => return None,
+            Verdict::Refuted(state) => (
+                "limit",
+                format!("{key} of {name} is {limit}; at t = {:.4} s a state in the tube has {:.4}", state.t, state.value),
+            ),
+            Verdict::Undecided(undecided) => ("limit", format!("{key} of {name} is not decided: {}", undecided.at)),
+        };
+        let help = "take a slower or smoother reference, lower gains, or a smaller disturbance";
+        let at = format!("joints.{key}");
+        Some((scenario.robot.places.problem(&at, code, message, help), refuted.is_some()))
+    }
+}
+
 /// The contraction rate that is proved of `scenario` without further options [1/s]; none if none is.
 ///
 /// # Errors
@@ -256,7 +302,7 @@ pub fn certified_rate(scenario: &Scenario) -> Result<Option<f64>, Problems> {
     if uneven_metric(scenario).is_some() {
         return Ok(None);
     }
-    let problem = problem(scenario, &Question::default())?;
+    let problem = problem(scenario, &Question::default(), start_level(scenario).ok())?;
     Ok(certify(&problem).proved().map(|certificate| certificate.contraction_rate.approximate()))
 }
 

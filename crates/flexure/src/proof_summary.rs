@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::along::Along;
 use crate::certify::certificate::{Block, BlockName, Norm, Side, Structure, StructureName};
 use crate::certify::{Certificate, Number, State, Verdict};
 use crate::confirmation::Confirmation;
@@ -37,6 +38,10 @@ pub struct ProofSummary {
     pub sampled: Sampled,
     /// Proved rate of the links' momentum block over the sampled one.
     pub tightness: Option<f64>,
+    /// Where the scenario starts; none where W is not defined or jumps.
+    pub start: Option<StartSummary>,
+    /// Bounds along the reference inside the tube; none without a disturbance.
+    pub along: Option<Along>,
     /// What the direct engine says of the contraction rate; none if it was not asked.
     pub direct: Option<DirectSummary>,
     /// Error tube under a disturbance.
@@ -93,6 +98,15 @@ pub struct StructureSummary {
     pub name: StructureName,
     /// Whether it is kept.
     pub holds: bool,
+}
+
+/// W at the scenario's start.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct StartSummary {
+    /// An upper bound in J.
+    pub level: f64,
+    /// Whether the start lies in the invariant set.
+    pub inside: bool,
 }
 
 /// What the direct engine says.
@@ -203,6 +217,11 @@ impl ProofSummary {
             mass_matrix_positive_definite: certificate.is_some(),
             sampled: proof.sampled.clone(),
             tightness: certificate.map(|c| sigma_l(c) / proof.sampled.rate),
+            start: proof.start.zip(certificate).map(|(level, certificate)| StartSummary {
+                level,
+                inside: certificate.region.level.as_ref().is_none_or(|c| level <= c.bounds().lo()),
+            }),
+            along: proof.along.clone(),
             direct: proof.confirmation.as_ref().map(direct),
             tube: certificate.and_then(|c| c.tube.as_ref()).map(|tube| TubeSummary {
                 disturbance: floats(&tube.disturbance),

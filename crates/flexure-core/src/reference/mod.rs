@@ -25,7 +25,7 @@ pub use multisine::{Multisine, Term};
 pub use point_to_point::PointToPoint;
 pub use sine::Sine;
 pub use smooth_start::SmoothStart;
-pub use smoothstep::Smoothstep;
+pub use smoothstep::{Progress, Smoothstep};
 
 use crate::linalg::Vector;
 use crate::scalar::{Jet, Over, Piecewise, Scalar};

@@ -27,6 +27,7 @@ impl<C: Scalar, const N: usize> Reference<C, N> for PointToPoint<C, N> {
     #[inline]
     fn on<T: Over<C> + Piecewise>(&self, t: T) -> Vector<T, N> {
         let tau = (t - T::constant(self.start)).scale(self.duration.recip());
-        Vector::from_fn(|i| self.step.blend(T::constant(self.from[i]), T::constant(self.to[i]), tau))
+        let progress = self.step.at(tau);
+        Vector::from_fn(|i| progress.between(T::constant(self.from[i]), T::constant(self.to[i])))
     }
 }

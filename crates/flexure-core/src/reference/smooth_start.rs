@@ -27,7 +27,7 @@ impl<C: Scalar, R: Reference<C, N>, const N: usize> Reference<C, N> for SmoothSt
     #[inline]
     fn on<T: Over<C> + Piecewise>(&self, t: T) -> Vector<T, N> {
         let tau = t.scale(self.duration.recip());
-        let r = self.then.on(t);
-        Vector::from_fn(|i| Smoothstep::Nonic.blend(T::constant(self.from[i]), r[i], tau))
+        let (progress, r) = (Smoothstep::Nonic.at(tau), self.then.on(t));
+        Vector::from_fn(|i| progress.between(T::constant(self.from[i]), r[i]))
     }
 }

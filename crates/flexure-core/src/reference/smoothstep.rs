@@ -36,17 +36,20 @@ impl Smoothstep {
 
     /// from + s(τ) (to − from), for any τ: exactly `from` up to τ = 0 and exactly `to` from τ = 1 on, with all
     /// derivatives up to order m.
+    #[inline]
+    pub fn blend<T: Piecewise>(self, from: T, to: T, tau: T) -> T {
+        self.at(tau).between(from, to)
+    }
+
+    /// How far the step is at τ, for any τ: to blend many numbers at once.
     ///
     /// Beyond τ = ½ it counts from the other end: there the polynomial would cancel, its last derivative by five
     /// digits.
     #[inline]
-    pub fn blend<T: Piecewise>(self, from: T, to: T, tau: T) -> T {
+    pub fn at<T: Piecewise>(self, tau: T) -> Progress<T> {
         let tau = tau.clamp(T::ZERO, T::ONE);
         let remaining = T::ONE - tau;
-        // 1 − 2τ: not negative in the first half.
-        let early = remaining - tau;
-        let part = (to - from) * self.polynomial(early.select(tau, remaining));
-        early.select(from + part, to - part)
+        Progress { done: self.polynomial(tau), left: self.polynomial(remaining), early: remaining - tau }
     }
 
     /// The polynomial itself.
@@ -57,6 +60,27 @@ impl Smoothstep {
             Self::Septic => horner(const { &coefficients::<4>() }, tau),
             Self::Nonic => horner(const { &coefficients::<5>() }, tau),
         }
+    }
+}
+
+/// Where a step is: s(τ) and s(1 − τ).
+///
+/// Numbers that cannot tell the first half from the second see the hull of two enclosures of the same polynomial, not the
+/// polynomial at the hull of τ and 1 − τ, which would not know whether it goes up or down.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress<T> {
+    done: T,
+    left: T,
+    /// 1 − 2τ: not negative in the first half.
+    early: T,
+}
+
+impl<T: Piecewise> Progress<T> {
+    /// from + s(τ) (to − from).
+    #[inline]
+    pub fn between(&self, from: T, to: T) -> T {
+        let way = to - from;
+        self.early.select(from + way * self.done, to - way * self.left)
     }
 }
 

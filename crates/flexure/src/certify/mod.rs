@@ -6,6 +6,7 @@
 //!
 //! Trusted base: the interval type, the core, and this module; it imports neither `sim` nor `io`.
 
+pub mod along;
 pub mod certificate;
 pub mod coupling;
 pub mod direct;

@@ -2,8 +2,11 @@
 
 use std::fmt::Debug;
 
+use serde::Serialize;
+
 /// The outcome of an attempt to prove a claim: never a bool.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Verdict<P, W> {
     /// The claim holds: what was proved.
     Proved(P),
@@ -14,7 +17,7 @@ pub enum Verdict<P, W> {
 }
 
 /// Where an attempt stopped, and what it had cost by then.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Undecided {
     /// The place that could not be decided, or the reason, in words with numbers.
     pub at: String,

@@ -142,6 +142,11 @@ impl<C: Scalar, const N: usize> Samples<C, N> {
         self.end
     }
 
+    /// Times of the samples in s: in between the path is one polynomial.
+    pub fn knots(&self) -> impl Iterator<Item = C> + '_ {
+        self.segments.iter().map(|segment| segment.start).chain([self.end])
+    }
+
     /// Position in rad at time `t` in s, which is on one of `segments`, before the first or after the last.
     #[inline]
     fn along<T: Over<C> + Piecewise>(&self, segments: &[Segment<C, N>], t: T) -> Vector<T, N> {

@@ -105,6 +105,34 @@ impl<C: Scalar, const N: usize> AnyReference<C, N> {
     }
 }
 
+impl<const N: usize> AnyReference<Interval, N> {
+    /// Times in s at which the fourth derivative may jump; anywhere else it is continuous. Between the samples of a path
+    /// derivatives are continuous up to the rounding of its coefficients only, so that all of them count.
+    pub fn breaks(&self) -> Vec<Interval> {
+        match self {
+            Self::PointToPoint(motion) if motion.step != Smoothstep::Nonic => {
+                vec![motion.start, motion.start + motion.duration]
+            }
+            Self::Sine(_) | Self::Multisine(_) | Self::PointToPoint(_) => Vec::new(),
+            Self::Samples(path) => path.knots().collect(),
+            Self::SmoothStart(joined) => joined.then.breaks(),
+        }
+    }
+
+    /// Times in s at which the fifth derivative may jump, beside the [`breaks`](Self::breaks); anywhere else all
+    /// derivatives are continuous.
+    pub fn kinks(&self) -> Vec<Interval> {
+        match self {
+            Self::Sine(_) | Self::Multisine(_) | Self::Samples(_) => Vec::new(),
+            Self::PointToPoint(motion) => vec![motion.start, motion.start + motion.duration],
+            Self::SmoothStart(joined) => {
+                let ends = [Interval::ZERO, joined.duration];
+                joined.then.kinks().into_iter().chain(ends).collect()
+            }
+        }
+    }
+}
+
 /// The spline through the samples of a scenario.
 fn path<const N: usize>(
     scenario: &io::Scenario,

@@ -4,6 +4,8 @@ use std::fmt::Write;
 
 use super::number::{NONE, engineering, short, significant};
 use super::table::{headed, right};
+use crate::along::Along;
+use crate::certify::Verdict;
 use crate::certify::certificate::{Norm, Side, StructureName};
 use crate::proof_summary::{BlockRates, ProofSummary, WitnessSummary};
 
@@ -79,6 +81,10 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
             }
             _ => lines.push("region       any error, any speed, any configuration".to_owned()),
         }
+        if let Some(start) = summary.start.filter(|_| region.level.is_some()) {
+            let place = if start.inside { "inside: the run stays in it" } else { "outside: nothing is said of this run" };
+            lines.push(format!("start        W ≤ {} J, {place}", short(start.level, 3)));
+        }
         lines.push("mass matrix  positive definite at every configuration".to_owned());
     }
     if let Some(tightness) = summary.tightness {
@@ -136,10 +142,41 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
             list(&tube.error)
         ));
     }
+    if let Some(along) = &summary.along {
+        lines.extend(bounds(along));
+    }
     lines.extend(summary.witness.as_ref().map(witness));
     if let Some(undecided) = &summary.undecided {
         lines.push(format!("undecided    {} (boxes looked at: {})", undecided.at, undecided.spent));
     }
+    lines
+}
+
+/// What is bounded along the reference.
+fn bounds(along: &Along) -> Vec<String> {
+    let unit = |key: &str| match key {
+        "torque_limit" => "N m",
+        "velocity_limit" => "rad/s",
+        _ => "rad",
+    };
+    let mut lines = vec![
+        format!("along        |q̇_l| ≤ {} rad/s all the way", list(&along.velocity.bound)),
+        format!("along        |q_m − q_l| ≤ {} rad", list(&along.deflection.bound)),
+        format!(
+            "along        |u_m| ≤ {} N m, {} N m without disturbance",
+            list(&along.torque.bound),
+            list(&along.torque.nominal)
+        ),
+    ];
+    lines.extend(along.limits.iter().map(|limit| {
+        let (joint, key, unit) = (limit.joint + 1, limit.key, unit(limit.key));
+        let verdict = match &limit.verdict {
+            Verdict::Proved(bound) => format!("never reached, at most {} {unit}", short(*bound, 3)),
+            Verdict::Refuted(state) => format!("exceeded: {} {unit} at t = {} s", short(state.value, 3), short(state.t, 4)),
+            Verdict::Undecided(_) => "not decided".to_owned(),
+        };
+        format!("limit        {key} {} {unit} of joint {joint}: {verdict}", short(limit.limit, 4))
+    }));
     lines
 }
 
