@@ -284,9 +284,14 @@ impl Proof {
             Verdict::Proved(_) => return None,
             Verdict::Refuted(state) => (
                 "limit",
-                format!("{key} of {name} is {limit}; at t = {:.4} s a state in the tube has {:.4}", state.t, state.value),
+                format!(
+                    "{key} of {name} is {limit}; at t = {:.4} s a state in the tube has {:.4}",
+                    state.t, state.value
+                ),
             ),
-            Verdict::Undecided(undecided) => ("limit", format!("{key} of {name} is not decided: {}", undecided.at)),
+            Verdict::Undecided(undecided) => {
+                ("limit", format!("{key} of {name} is not decided: {}", undecided.at))
+            }
         };
         let help = "take a slower or smoother reference, lower gains, or a smaller disturbance";
         let at = format!("joints.{key}");

@@ -82,7 +82,11 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
             _ => lines.push("region       any error, any speed, any configuration".to_owned()),
         }
         if let Some(start) = summary.start.filter(|_| region.level.is_some()) {
-            let place = if start.inside { "inside: the run stays in it" } else { "outside: nothing is said of this run" };
+            let place = if start.inside {
+                "inside: the run stays in it"
+            } else {
+                "outside: nothing is said of this run"
+            };
             lines.push(format!("start        W ≤ {} J, {place}", short(start.level, 3)));
         }
         lines.push("mass matrix  positive definite at every configuration".to_owned());
@@ -172,7 +176,9 @@ fn bounds(along: &Along) -> Vec<String> {
         let (joint, key, unit) = (limit.joint + 1, limit.key, unit(limit.key));
         let verdict = match &limit.verdict {
             Verdict::Proved(bound) => format!("never reached, at most {} {unit}", short(*bound, 3)),
-            Verdict::Refuted(state) => format!("exceeded: {} {unit} at t = {} s", short(state.value, 3), short(state.t, 4)),
+            Verdict::Refuted(state) => {
+                format!("exceeded: {} {unit} at t = {} s", short(state.value, 3), short(state.t, 4))
+            }
             Verdict::Undecided(_) => "not decided".to_owned(),
         };
         format!("limit        {key} {} {unit} of joint {joint}: {verdict}", short(limit.limit, 4))

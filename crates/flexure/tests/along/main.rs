@@ -159,24 +159,18 @@ fn seven_joints() {
     }
 }
 
-/// All ten seconds of it.
+/// How short slabs must be in full motion: intervals lose the symmetry of articulated inertias, so that bounds are infinite
+/// where joints turn by more than a milliradian or so.
 #[test]
-#[ignore = "a minute or two"]
-fn seven_joints_all_the_way() {
-    let scenario = load_scenario("panda-tanh-smooth").unwrap();
-    for disturbance in [1e-4, 1e-2] {
-        let level = level(&scenario, disturbance);
+#[ignore = "an exploration"]
+fn seven_joints_in_motion() {
+    let mut scenario = load_scenario("panda-tanh-smooth").unwrap();
+    let level = level(&scenario, 1e-4);
+    scenario.smooth_start = None;
+    for duration in [1e-2, 3e-3, 1e-3, 3e-4, 1e-4] {
+        scenario.duration = duration;
         let start = std::time::Instant::now();
-        let found = along(&scenario, &level, 2000).unwrap();
-        println!(
-            "{disturbance} N m: {:e} J, {:?}, {} slabs\n{:.4?}\n{:.4?}\n{:?}",
-            found.level,
-            start.elapsed(),
-            found.slabs,
-            found.torque.bound,
-            found.torque.nominal,
-            found.limits
-        );
-        assert!(bounds(&found).iter().all(|bound| bound.is_finite()));
+        let found = along(&scenario, &level, 1).unwrap();
+        println!("{duration} s: {:?}, {:.4?}, {:.4?}", start.elapsed(), bounds(&found), found.torque.nominal);
     }
 }
