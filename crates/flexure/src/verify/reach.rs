@@ -207,10 +207,8 @@ fn spread(rows: &[Vec3; 3]) -> Interval {
 /// Body k's own inertia about, or along, its joint's axis: a lower bound. Its inertia is one of a body.
 pub(super) fn own_inertia(k: usize, body: &Body) -> Result<f64, Rejected> {
     let (e, rows) = (unit_axis(k, body)?, inertia(body));
-    let point_mass = rows.iter().flatten().all(|entry| *entry == Interval::ZERO);
-    let definite = Symmetric::from_fn(3, |i, j| rows[i][j]).smallest_pivot() > 0.0;
-    ensure(point_mass || definite, format!("robot.links.bodies[{k}].inertia"), || {
-        "is neither positive definite nor zero".to_owned()
+    ensure(is_semidefinite(&rows), format!("robot.links.bodies[{k}].inertia"), || {
+        "is not positive definite where it is not exactly zero".to_owned()
     })?;
     let own = if body.travel.is_some() {
         body.mass.value
@@ -218,4 +216,10 @@ pub(super) fn own_inertia(k: usize, body: &Body) -> Result<f64, Rejected> {
         dot(e, turned(rows, e)) + body.mass.value * squared(cross(e, values(&body.com)))
     };
     Ok(own.lo())
+}
+
+/// Positive definite without the rows and columns that are exactly zero: thin rods have one, points three.
+fn is_semidefinite(rows: &[Vec3; 3]) -> bool {
+    let kept: Vec<_> = (0..3).filter(|&i| rows[i].iter().any(|entry| *entry != Interval::ZERO)).collect();
+    Symmetric::from_fn(kept.len(), |i, j| rows[kept[i]][kept[j]]).smallest_pivot() > 0.0
 }

@@ -2,7 +2,7 @@
 
 use flexure::verify::verify;
 
-use crate::CERTIFICATES;
+use crate::{CERTIFICATES, tree_with_a_rod};
 
 #[test]
 fn certificates_are_verified_and_every_claim_is_reported() {
@@ -55,6 +55,11 @@ fn the_paper_s_arm_has_the_rates_known_from_elsewhere() {
         assert!((sigma("blocks.sigma_l") / 69.013_154_939_393_06 - 1.0).abs() < 1e-12);
         assert!((sigma("blocks.sigma_m") / 44.347_826_086_956_52 - 1.0).abs() < 1e-12);
     }
+}
+
+#[test]
+fn a_thin_rod_is_a_body() {
+    verify(&tree_with_a_rod()).unwrap();
 }
 
 /// A pair stands for whatever lies between: the rates are those of the worst.

@@ -30,6 +30,14 @@ fn certificates() -> impl Iterator<Item = (&'static str, Value)> {
     CERTIFICATES.into_iter().map(|(name, text)| (name, serde_json::from_str(text).unwrap()))
 }
 
+/// The tree whose last body is a thin rod: no inertia about one axis.
+fn tree_with_a_rod() -> String {
+    let mut content: Value = serde_json::from_str(CERTIFICATES[1].1).unwrap();
+    content["robot"]["links"]["bodies"][2]["inertia"] =
+        serde_json::json!(["0", "0", "0", "0.0011", "0", "0.0011"]);
+    content.to_string()
+}
+
 /// Splitmix64: the same choices on every run.
 struct Noise(u64);
 

@@ -6,8 +6,8 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use crate::CERTIFICATES;
 use crate::mutants::all;
+use crate::{CERTIFICATES, tree_with_a_rod};
 
 const SCRIPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tools/check_certificate.py");
 
@@ -79,6 +79,8 @@ fn the_second_checker_agrees_on_certificates_and_on_every_mutant() {
         "{}",
         lines[4]
     );
+    let (exit, lines) = checked(&python, &[&tree_with_a_rod()]);
+    assert_eq!(exit, Some(0), "{lines:#?}");
     let mutants = all();
     let texts: Vec<_> = mutants.iter().map(|mutant| mutant.text.as_str()).collect();
     for (mutants, texts) in mutants.chunks(500).zip(texts.chunks(500)) {

@@ -72,7 +72,7 @@ type Change = (&'static str, &'static str, &'static [(&'static str, &'static str
 
 /// Changes in several places, after which everything holds but one thing.
 fn several() -> Vec<Mutant> {
-    let cases: [Change; 6] = [
+    let cases: [Change; 7] = [
         ("a witness outside the region", "two-link-tanh", &[("/structure/1/witness/error/0", "3.5")]),
         ("gains that are not the metric", "two-link-linear", &[("/controller/link/shaping/0", "56")]),
         (
@@ -97,6 +97,11 @@ fn several() -> Vec<Mutant> {
             ],
         ),
         ("an axis that is not of unit length", "tree", &[("/robot/links/bodies/2/axis/0", "0.99")]),
+        (
+            "an inertia that is none, where an entry is zero",
+            "tree",
+            &[("/robot/links/bodies/2/inertia/0", "0"), ("/robot/links/bodies/2/inertia/1", "0.0001")],
+        ),
         ("a travel the wrong way round", "tree", &[("/robot/links/bodies/2/travel/0", "0.26")]),
     ];
     let changed = |(what, name, changes): Change| {

@@ -6,7 +6,7 @@ use flexure_core::robots::{self, JointKind, Tree};
 
 use super::super::number::Number;
 use super::super::robot::Body;
-use super::mass_bound;
+use super::{mass_bound, own_inertia};
 
 const N: usize = 5;
 
@@ -75,6 +75,40 @@ fn body(noise: &mut Noise, k: usize) -> (robots::Body, Body) {
         inertia: [diagonal[0], a, b, diagonal[1], c, diagonal[2]].map(number),
     };
     (robots::Body { parent, kind, axis, rotation, translation, mass, com, inertia }, own)
+}
+
+#[test]
+fn rods_and_points_have_an_inertia() {
+    let is_one = |inertia: [f64; 6]| {
+        let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let body = Body {
+            parent: None,
+            travel: None,
+            axis: unit[2].map(number),
+            rotation: unit.map(|row| row.map(number)),
+            translation: [0.0; 3].map(number),
+            mass: number(1.0),
+            com: [0.5, 0.0, 0.0].map(number),
+            inertia: inertia.map(number),
+        };
+        own_inertia(0, &body).is_ok()
+    };
+    for inertia in [
+        [0.0; 6],
+        [0.0, 0.0, 0.0, 0.83, 0.0, 0.83],
+        [0.83, 0.0, 0.0, 0.0, 0.0, 0.83],
+        [0.02, 0.001, -0.002, 0.03, 0.0005, 0.025],
+    ] {
+        assert!(is_one(inertia), "{inertia:?}");
+    }
+    for inertia in [
+        [0.0, 0.1, 0.0, 0.8, 0.0, 0.8],
+        [0.0, 0.0, 0.0, 0.8, 0.9, 0.8],
+        [0.0, 0.0, 0.0, 0.0, 0.1, 0.0],
+        [0.0, 0.0, 0.0, -0.8, 0.0, 0.8],
+    ] {
+        assert!(!is_one(inertia), "{inertia:?}");
+    }
 }
 
 /// What a slider carries is as far out as the slider goes: here the bound is reached.
