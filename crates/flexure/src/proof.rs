@@ -52,8 +52,11 @@ pub enum Region {
     Start(Vec<f64>),
 }
 
-/// Slabs of time that bounds along a reference may look at.
-const SLABS: usize = 4000;
+/// Slabs of time that bounds along the reference of `joints` joints may look at: one costs the more the more joints there
+/// are, 40 ms for seven.
+fn slabs(joints: usize) -> usize {
+    8000 / joints.pow(3)
+}
 
 /// Largest error where none is named and φ has no rate everywhere \[rad\].
 const ASSUMED_ERROR: f64 = 1.0;
@@ -172,7 +175,8 @@ pub fn prove(scenario: &Scenario, question: &Question) -> Result<Proof, Problems
         _ => None,
     };
     let tube = verdict.proved().and_then(|certificate| certificate.tube.as_ref());
-    let along = tube.map(|tube| along(scenario, &tube.level, SLABS)).transpose()?;
+    let along =
+        tube.map(|tube| along(scenario, &tube.level, slabs(scenario.robot.joint_count()))).transpose()?;
     Ok(Proof {
         confirmation,
         start,

@@ -85,9 +85,14 @@ fn smallest<const N: usize>(
 ) -> (f64, Vector<f64, N>) {
     // Kronecker sequence of the root of x^(N+1) = x + 1 (M. Roberts, 2018): even in every dimension.
     let root = (0..50).fold(2.0_f64, |x, _| (1.0 + x).powf(1.0 / (N as f64 + 1.0)));
+    let mut power = 1.0;
+    let steps = Vector::<f64, N>::from_fn(|_| {
+        power /= root;
+        power
+    });
     let at = |k: u32| {
         Vector::<f64, N>::from_fn(|i| {
-            let phase = (0.5 + f64::from(k) * root.powi(-(i as i32 + 1))).fract();
+            let phase = (0.5 + f64::from(k) * steps[i]).fract();
             let (low, high) = ranges[i];
             low + (high - low) * phase
         })

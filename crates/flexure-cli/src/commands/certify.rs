@@ -97,7 +97,7 @@ fn question(options: &Certify, scenario: &Scenario) -> Result<Question, Failure>
         ));
     }
     let (speed, budget) = (options.speed, options.budget);
-    if !(speed >= 0.0 && speed <= LARGEST) {
+    if !(0.0..=LARGEST).contains(&speed) {
         let message = format!("--speed is {speed} rad/s, must be >= 0 and at most 1e30");
         return Err(Failure::input("range", message, "the largest speed of the links that is looked at"));
     }

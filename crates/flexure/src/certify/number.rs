@@ -31,7 +31,11 @@ impl Number {
     /// A number that is computed from those of a file: a decimal only where it is known exactly.
     pub fn computed(bounds: Interval) -> Self {
         let decimal = Self::decimal(bounds.lo());
-        if bounds.lo() == bounds.hi() && decimal.bounds() == bounds { decimal } else { Self::between(bounds) }
+        if decimal.bounds() == Interval::point(bounds.lo()) && decimal.bounds() == bounds {
+            decimal
+        } else {
+            Self::between(bounds)
+        }
     }
 
     /// The bounds themselves, exactly: a float's shortest decimal may lie beside it, so both ends take one step out.

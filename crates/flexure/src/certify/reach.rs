@@ -153,7 +153,7 @@ fn reaches(bodies: &[Enclosed], k: usize) -> Vec<(usize, Reach)> {
     let mut found = vec![(k, start.slid(body))];
     while let Some(&(j, reach)) = found.last() {
         let Some(i) = bodies[j].parent else { break };
-        found.push((i, reach.from_parent(&bodies[j], bodies[i].axis).slid(&bodies[i])));
+        found.push((i, reach.seen_from_parent(&bodies[j], bodies[i].axis).slid(&bodies[i])));
     }
     found
 }
@@ -171,7 +171,7 @@ impl Reach {
     }
 
     /// Seen from the parent of `body`, whose joint has the axis `e`; the joint of `body` at any angle.
-    fn from_parent(&self, body: &Enclosed, e: V) -> Self {
+    fn seen_from_parent(&self, body: &Enclosed, e: V) -> Self {
         let (o, z) = (body.translation, body.axis_in_parent());
         let c = z.dot(e);
         // Rounding may take 1 − c² below 0: the part above counts.

@@ -65,7 +65,10 @@ pub fn level_that_holds(errors: &[Number], metric: &[Interval]) -> f64 {
 ///
 /// Ẇ ≤ −2 b W_m − 2 β (W − W_m) + δ √(2 W_m) with δ² = Σ d_i²/M_m,i, whatever share W_m the motor momenta have of W.
 ///
-/// `motor_rate` is b, `other_rate` the smallest of the other three. None if no level inside the region is large enough.
+/// `motor_rate` is b, `other_rate` the smallest of the other three.
+///
+/// # Errors
+/// If no level inside the region is large enough: says which would be.
 pub fn tube(
     robot: &Robot,
     disturbance: &[Number],

@@ -30,7 +30,7 @@ pub fn claims(phi: Phi, sides: &[SideOf<'_>]) -> Result<Vec<Structure>, String> 
     let variational = if kept {
         holding(variational)
     } else {
-        failing(variational, search(sides, &asymmetry).ok_or("∂φ Π⁻¹ may or may not be symmetric")?)
+        failing(variational, search(sides, asymmetry).ok_or("∂φ Π⁻¹ may or may not be symmetric")?)
     };
 
     let ph_like = StructureName::PhLike;
@@ -41,7 +41,7 @@ pub fn claims(phi: Phi, sides: &[SideOf<'_>]) -> Result<Vec<Structure>, String> 
     let ph_like = if phi == Phi::Linear && sides.iter().all(equal) {
         holding(ph_like)
     } else {
-        failing(ph_like, search(sides, &distance).ok_or("∂φ may or may not be Π")?)
+        failing(ph_like, search(sides, distance).ok_or("∂φ may or may not be Π")?)
     };
     Ok(vec![
         variational,
@@ -66,7 +66,7 @@ fn distance(position: &Position, a: &[Interval], i: usize, j: usize) -> Interval
 /// The error, among 0 and those with one joint far out, and the entry at which `difference` is largest.
 fn search(
     sides: &[SideOf<'_>],
-    difference: &dyn Fn(&Position, &[Interval], usize, usize) -> Interval,
+    difference: fn(&Position, &[Interval], usize, usize) -> Interval,
 ) -> Option<Witness> {
     let mut found: Option<(f64, Witness)> = None;
     for SideOf { side, position, .. } in sides {

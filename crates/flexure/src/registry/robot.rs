@@ -72,21 +72,22 @@ pub fn with_twins<V: TwinVisitor>(data: &io::Robot, visitor: V) -> Result<V::Out
             }
         };
     }
-    use io::Links::{Pendulum, PlanarTwoLink, Tree};
     Ok(match (&data.enclosed, &data.links) {
-        (Tree(enclosed), Tree(bodies)) => joint_counts!(tree, enclosed, bodies),
+        (io::Links::Tree(enclosed), io::Links::Tree(bodies)) => joint_counts!(tree, enclosed, bodies),
         (
-            &PlanarTwoLink { mass, length, com, inertia },
-            &PlanarTwoLink { mass: m, length: l, com: c, inertia: i },
+            &io::Links::PlanarTwoLink { mass, length, com, inertia },
+            &io::Links::PlanarTwoLink { mass: m, length: l, com: c, inertia: i },
         ) => visitor.visit::<_, _, 2>(
             robot(data, robots::PlanarTwoLink::new(mass, length[0], com, inertia), bounds),
             robot(data, robots::PlanarTwoLink::new(m, l[0], c, i), |x| x),
         ),
-        (&Pendulum { mass, com, inertia }, &Pendulum { mass: m, com: c, inertia: i }) => visitor
-            .visit::<_, _, 1>(
-                robot(data, pendulum(mass, com, inertia, gravity), bounds),
-                robot(data, pendulum(m, c, i, data.gravity), |x| x),
-            ),
+        (
+            &io::Links::Pendulum { mass, com, inertia },
+            &io::Links::Pendulum { mass: m, com: c, inertia: i },
+        ) => visitor.visit::<_, _, 1>(
+            robot(data, pendulum(mass, com, inertia, gravity), bounds),
+            robot(data, pendulum(m, c, i, data.gravity), |x| x),
+        ),
         _ => unreachable!("enclosed links are of the same kind"),
     })
 }

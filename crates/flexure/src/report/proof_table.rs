@@ -203,7 +203,7 @@ fn witness(witness: &WitnessSummary) -> String {
 /// Numbers with blanks; one if all are the same.
 fn list(numbers: &[f64]) -> String {
     match numbers {
-        [first, rest @ ..] if rest.iter().all(|x| x == first) => short(*first, 3),
+        [first, rest @ ..] if rest.iter().all(|x| x.total_cmp(first).is_eq()) => short(*first, 3),
         _ => format!("({})", numbers.iter().map(|&x| short(x, 3)).collect::<Vec<_>>().join(", ")),
     }
 }

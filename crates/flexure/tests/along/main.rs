@@ -6,14 +6,14 @@ mod simulated;
 mod slabs;
 
 use flexure::along::{Along, along, start_level};
-use flexure::certify::Number;
+use flexure::certify::{Number, certify};
 use flexure::core::control::Input;
 use flexure::core::linalg::Vector;
 use flexure::core::model::{Links, Motion};
 use flexure::core::reference::Reference as _;
 use flexure::core::virtual_system::{Structure, error_coordinates};
 use flexure::io::{Profile, Reference, Scenario, load_scenario};
-use flexure::proof::{Question, Region, prove};
+use flexure::proof::{Question, Region, problem};
 use floats::{Floats, Numbers};
 
 /// The level of the tube under a disturbance of so much on every motor [N m].
@@ -21,11 +21,11 @@ fn level(scenario: &Scenario, disturbance: f64) -> Number {
     let n = scenario.robot.joint_count();
     let question = Question {
         region: Region::Errors(vec![0.5; 2 * n]),
-        rate: None,
         disturbance: Some(vec![disturbance; n]),
+        ..Question::default()
     };
-    let proof = prove(scenario, &question).unwrap();
-    proof.verdict.proved().unwrap_or_else(|| panic!("{:?}", proof.verdict)).tube.clone().unwrap().level
+    let verdict = certify(&problem(scenario, &question, None).unwrap());
+    verdict.proved().unwrap_or_else(|| panic!("{verdict:?}")).tube.clone().unwrap().level
 }
 
 /// Velocity, deflection, torque, each for all joints.
@@ -156,21 +156,5 @@ fn seven_joints() {
     let found = along(&scenario, &level, 8).unwrap();
     for (bound, nominal) in found.torque.bound.iter().zip(&found.torque.nominal) {
         assert!(nominal <= bound && *bound < nominal + 0.3, "{bound} {nominal}");
-    }
-}
-
-/// How short slabs must be in full motion: intervals lose the symmetry of articulated inertias, so that bounds are infinite
-/// where joints turn by more than a milliradian or so.
-#[test]
-#[ignore = "an exploration"]
-fn seven_joints_in_motion() {
-    let mut scenario = load_scenario("panda-tanh-smooth").unwrap();
-    let level = level(&scenario, 1e-4);
-    scenario.smooth_start = None;
-    for duration in [1e-2, 3e-3, 1e-3, 3e-4, 1e-4] {
-        scenario.duration = duration;
-        let start = std::time::Instant::now();
-        let found = along(&scenario, &level, 1).unwrap();
-        println!("{duration} s: {:?}, {:.4?}, {:.4?}", start.elapsed(), bounds(&found), found.torque.nominal);
     }
 }
