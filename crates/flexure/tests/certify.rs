@@ -1,10 +1,12 @@
 //! Certificates of the two-link robot with the paper's gains: the figures of the theory.
 
-use flexure::certify::certificate::{BlockName, Body, Controller, Gains, JointKind, Links, Phi, Robot};
+use flexure::certify::certificate::{
+    BlockName, Body, Controller, Gains, JointKind, Links, Phi, Robot, Side, StructureName, Witness,
+};
 use flexure::certify::{Certificate, Number, Problem, Request, State, Verdict, certify};
 use flexure::io::{SCENARIOS, load_scenario};
 use flexure::proof::{Question, prove};
-use flexure_core::control::{CoupledTanh, Shaping};
+use flexure_core::control::{CoupledTanh, Linear, Shaping, Tanh};
 use flexure_core::linalg::Vector;
 
 fn decimals(numbers: &[f64]) -> Vec<Number> {
@@ -75,7 +77,7 @@ fn tight(rate: &Number, exact: f64) {
 fn block_rates_are_the_exact_ones() {
     let exact = [
         (Phi::Linear, 30.0, 30.0),
-        (Phi::Tanh, 0.295981114963205738, 9.950547536867305),
+        (Phi::Tanh, 0.295_981_114_963_205_74, 9.950547536867305),
         (Phi::CoupledTanh, 10.0 - 2.0_f64.sqrt(), 10.0 - 2.0_f64.sqrt()),
     ];
     for (phi, contraction, convergence) in exact {
@@ -87,8 +89,8 @@ fn block_rates_are_the_exact_ones() {
                     tight(&block.convergence, convergence);
                 }
                 BlockName::PhiM => {}
-                BlockName::SigmaL => tight(&block.contraction, 69.0131549393930643),
-                BlockName::SigmaM => tight(&block.contraction, 44.3478260869565217),
+                BlockName::SigmaL => tight(&block.contraction, 69.013_154_939_393_06),
+                BlockName::SigmaM => tight(&block.contraction, 44.347_826_086_956_52),
             }
         }
         tight(&certificate.contraction_rate, contraction);
@@ -188,4 +190,41 @@ fn travel_bounds_a_sliding_joint() {
     let found = rate(Some([-1.0, 3.0])).expect("bounded");
     assert!((0.5..=15.8 / 18.2).contains(&found), "{found}");
     assert!(rate(None).is_none());
+}
+
+/// theory.md, section 6: which of the family keeps what, each loss with a state at which the slopes of the very φ show it.
+#[test]
+fn structures_are_kept_as_the_theory_says() {
+    let metric = [[55.0, 30.0], [70.0, 60.0]];
+    for (phi, variational, ph_like) in
+        [(Phi::Tanh, true, false), (Phi::Linear, true, true), (Phi::CoupledTanh, false, false)]
+    {
+        let certificate = proved(phi);
+        let holds = |name| certificate.structure.iter().find(|claim| claim.name == name).unwrap();
+        assert_eq!(holds(StructureName::VariationalPh).holds, variational, "{phi:?}");
+        assert_eq!(holds(StructureName::PhLike).holds, ph_like, "{phi:?}");
+        assert!(holds(StructureName::StrictDifferentialPassivity).holds);
+        for claim in certificate.structure.iter().filter(|claim| !claim.holds) {
+            let Witness { side, error, row, column, difference } = claim.witness.as_ref().unwrap();
+            let gain = metric[usize::from(*side == Side::Motor)];
+            let e = Vector([error[0].approximate(), error[1].approximate()]);
+            let slope = match phi {
+                Phi::Tanh => Tanh { gain: Vector(gain) }.slope(&e),
+                Phi::Linear => Linear { gain: Vector(gain) }.slope(&e),
+                Phi::CoupledTanh => CoupledTanh::new(Vector([10.0, 8.0]), &Vector(gain)).slope(&e),
+            };
+            let (i, j) = (*row, *column);
+            let found = match claim.name {
+                StructureName::VariationalPh => slope[(i, j)] / gain[j] - slope[(j, i)] / gain[i],
+                _ => slope[(i, j)] - if i == j { gain[i] } else { 0.0 },
+            };
+            assert!(found.abs() >= difference.approximate(), "{phi:?}: {claim:?}, {found}");
+        }
+    }
+    // The same gain everywhere but one last digit: no longer the gradient of its own metric.
+    let mut close = problem(Phi::Linear, Request::Everywhere);
+    close.controller.motor.shaping[1] = Number::decimal(60.000_000_000_001);
+    let verdict = certify(&close);
+    let claim = &verdict.proved().unwrap().structure[1];
+    assert_eq!((claim.name, claim.holds), (StructureName::PhLike, false));
 }
