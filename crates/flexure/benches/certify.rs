@@ -31,7 +31,7 @@ const TANH_CONVERGENCE: f64 = 9.950_547_536_867_305;
 fn problem(scenario: &str, error: f64) -> Problem {
     let scenario = load_scenario(scenario).expect("built in");
     let region = Region::Errors(vec![error; 2 * scenario.robot.joint_count()]);
-    flexure::proof::problem(&scenario, &Question { region, ..Question::default() })
+    flexure::proof::problem(&scenario, &Question { region, ..Question::default() }, None)
         .expect("a constant metric")
 }
 

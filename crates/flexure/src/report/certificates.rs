@@ -44,7 +44,7 @@ pub(super) fn section(certificates: &[CertificateReport]) -> Markup {
             }
         }
         p.note {
-            "φ_l … σ_m: contraction rates of the blocks of positions and momenta, links and motors. Check a certificate with "
+            (super::html::symbols("φ_l … σ_m")) ": contraction rates of the blocks of positions and momenta, links and motors. Check a certificate with "
             code { "flexure verify FILE" } " or " code { "tools/check_certificate.py FILE" } ": "
             @for (i, certificate) in certificates.iter().enumerate() {
                 @if i > 0 { ", " }

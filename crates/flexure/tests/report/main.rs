@@ -2,9 +2,13 @@
 
 mod fake;
 
+use flexure::io::load_scenario;
+use flexure::proof::{Question, prove};
+use flexure::proof_summary::ProofSummary;
 use flexure::report::decimate::{bucket_size, decimate, envelope};
 use flexure::report::{
-    Assumption, FigureOptions, Report, RunReport, comparison, four_panel, html, png, summary_table,
+    Assumption, CertificateReport, FigureOptions, Report, RunReport, certificate_table, comparison,
+    four_panel, html, png, proof_table, summary_table,
 };
 use flexure::summary::Summary;
 use flexure::trace::Trace;
@@ -193,6 +197,11 @@ fn report() -> Report {
         introduction: "One.\n\nTwo & three.".to_owned(),
         runs: vec![run("<script>name</script>"), run("linear")],
         comparison_svg: Some(comparison(&[("tanh", &trace)])),
+        certificates: vec![CertificateReport {
+            summary: proof(),
+            phi: "<script>phi</script>".to_owned(),
+            file: "<script>.certificate.json".to_owned(),
+        }],
         assumptions: vec![Assumption {
             file: "robots/<script>.toml".to_owned(),
             key: "joints.stiffness".to_owned(),
@@ -200,6 +209,21 @@ fn report() -> Report {
             note: "not in the paper's table".to_owned(),
         }],
         provenance: vec!["flexure 0.1.0".to_owned()],
+    }
+}
+
+fn proof() -> ProofSummary {
+    let scenario = load_scenario("two-link-tanh").unwrap();
+    ProofSummary::new("two-link-tanh", &prove(&scenario, &Question::default()).unwrap())
+}
+
+#[test]
+fn proofs_fit_100_columns() {
+    let table = certificate_table(&[proof()]);
+    assert!(table.lines().all(|line| line.chars().count() <= 100), "{table}");
+    let text = proof_table(&proof());
+    for line in ["region", "invariant", "start", "mass matrix", "tightness", "measures", "structure"] {
+        assert!(text.contains(&format!("\n{line} ")), "{line} in\n{text}");
     }
 }
 
@@ -220,7 +244,7 @@ fn the_page_stands_alone_and_comes_out_the_same() {
     assert_eq!(page.matches("://").count(), page.matches("xmlns=\"http://www.w3.org/2000/svg\"").count());
     assert!(!page.contains("0.123"), "the wall-clock time has no place in a reproducible page");
     assert_eq!(page, html(&report()));
-    assert!(page.contains("proof not part of this version"));
+    assert!(page.contains("69.0") && page.contains("variational pH"), "the certificate's row");
 }
 
 #[test]
