@@ -133,7 +133,7 @@ impl Position {
     pub fn error_at(&self, far: &[bool]) -> Vec<f64> {
         let entry = |(&far, error): (&bool, &Option<Interval>)| match (far, error) {
             (false, _) => 0.0,
-            (true, Some(error)) if error.lo() == error.hi() => error.lo(),
+            (true, Some(error)) if error.width() == 0.0 => error.lo(),
             // Its shortest decimal still lies inside.
             (true, Some(error)) => error.lo().next_down().next_down(),
             (true, None) => 1.0,

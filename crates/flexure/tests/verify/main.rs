@@ -8,6 +8,7 @@ mod accepted;
 mod lists;
 mod mangled;
 mod mutants;
+mod prover;
 mod python;
 mod signs;
 mod values;

@@ -66,6 +66,13 @@ fn code(line: &str) -> i32 {
     }
 }
 
+/// What the second checker says of each text, as an exit code; none where it cannot be run.
+pub fn codes(texts: &[String]) -> Option<Vec<i32>> {
+    let texts: Vec<&str> = texts.iter().map(String::as_str).collect();
+    let (_, lines) = checked(&interpreter()?, &texts);
+    Some(lines.iter().map(|line| code(line)).collect())
+}
+
 #[test]
 fn the_second_checker_agrees_on_certificates_and_on_every_mutant() {
     let Some(python) = interpreter() else {

@@ -1,0 +1,87 @@
+//! What the prover writes: both checkers accept it for every built-in scenario, and refuse it once it claims a millionth
+//! more, or lacks a case.
+
+use flexure::certify::certify;
+use flexure::io::{SCENARIOS, load_scenario};
+use flexure::proof::{Question, Region, problem};
+use flexure::verify::verify;
+use serde_json::Value;
+
+use crate::python;
+
+/// A certificate of each scenario: errors up to 0.3 rad, and a disturbance of 0.1 mN m on every motor.
+fn certificates() -> Vec<(&'static str, Value)> {
+    SCENARIOS
+        .iter()
+        .map(|&(name, _)| {
+            let scenario = load_scenario(name).unwrap();
+            let n = scenario.robot.joint_count();
+            let question = Question {
+                region: Region::Errors(vec![0.3; 2 * n]),
+                disturbance: Some(vec![1e-4; n]),
+                ..Question::default()
+            };
+            let verdict = certify(&problem(&scenario, &question, None).unwrap());
+            let certificate = verdict.proved().unwrap_or_else(|| panic!("{name}: {verdict:?}"));
+            (name, serde_json::to_value(certificate).unwrap())
+        })
+        .collect()
+}
+
+/// The number at `path` times `factor`.
+fn scaled(certificate: &Value, paths: &[&str], factor: f64) -> Value {
+    let mut mutant = certificate.clone();
+    for path in paths {
+        let number = mutant.pointer_mut(path).unwrap();
+        *number = (number.as_str().unwrap().parse::<f64>().unwrap() * factor).to_string().into();
+    }
+    mutant
+}
+
+/// Every claim a millionth stronger, one at a time, and every block without its last case.
+fn mutants(certificate: &Value) -> Vec<Value> {
+    let mut mutants = vec![
+        scaled(certificate, &["/contraction_rate"], 1.0 + 1e-6),
+        scaled(certificate, &["/convergence_rate"], 1.0 + 1e-6),
+        scaled(certificate, &["/region/level"], 1.0 + 1e-6),
+        scaled(certificate, &["/tube/level"], 1.0 - 1e-6),
+    ];
+    for block in 0..4 {
+        let of = |rate: &str| format!("/blocks/{block}/{rate}");
+        let (contraction, convergence) = (of("contraction"), of("convergence"));
+        if block < 2 {
+            mutants.push(scaled(certificate, &[&contraction], 1.0 + 1e-6));
+            mutants.push(scaled(certificate, &[&convergence], 1.0 + 1e-6));
+        } else {
+            mutants.push(scaled(certificate, &[&contraction, &convergence], 1.0 + 1e-6));
+        }
+        let mut fewer = certificate.clone();
+        fewer.pointer_mut(&of("cases")).unwrap().as_array_mut().unwrap().pop();
+        mutants.push(fewer);
+    }
+    for measure in 0..6 {
+        mutants.push(scaled(certificate, &[&format!("/measures/{measure}/bound")], 1.0 + 1e-6));
+    }
+    mutants
+}
+
+#[test]
+fn both_checkers_accept_what_the_prover_writes_and_nothing_stronger() {
+    let certificates = certificates();
+    let genuine: Vec<String> = certificates.iter().map(|(_, certificate)| certificate.to_string()).collect();
+    let stronger: Vec<String> = certificates
+        .iter()
+        .flat_map(|(_, certificate)| mutants(certificate))
+        .map(|mutant| mutant.to_string())
+        .collect();
+    for ((name, _), text) in certificates.iter().zip(&genuine) {
+        verify(text).unwrap_or_else(|rejected| panic!("{name}: {rejected}"));
+    }
+    assert!(stronger.iter().all(|text| verify(text).is_err()));
+    if let Some(codes) = python::codes(&genuine) {
+        assert!(codes.iter().all(|&code| code == 0), "{codes:?}");
+    }
+    if let Some(codes) = python::codes(&stronger) {
+        assert!(codes.iter().all(|&code| code == 1), "{codes:?}");
+    }
+}
