@@ -249,7 +249,7 @@ impl Proof {
             Verdict::Proved(_) => match &self.confirmation {
                 Some(Verdict::Refuted(witness)) => {
                     let message = format!(
-                        "{}: the direct engine finds {:.6e} 1/s at {:?}, below the certified rate: one of both is wrong",
+                        "{}: the direct engine finds {:.6e} 1/s at {}, below the certified rate: one of both is wrong",
                         scenario.name, witness.rate, witness.at
                     );
                     Some((problem("contradiction", message, "do not trust the certificate; report it"), true))

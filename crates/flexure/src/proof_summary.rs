@@ -240,7 +240,7 @@ fn direct(confirmation: &Confirmation) -> DirectSummary {
     let verdict = confirmation.word();
     let (rate, boxes, at) = match confirmation {
         Verdict::Proved(proved) => (Some(proved.rate), Some(proved.boxes), None),
-        Verdict::Refuted(witness) => (None, None, Some(format!("{:?}", witness.at))),
+        Verdict::Refuted(witness) => (None, None, Some(witness.at.to_string())),
         Verdict::Undecided(undecided) => (None, Some(undecided.spent), Some(undecided.at.clone())),
     };
     DirectSummary { verdict, rate, boxes, at }

@@ -45,7 +45,7 @@ pub fn best_rate(flow: &dyn Flow, budget: usize) -> Verdict<Best, Witness> {
         return undecided("the metric is positive definite at no sample".to_owned(), 0);
     };
     let Some((mut upper, _)) = weakest.bounds(flow, 0.0) else {
-        return undecided(format!("no bound of the rate at {:?}", weakest.state(flow)), 0);
+        return undecided(format!("no bound of the rate at {}", weakest.state(flow)), 0);
     };
     if let Some(witness) = weakest.refutes(flow, 0.0) {
         return Verdict::Refuted(witness);

@@ -11,6 +11,16 @@ pub struct State {
     pub coordinates: Vec<(String, f64)>,
 }
 
+impl std::fmt::Display for State {
+    /// `e_l[0] = 0.5, …`
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        for (i, (name, value)) in self.coordinates.iter().enumerate() {
+            write!(f, "{}{name} = {value:.6}", if i == 0 { "" } else { ", " })?;
+        }
+        Ok(())
+    }
+}
+
 /// A state where √W does not decay at the claimed rate, and the direction in which it does not.
 ///
 /// Plain `f64` found it and intervals confirmed it: the real value at this very state is at most `value`, for all constants
