@@ -114,10 +114,10 @@ pub struct Certify {
     #[arg(long)]
     pub direct: bool,
     /// With --direct: largest speed of the links, rad/s.
-    #[arg(long, value_name = "V", default_value_t = 5.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "V", default_value_t = 5.0, allow_negative_numbers = true, requires = "direct")]
     pub speed: f64,
     /// With --direct: boxes that may be looked at.
-    #[arg(long, value_name = "BOXES", default_value_t = 1000)]
+    #[arg(long, value_name = "BOXES", default_value_t = 1000, requires = "direct")]
     pub budget: usize,
     /// Certificate file; default out/NAME.certificate.json.
     #[arg(long, value_name = "FILE")]

@@ -181,10 +181,14 @@ fn verdict(
         .find_map(|candidate| exceeding::confirm(scenario, &candidate, level, k, exact.hi()));
     found.map_or_else(
         || {
-            let at = format!(
-                "near t = {time:.4} s the bound is {bound:.6e}, above the limit of {limit}; the largest value seen is \
-                 {seen:.6e}"
-            );
+            let at = if bound.is_finite() {
+                format!(
+                    "near t = {time:.4} s the bound is {bound:.6e}, above the limit of {limit}; the largest value seen is \
+                     {seen:.6e}"
+                )
+            } else {
+                format!("no finite bound was found near t = {time:.4} s")
+            };
             Verdict::Undecided(Undecided { at, spent: course.spent })
         },
         Verdict::Refuted,

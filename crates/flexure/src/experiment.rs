@@ -148,7 +148,7 @@ fn certificate_report(certified: &Certified) -> CertificateReport {
     let Certified { scenario, proof } = certified;
     let Controller::Vcbc { phi, .. } = &scenario.controller;
     CertificateReport {
-        summary: ProofSummary::new(&scenario.name, proof),
+        summary: ProofSummary::new(scenario, proof),
         phi: phi.name().to_owned(),
         file: certificate_name(&scenario.name),
     }

@@ -40,6 +40,9 @@ pub struct Direct {
     pub budget: usize,
 }
 
+/// Smallest error that a region can be made of \[rad\]: with smaller ones the slopes of tanh are 1 to rounding.
+pub const SMALLEST_ERROR: f64 = 1e-6;
+
 /// Where a claim shall hold.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Region {
@@ -105,6 +108,7 @@ pub fn problem(
         .assumptions
         .iter()
         .map(|assumed| format!("{}: {} = {}: {}", assumed.file, assumed.key, assumed.value, assumed.note))
+        .chain(beyond_the_model(scenario))
         .collect();
     let errors = |errors: &[f64]| errors.iter().map(|&e| Number::decimal(e)).collect::<Vec<_>>();
     let metric: Vec<_> =
@@ -128,6 +132,37 @@ pub fn problem(
         controller,
         region,
         disturbance,
+    })
+}
+
+/// What the scenario has and a certificate does not speak of.
+fn beyond_the_model(scenario: &Scenario) -> Vec<String> {
+    let mut notes = Vec::new();
+    if scenario.hold == io::Hold::ZeroOrder {
+        let period = scenario.control_period;
+        notes.push(format!("continuous time: the torque of this scenario is held for {period} s"));
+    }
+    for option in scenario.plant.options() {
+        notes.push(format!("the model of the law: plant.{option} of this scenario is left out"));
+    }
+    let robot = &scenario.robot;
+    for (i, joint) in robot.joints.iter().enumerate() {
+        if joint.kind == io::JointKind::Prismatic {
+            let (lower, upper) = (robot.limits.lower[i], robot.limits.upper[i]);
+            notes
+                .push(format!("{} slides between {lower} and {upper} m: nothing is said beyond", joint.name));
+        }
+    }
+    notes
+}
+
+/// Whether a sliding joint starts outside its travel.
+fn outside_travel(scenario: &Scenario) -> bool {
+    let robot = &scenario.robot;
+    robot.joints.iter().enumerate().any(|(i, joint)| {
+        let q = scenario.initial.q_l[i];
+        joint.kind == io::JointKind::Prismatic
+            && !(robot.limits.lower[i]..=robot.limits.upper[i]).contains(&q)
     })
 }
 
@@ -157,7 +192,7 @@ fn uneven_metric(scenario: &Scenario) -> Option<Problem> {
 /// Where no certificate can speak of it: with the place and the reason.
 pub fn prove(scenario: &Scenario, question: &Question) -> Result<Proof, Problems> {
     let started = Clock::now();
-    let start = start_level(scenario).ok();
+    let start = start_level(scenario).ok().filter(|_| !outside_travel(scenario));
     let problem = problem(scenario, question, start)?;
     let damping: Vec<f64> = {
         let io::Controller::Vcbc { link, .. } = &scenario.controller;
@@ -174,9 +209,10 @@ pub fn prove(scenario: &Scenario, question: &Question) -> Result<Proof, Problems
         }
         _ => None,
     };
-    let tube = verdict.proved().and_then(|certificate| certificate.tube.as_ref());
-    let along =
-        tube.map(|tube| along(scenario, &tube.level, slabs(scenario.robot.joint_count()))).transpose()?;
+    let along = match verdict.proved().and_then(|certificate| level_of_the_run(certificate, start)) {
+        Some(level) => Some(along(scenario, &level, slabs(scenario.robot.joint_count()))?),
+        None => None,
+    };
     Ok(Proof {
         confirmation,
         start,
@@ -187,6 +223,20 @@ pub fn prove(scenario: &Scenario, question: &Question) -> Result<Proof, Problems
         assumptions: problem.assumptions,
         wall_seconds: started.elapsed().as_secs_f64(),
     })
+}
+
+/// The level of W that a run from `start` never leaves under the certificate's disturbance: that of the tube, or of the start
+/// where that is more. None without a disturbance, and for a start that is not known to lie in the region.
+fn level_of_the_run(certificate: &Certificate, start: Option<f64>) -> Option<Number> {
+    let tube = certificate.tube.as_ref()?.level.clone();
+    let start = start.filter(|&start| inside(certificate, start))?;
+    // Its decimal may lie a step below.
+    Some(if start <= tube.bounds().lo() { tube } else { Number::decimal(start.next_up()) })
+}
+
+/// Whether {W ≤ `level`} lies in the certificate's invariant set.
+pub(crate) fn inside(certificate: &Certificate, level: f64) -> bool {
+    certificate.region.level.as_ref().is_none_or(|c| level <= c.bounds().lo())
 }
 
 /// The verdict on a contraction rate of `rate`, from the largest one that was proved.
@@ -241,6 +291,15 @@ fn slower(rate: f64, certificate: &Certificate, sampled: &Sampled, damping: &[f6
 }
 
 impl Proof {
+    /// The verdict on everything that was asked, in a word.
+    pub fn word(&self, scenario: &Scenario) -> &'static str {
+        match self.complaint(scenario) {
+            None => "proved",
+            Some((_, true)) => "refuted",
+            Some((_, false)) => "undecided",
+        }
+    }
+
     /// What to say where nothing was proved, and whether that is because it is wrong.
     pub fn complaint(&self, scenario: &Scenario) -> Option<(Problem, bool)> {
         let problem =
@@ -254,11 +313,21 @@ impl Proof {
                     );
                     Some((problem("contradiction", message, "do not trust the certificate; report it"), true))
                 }
+                Some(Verdict::Undecided(undecided))
+                    if self.limits(scenario).is_none_or(|(_, wrong)| !wrong) =>
+                {
+                    let message = format!(
+                        "{}: the direct engine did not decide within {} boxes; the certificate of the structural engine \
+                         stands without it",
+                        scenario.name, undecided.spent
+                    );
+                    Some((problem("undecided", message, "raise --budget, or lower --speed"), false))
+                }
                 _ => self.limits(scenario),
             },
             Verdict::Refuted(witness) => {
                 let message = format!(
-                    "{}: the closed loop does not contract at the rate asked for: {} has {:.6} 1/s in one direction",
+                    "{}: the closed loop does not contract fast enough: {} has {:.6} 1/s in one direction",
                     scenario.name,
                     witness.block.name(),
                     witness.rate

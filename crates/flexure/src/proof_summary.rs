@@ -6,7 +6,8 @@ use crate::along::Along;
 use crate::certify::certificate::{Block, BlockName, Norm, Side, Structure, StructureName};
 use crate::certify::{Certificate, Number, State, Verdict};
 use crate::confirmation::Confirmation;
-use crate::proof::Proof;
+use crate::io::Scenario;
+use crate::proof::{Proof, inside};
 use crate::sampling::Sampled;
 
 /// What was proved, as numbers.
@@ -14,7 +15,7 @@ use crate::sampling::Sampled;
 pub struct ProofSummary {
     /// The scenario.
     pub name: String,
-    /// `proved`, `refuted` or `undecided`.
+    /// `proved`, `refuted` or `undecided`: on everything that was asked. Rates stand where they were proved.
     pub verdict: &'static str,
     /// Proved contraction rate [1/s].
     pub contraction_rate: Option<f64>,
@@ -32,8 +33,8 @@ pub struct ProofSummary {
     pub measures: Vec<MeasureSummary>,
     /// Which structures are kept.
     pub structure: Vec<StructureSummary>,
-    /// Whether the mass matrix was proved to be positive definite at every configuration.
-    pub mass_matrix_positive_definite: bool,
+    /// True where the mass matrix was proved to be positive definite at every configuration.
+    pub mass_matrix_positive_definite: Option<bool>,
     /// The links' momentum block, sampled over all configurations.
     pub sampled: Sampled,
     /// Proved rate of the links' momentum block over the sampled one.
@@ -179,8 +180,8 @@ impl BlockRates {
 }
 
 impl ProofSummary {
-    /// Of a proof of the scenario called `name`.
-    pub fn new(name: &str, proof: &Proof) -> Self {
+    /// Of a proof of `scenario`.
+    pub fn new(scenario: &Scenario, proof: &Proof) -> Self {
         let certificate = proof.verdict.proved();
         let sigma_l = |c: &Certificate| BlockRates::of(&c.blocks, |block| &block.contraction).sigma_l;
         let (witness, undecided) = match &proof.verdict {
@@ -199,8 +200,8 @@ impl ProofSummary {
             }
         };
         Self {
-            name: name.to_owned(),
-            verdict: proof.verdict.word(),
+            name: scenario.name.clone(),
+            verdict: proof.word(scenario),
             contraction_rate: certificate.map(|c| c.contraction_rate.approximate()),
             convergence_rate: certificate.map(|c| c.convergence_rate.approximate()),
             paper_rate: proof.paper_rate,
@@ -214,13 +215,13 @@ impl ProofSummary {
                     .map(|&Structure { name, holds, .. }| StructureSummary { name, holds })
                     .collect()
             }),
-            mass_matrix_positive_definite: certificate.is_some(),
+            mass_matrix_positive_definite: certificate.map(|_| true),
             sampled: proof.sampled.clone(),
             tightness: certificate.map(|c| sigma_l(c) / proof.sampled.rate),
-            start: proof.start.zip(certificate).map(|(level, certificate)| StartSummary {
-                level,
-                inside: certificate.region.level.as_ref().is_none_or(|c| level <= c.bounds().lo()),
-            }),
+            start: proof
+                .start
+                .zip(certificate)
+                .map(|(level, certificate)| StartSummary { level, inside: inside(certificate, level) }),
             along: proof.along.clone(),
             direct: proof.confirmation.as_ref().map(direct),
             tube: certificate.and_then(|c| c.tube.as_ref()).map(|tube| TubeSummary {

@@ -1,9 +1,9 @@
 //! `flexure certify`: a proof and its certificate.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use flexure::io::{Scenario, load_scenario, write_certificate};
-use flexure::proof::{Direct, Proof, Question, Region, prove};
+use flexure::proof::{Direct, Proof, Question, Region, SMALLEST_ERROR, prove};
 use flexure::proof_summary::ProofSummary;
 use flexure::report::proof_table;
 use serde::Serialize;
@@ -26,7 +26,7 @@ pub fn certify(options: &Certify, json: bool) -> Result<(), Failure> {
     say(&scenario.warnings);
     let question = question(options, &scenario)?;
     let proof = prove(&scenario, &question)?;
-    let summary = ProofSummary::new(&scenario.name, &proof);
+    let summary = ProofSummary::new(&scenario, &proof);
     let file = match proof.verdict.proved() {
         None => None,
         Some(certificate) => {
@@ -34,6 +34,7 @@ pub fn certify(options: &Certify, json: bool) -> Result<(), Failure> {
                 .out
                 .clone()
                 .unwrap_or_else(|| PathBuf::from(format!("out/{}.certificate.json", scenario.name)));
+            spare_other_files(&path)?;
             write_certificate(&path, certificate)?;
             Some(path)
         }
@@ -48,6 +49,16 @@ pub fn certify(options: &Certify, json: bool) -> Result<(), Failure> {
         }
     }
     ended
+}
+
+/// Refuses to write over a file that is no certificate: a scenario, say.
+fn spare_other_files(path: &Path) -> Result<(), Failure> {
+    let is_other = std::fs::read_to_string(path).is_ok_and(|text| !text.contains("flexure-certificate"));
+    if !is_other {
+        return Ok(());
+    }
+    let message = format!("{} exists and is no certificate: it is left as it is", path.display());
+    Err(Failure::input("exists", message, "name another file with --out"))
 }
 
 /// What the options ask for, if they fit the robot.
@@ -65,9 +76,8 @@ fn question(options: &Certify, scenario: &Scenario) -> Result<Question, Failure>
         (Some(values), _) => Region::Errors(positive("--error-box", errors("--error-box", values)?)?),
         (None, Some(values)) => {
             let start = errors("--initial-error", values)?;
-            if start.iter().all(|&e| e == 0.0) {
-                return Err(empty("--initial-error", "0"));
-            }
+            let largest = start.iter().fold(0.0, |largest: f64, e| largest.max(e.abs()));
+            positive("--initial-error", vec![largest])?;
             Region::Start(start.into_iter().map(f64::abs).collect())
         }
         (None, None) => Region::Chosen,
@@ -89,7 +99,7 @@ fn question(options: &Certify, scenario: &Scenario) -> Result<Question, Failure>
         }
     };
     if let Some(rate) = options.rate.filter(|rate| !(rate.is_finite() && *rate > 0.0 && *rate <= LARGEST)) {
-        let message = format!("--rate is {rate} 1/s, must be > 0 and at most 1e30");
+        let message = format!("--rate is {rate:e} 1/s, must be > 0 and at most 1e30");
         return Err(Failure::input(
             "range",
             message,
@@ -110,7 +120,7 @@ const LARGEST: f64 = 1e30;
 
 fn per_joint(name: &str, values: &[f64], count: usize, what: &str) -> Result<Vec<f64>, Failure> {
     if let Some(x) = values.iter().find(|x| !x.is_finite() || x.abs() > LARGEST) {
-        let message = format!("{name} is {x}, must be of a magnitude up to 1e30");
+        let message = format!("{name} is {x:e}, must be of a magnitude up to 1e30");
         return Err(Failure::input("range", message, what));
     }
     match values {
@@ -124,8 +134,13 @@ fn per_joint(name: &str, values: &[f64], count: usize, what: &str) -> Result<Vec
 }
 
 fn positive(name: &str, values: Vec<f64>) -> Result<Vec<f64>, Failure> {
-    match values.iter().find(|&&x| x < 1.0 / LARGEST) {
+    match values.iter().find(|&&x| x < SMALLEST_ERROR) {
         None => Ok(values),
+        Some(x) if *x > 0.0 => {
+            let message = format!("{name} is {x:e} rad, must be at least {SMALLEST_ERROR:e}");
+            let hint = "so small a region cannot be represented: tanh is linear in it to rounding";
+            Err(Failure::input("region", message, hint))
+        }
         Some(x) => Err(empty(name, &x.to_string())),
     }
 }

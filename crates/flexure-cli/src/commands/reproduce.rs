@@ -36,10 +36,8 @@ pub fn reproduce(out: &Path, json: bool) -> Result<(), Failure> {
     let certified = certificates()?;
     let certificate_files = write_certificates(out, &certified)?;
     let report = write_report(out, &experiments, &certified)?;
-    let certificates: Vec<_> = certified
-        .iter()
-        .map(|certified| ProofSummary::new(&certified.scenario.name, &certified.proof))
-        .collect();
+    let certificates: Vec<_> =
+        certified.iter().map(|certified| ProofSummary::new(&certified.scenario, &certified.proof)).collect();
     if json {
         let scenarios = experiments.iter().zip(files).map(|(e, files)| Outcome::new(e, files)).collect();
         print::json(&Reproduction { scenarios, certificates, certificate_files, report })?;

@@ -95,14 +95,15 @@ fn bad_options_are_told_apart() {
     folder.scenario("motor.toml", &[(motor, &hardening(motor))]);
     folder.scenario("phi.toml", &[("\"tanh\"", "\"tahn\"")]);
     folder.scenario("metric.toml", &[("[55.0, 30.0]", "[55.0, -30.0]")]);
-    let cases: [(&[&str], &str); 17] = [
+    let cases: [(&[&str], &str); 18] = [
         (&["two-link-tanh", "--error-box", "0"], "empty"),
         (&["two-link-tanh", "--error-box", "-1"], "empty"),
         (&["two-link-tanh", "--error-box", "nan"], "magnitude"),
         (&["two-link-tanh", "--error-box", "1e400"], "magnitude"),
         (&["two-link-tanh", "--error-box", "1,2,3"], "1 or 4 numbers"),
         (&["two-link-tanh", "--error-box", "wide"], "invalid"),
-        (&["two-link-tanh", "--error-box", "1e-300"], "empty"),
+        (&["two-link-tanh", "--error-box", "1e-300"], "cannot be represented"),
+        (&["two-link-tanh", "--speed", "3"], "--direct"),
         (&["two-link-tanh", "--initial-error", "0"], "empty"),
         (&["two-link-tanh", "--initial-error", "1", "--error-box", "1"], "cannot be used with"),
         (&["two-link-tanh", "--rate", "-1"], "must be > 0"),
@@ -177,4 +178,62 @@ fn the_region_that_is_taken_holds_the_run() {
             "{scenario}"
         );
     }
+}
+
+/// Bounds along the reference are for the level set that the run starts in, not only for the tube that it ends in: a speed that
+/// the run reaches is never said not to be.
+#[test]
+fn limits_count_from_the_start() {
+    let folder = Place::new();
+    let robot = crate::command::ROBOT.replace("[joints]", "[joints]\nvelocity_limit = [1.2, 1.2]");
+    folder.write("arm.toml", robot);
+    folder.scenario("s.toml", &[("\"quanser-2dof\"", "\"arm.toml\"")]);
+    let arguments = ["--disturbance", "0.05", "--json"];
+    // Off the reference at the start: the level set of the start is large, and the run exceeds the limit.
+    let far = folder.run(&[&["certify", "s.toml"], &arguments[..]].concat());
+    assert_ne!(far.code, Some(0), "{far:?}");
+    let found = far.json();
+    let (level, start) = (&found["along"]["level"], &found["start"]["level"]);
+    assert!(level.as_f64().unwrap() >= start.as_f64().unwrap());
+    // A start that the region does not hold: nothing is said.
+    let outside =
+        folder.run(&[&["certify", "s.toml", "--error-box", "3"], &arguments[..]].concat()).done().json();
+    assert_eq!((&outside["along"], &outside["start"]["inside"]), (&Value::Null, &Value::from(false)));
+}
+
+/// What the scenario has and the theorem has not is listed.
+#[test]
+fn what_is_beyond_the_model_is_listed() {
+    let folder = Place::new();
+    let noted = |scenario: &str, what: &str| {
+        let found = folder.run(&["certify", scenario, "--json"]).done().json();
+        found["assumptions"].as_array().unwrap().iter().any(|note| note.as_str().unwrap().contains(what))
+    };
+    assert!(noted("two-link-tanh", "held for 0.001 s"));
+    assert!(noted("tomei-3r-tanh-coupled", "plant.rotor_coupling"));
+    assert!(!noted("tomei-3r-tanh", "plant."));
+}
+
+/// The budget of the direct engine: exit code 3, the structural certificate written.
+#[test]
+fn a_spent_budget_is_undecided() {
+    let folder = Place::new();
+    let outcome =
+        folder.run(&["certify", "two-link-tanh", "--direct", "--budget", "0", "--json", "--out", "c.json"]);
+    assert_eq!(outcome.code, Some(3), "{outcome:?}");
+    let found = outcome.json();
+    assert_eq!((&found["verdict"], &found["direct"]["verdict"]), (&"undecided".into(), &"undecided".into()));
+    folder.run(&["verify", "c.json"]).done();
+}
+
+/// A file that is no certificate is not written over.
+#[test]
+fn other_files_are_spared() {
+    let folder = Place::new();
+    folder.scenario("s.toml", &[]);
+    let outcome = folder.run(&["certify", "s.toml", "--out", "s.toml"]);
+    outcome.refused(&["is no certificate"]);
+    assert!(folder.read("s.toml").contains("[controller]"));
+    folder.run(&["certify", "s.toml", "--out", "c.json"]).done();
+    folder.run(&["certify", "s.toml", "--out", "c.json"]).done();
 }

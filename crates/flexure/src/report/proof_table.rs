@@ -83,9 +83,9 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
         }
         if let Some(start) = summary.start.filter(|_| region.level.is_some()) {
             let place = if start.inside {
-                "inside: the run stays in it"
+                "inside: the model, in continuous time, stays in it"
             } else {
-                "outside: nothing is said of this run"
+                "not known to be inside: nothing is said of this run"
             };
             lines.push(format!("start        W ≤ {} J, {place}", short(start.level, 3)));
         }
@@ -134,7 +134,7 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
                 "direct       {} after {} boxes, at {}",
                 direct.verdict,
                 boxes.unwrap_or_default(),
-                at.as_deref().unwrap_or(NONE)
+                shortened(at.as_deref().unwrap_or(NONE))
             ),
         });
     }
@@ -164,7 +164,11 @@ fn bounds(along: &Along) -> Vec<String> {
         _ => "rad",
     };
     let mut lines = vec![
-        format!("along        |q̇_l| ≤ {} rad/s all the way", list(&along.velocity.bound)),
+        format!(
+            "along        while W ≤ {} J: |q̇_l| ≤ {} rad/s",
+            short(along.level, 3),
+            list(&along.velocity.bound)
+        ),
         format!("along        |q_m − q_l| ≤ {} rad", list(&along.deflection.bound)),
         format!(
             "along        |u_m| ≤ {} N m, {} N m without disturbance",
@@ -198,6 +202,15 @@ fn witness(witness: &WitnessSummary) -> String {
         engineering(witness.rate),
         list(&witness.direction)
     )
+}
+
+/// At most 120 characters of a long text.
+fn shortened(text: &str) -> String {
+    let mut short: String = text.chars().take(120).collect();
+    if short.len() < text.len() {
+        short.push('…');
+    }
+    short
 }
 
 /// Numbers with blanks; one if all are the same.

@@ -214,7 +214,7 @@ fn report() -> Report {
 
 fn proof() -> ProofSummary {
     let scenario = load_scenario("two-link-tanh").unwrap();
-    ProofSummary::new("two-link-tanh", &prove(&scenario, &Question::default()).unwrap())
+    ProofSummary::new(&scenario, &prove(&scenario, &Question::default()).unwrap())
 }
 
 #[test]

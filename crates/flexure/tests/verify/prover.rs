@@ -2,7 +2,7 @@
 //! more, or lacks a case.
 
 use flexure::certify::certify;
-use flexure::io::{SCENARIOS, load_scenario};
+use flexure::io::{SCENARIOS, load_scenario, robot_from_text};
 use flexure::proof::{Question, Region, problem};
 use flexure::verify::verify;
 use serde_json::Value;
@@ -63,6 +63,26 @@ fn mutants(certificate: &Value) -> Vec<Value> {
         mutants.push(scaled(certificate, &[&format!("/measures/{measure}/bound")], 1.0 + 1e-6));
     }
     mutants
+}
+
+/// A sliding joint between two that turn: what it adds to every reach, the checkers add too.
+#[test]
+fn a_sliding_joint_on_the_way() {
+    let text = "name = 'slider'\n[links]\nkind = 'tree'\n\
+        [[links.joint]]\nname = 'a'\nkind = 'revolute'\nmass = 1.0\ncom = [0.1, 0.0, 0.0]\ninertia = [0.1, 0.0, 0.0, 0.1, 0.0, 0.1]\n\
+        [[links.joint]]\nname = 'b'\nparent = 'a'\nkind = 'prismatic'\naxis = [1.0, 0.0, 0.0]\nmass = 1.0\ncom = [0.0, 0.0, 0.0]\n\
+        inertia = [0.1, 0.0, 0.0, 0.1, 0.0, 0.1]\n\
+        [[links.joint]]\nname = 'c'\nparent = 'b'\nkind = 'revolute'\naxis = [0.0, 1.0, 0.0]\nmass = 1.0\ncom = [0.3, 0.0, 0.0]\n\
+        inertia = [0.1, 0.0, 0.0, 0.1, 0.0, 0.1]\n\
+        [joints]\nstiffness = 100.0\nmotor_inertia = 0.1\nlink_damping = 0.1\nmotor_damping = 0.1\n\
+        position_lower = [-3.0, -0.5, -3.0]\nposition_upper = [3.0, 2.0, 3.0]\n";
+    let mut scenario = load_scenario("tomei-3r-tanh").unwrap();
+    scenario.robot = robot_from_text("slider.toml", text, ".".as_ref()).unwrap();
+    let verdict = certify(&problem(&scenario, &Question::default(), None).unwrap());
+    let certificate =
+        serde_json::to_string(verdict.proved().unwrap_or_else(|| panic!("{verdict:?}"))).unwrap();
+    verify(&certificate).unwrap_or_else(|rejected| panic!("{rejected}"));
+    assert!(python::codes(&[certificate]).is_none_or(|codes| codes == [0]));
 }
 
 #[test]
