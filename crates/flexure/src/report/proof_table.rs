@@ -153,6 +153,7 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
     if let Some(undecided) = &summary.undecided {
         lines.push(format!("undecided    {} (boxes looked at: {})", undecided.at, undecided.spent));
     }
+    lines.extend(summary.assumptions.iter().map(|note| format!("assumed      {note}")));
     lines
 }
 
