@@ -18,7 +18,7 @@ use crate::certify::along::tube::Tube;
 use crate::certify::along::witness::candidates;
 use crate::certify::along::{Course, Request, course};
 use crate::certify::{Number, Undecided, Verdict};
-use crate::io::{self, Problems, Profile, Scenario};
+use crate::io::{self, Problem, Problems, Profile, Scenario};
 use crate::registry::{AnyReference, RobotVisitor, law_over, with_enclosed_robot};
 
 /// What a robot may do along its reference inside a tube: upper bounds, one per joint.
@@ -107,18 +107,25 @@ impl<R> RobotVisitor<Interval> for Build<'_, R> {
 
 /// Whether W is what the bounds take it to be, and continuous.
 fn suitable(scenario: &Scenario) -> Result<(), Problems> {
-    let io::Controller::Vcbc { link, .. } = &scenario.controller;
-    let problem = |key, code, message, help| Err(scenario.places.problem(key, code, message, help).into());
-    if link.metric_hardening.as_ref().is_some_and(|h| h.iter().any(|&h| h != 0.0)) {
-        let message =
-            "controller.link.metric_hardening is not 0: bounds along a reference take a constant metric";
-        return problem("controller.link.metric_hardening", "metric", message, "leave it out");
+    if let Some(problem) = uneven_metric(scenario) {
+        return Err(problem.into());
     }
     if matches!(&scenario.reference, io::Reference::PointToPoint { profile: Profile::Quintic, .. }) {
         let message = "the third derivative of a quintic jumps, and the errors with it: no tube holds them";
-        return problem("reference.kind", "reference", message, "take septic or nonic");
+        let help = "take septic or nonic";
+        return Err(scenario.places.problem("reference.kind", "reference", message, help).into());
     }
     Ok(())
+}
+
+/// What to say of a metric that depends on the error, if it does.
+pub(crate) fn uneven_metric(scenario: &Scenario) -> Option<Problem> {
+    let io::Controller::Vcbc { link, .. } = &scenario.controller;
+    link.metric_hardening.as_ref().filter(|hardening| hardening.iter().any(|&h| h != 0.0))?;
+    let message = "controller.link.metric_hardening is not 0: proofs take a constant metric";
+    let help =
+        "with a Π_l that depends on the error the rate depends on the speed of the error too; leave it out";
+    Some(scenario.places.problem("controller.link.metric_hardening", "metric", message, help))
 }
 
 fn bounds(scenario: &Scenario, system: &dyn ClosedLoop, level: f64, budget: usize) -> Along {

@@ -16,6 +16,11 @@ impl Symmetric {
         Self { size, lower }
     }
 
+    /// diag(`d`).
+    pub fn diagonal(d: &[Interval]) -> Self {
+        Self::from_fn(d.len(), |i, j| if i == j { d[i] } else { Interval::ZERO })
+    }
+
     /// Number of rows.
     pub fn size(&self) -> usize {
         self.size

@@ -23,13 +23,16 @@ pub fn damping(plant: &[Number], injected: &[Number]) -> Vec<Interval> {
 pub fn links(robot: &Robot, damping: &[Interval]) -> Result<Vec<Inequality>, String> {
     Ok(masses(&robot.links)?
         .into_iter()
-        .map(|weight| Inequality { form: diagonal(damping), weight })
+        .map(|weight| Inequality { form: Symmetric::diagonal(damping), weight })
         .collect())
 }
 
 /// diag(`damping`) − β M_m.
 pub fn motors(robot: &Robot, damping: &[Interval]) -> Inequality {
-    Inequality { form: diagonal(damping), weight: diagonal(&bounds(&robot.motor_inertia)) }
+    Inequality {
+        form: Symmetric::diagonal(damping),
+        weight: Symmetric::diagonal(&bounds(&robot.motor_inertia)),
+    }
 }
 
 /// The letters of the cases of [`links`].
@@ -37,15 +40,6 @@ pub fn cases(links: &Links) -> Vec<String> {
     match links {
         Links::PlanarTwoLink { .. } => ["L", "H"].map(str::to_owned).to_vec(),
         Links::Pendulum { .. } | Links::Tree { .. } => vec![String::new()],
-    }
-}
-
-/// Joint angles of the configurations that the mass matrices of a closed form are taken at, in the order of the cases.
-pub fn configurations(links: &Links) -> Vec<Vec<f64>> {
-    match links {
-        Links::PlanarTwoLink { .. } => vec![vec![0.0, std::f64::consts::PI], vec![0.0, 0.0]],
-        Links::Pendulum { .. } => vec![vec![0.0]],
-        Links::Tree { .. } => Vec::new(),
     }
 }
 
@@ -81,8 +75,4 @@ fn masses(links: &Links) -> Result<Vec<Symmetric>, String> {
 
 fn symmetric<const N: usize>(matrix: &Matrix<Interval, N, N>) -> Symmetric {
     Symmetric::from_fn(N, |i, j| matrix[(i, j)])
-}
-
-fn diagonal(d: &[Interval]) -> Symmetric {
-    Symmetric::from_fn(d.len(), |i, j| if i == j { d[i] } else { Interval::ZERO })
 }

@@ -100,8 +100,7 @@ impl Position {
             }
             half * (self.metric[i] * self.slope(a, i, j) + self.metric[j] * self.slope(a, j, i))
         };
-        let weight = |i: usize, j: usize| if i == j { self.metric[i] } else { Interval::ZERO };
-        Inequality { form: Symmetric::from_fn(n, entry), weight: Symmetric::from_fn(n, weight) }
+        Inequality { form: Symmetric::from_fn(n, entry), weight: Symmetric::diagonal(&self.metric) }
     }
 
     /// An entry of −Θ ∂φ Θ⁻¹ with Θ² = Π.

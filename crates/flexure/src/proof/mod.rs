@@ -1,9 +1,14 @@
 //! A scenario file as a proof: its numbers enclosed, its region chosen, its rates certified.
 
+mod complaint;
+mod decimals;
+
 use std::time::Instant as Clock;
 
-use crate::along::{Along, Limit, along, start_level};
-use crate::certify::certificate::{self, BlockName, Controller, Gains, JointKind, Links, Phi, Robot};
+use flexure_core::scalar::Interval;
+
+use crate::along::{Along, along, start_level, uneven_metric};
+use crate::certify::certificate::{BlockName, Controller, Phi};
 use crate::certify::matrix::Symmetric;
 use crate::certify::rate::Inequality;
 use crate::certify::region::{level_that_holds, region};
@@ -13,10 +18,10 @@ use crate::certify::{
     self, Certificate, Number, RateWitness, Request, State, Undecided, Verdict, certify, momentum,
 };
 use crate::confirmation::{Confirmation, confirm};
-use crate::io::{self, Problem, Problems, Scenario};
+use crate::io::{self, Problems, Scenario};
 use crate::paper::paper_rate;
 use crate::sampling::{Sampled, sample};
-use flexure_core::scalar::Interval;
+use decimals::{gains, robot};
 
 /// What to prove of a scenario.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -176,16 +181,6 @@ fn chosen(metric: &[Interval], start: Option<f64>) -> (Request, String) {
     }
 }
 
-/// What to say of a metric that depends on the error, if it does.
-fn uneven_metric(scenario: &Scenario) -> Option<Problem> {
-    let io::Controller::Vcbc { link, .. } = &scenario.controller;
-    link.metric_hardening.as_ref().filter(|hardening| hardening.iter().any(|&h| h != 0.0))?;
-    let message = "controller.link.metric_hardening is not 0: certificates take a constant metric";
-    let help =
-        "with a Π_l that depends on the error the rate depends on the speed of the error too; leave it out";
-    Some(scenario.places.problem("controller.link.metric_hardening", "metric", message, help))
-}
-
 /// Proves what `question` asks of `scenario`.
 ///
 /// # Errors
@@ -272,12 +267,10 @@ fn slower(rate: f64, certificate: &Certificate, sampled: &Sampled, damping: &[f6
             Some(RateWitness { block, state: State::Error(error), direction, rate })
         })
     });
-    let diagonal =
-        |d: &[Interval]| Symmetric::from_fn(d.len(), |i, j| if i == j { d[i] } else { Interval::point(0.0) });
     let links = || {
         let damping: Vec<_> = damping.iter().map(|&d| Interval::point(d)).collect();
         let weight = Symmetric::from_fn(damping.len(), |i, j| Interval::point(sampled.mass_matrix[i][j]));
-        let (direction, rate) = against(&Inequality { form: diagonal(&damping), weight }, rate)?;
+        let (direction, rate) = against(&Inequality { form: Symmetric::diagonal(&damping), weight }, rate)?;
         let state = State::Configuration(sampled.configuration.clone());
         Some(RateWitness { block: BlockName::SigmaL, state, direction, rate })
     };
@@ -290,88 +283,6 @@ fn slower(rate: f64, certificate: &Certificate, sampled: &Sampled, damping: &[f6
     position.or_else(links).or_else(motors)
 }
 
-impl Proof {
-    /// The verdict on everything that was asked, in a word.
-    pub fn word(&self, scenario: &Scenario) -> &'static str {
-        match self.complaint(scenario) {
-            None => "proved",
-            Some((_, true)) => "refuted",
-            Some((_, false)) => "undecided",
-        }
-    }
-
-    /// What to say where nothing was proved, and whether that is because it is wrong.
-    pub fn complaint(&self, scenario: &Scenario) -> Option<(Problem, bool)> {
-        let problem =
-            |code, message: String, help: &str| scenario.places.problem("controller", code, message, help);
-        match &self.verdict {
-            Verdict::Proved(_) => match &self.confirmation {
-                Some(Verdict::Refuted(witness)) => {
-                    let message = format!(
-                        "{}: the direct engine finds {:.6e} 1/s at {}, below the certified rate: one of both is wrong",
-                        scenario.name, witness.rate, witness.at
-                    );
-                    Some((problem("contradiction", message, "do not trust the certificate; report it"), true))
-                }
-                Some(Verdict::Undecided(undecided))
-                    if self.limits(scenario).is_none_or(|(_, wrong)| !wrong) =>
-                {
-                    let message = format!(
-                        "{}: the direct engine did not decide within {} boxes; the certificate of the structural engine \
-                         stands without it",
-                        scenario.name, undecided.spent
-                    );
-                    Some((problem("undecided", message, "raise --budget, or lower --speed"), false))
-                }
-                _ => self.limits(scenario),
-            },
-            Verdict::Refuted(witness) => {
-                let message = format!(
-                    "{}: the closed loop does not contract fast enough: {} has {:.6} 1/s in one direction",
-                    scenario.name,
-                    witness.block.name(),
-                    witness.rate
-                );
-                Some((
-                    problem("refuted", message, "ask for less, raise the gains, or name a smaller region"),
-                    true,
-                ))
-            }
-            Verdict::Undecided(undecided) => {
-                let message = format!("{}: not decided: {}", scenario.name, undecided.at);
-                Some((problem("undecided", message, "name a smaller region, or ask for less"), false))
-            }
-        }
-    }
-}
-
-impl Proof {
-    /// What to say of the robot's limits where the tube may exceed them; one that it does exceed comes first.
-    fn limits(&self, scenario: &Scenario) -> Option<(Problem, bool)> {
-        let limits = &self.along.as_ref()?.limits;
-        let refuted = limits.iter().find(|limit| matches!(limit.verdict, Verdict::Refuted(_)));
-        let limit = refuted.or_else(|| limits.iter().find(|limit| limit.verdict.proved().is_none()))?;
-        let Limit { joint, key, limit, verdict } = limit;
-        let name = &scenario.robot.joints[*joint].name;
-        let (code, message) = match verdict {
-            Verdict::Proved(_) => return None,
-            Verdict::Refuted(state) => (
-                "limit",
-                format!(
-                    "{key} of {name} is {limit}; at t = {:.4} s a state in the tube has {:.4}",
-                    state.t, state.value
-                ),
-            ),
-            Verdict::Undecided(undecided) => {
-                ("limit", format!("{key} of {name} is not decided: {}", undecided.at))
-            }
-        };
-        let help = "take a slower or smoother reference, lower gains, or a smaller disturbance";
-        let at = format!("joints.{key}");
-        Some((scenario.robot.places.problem(&at, code, message, help), refuted.is_some()))
-    }
-}
-
 /// The contraction rate that is proved of `scenario` without further options [1/s]; none if none is.
 ///
 /// # Errors
@@ -382,66 +293,4 @@ pub fn certified_rate(scenario: &Scenario) -> Result<Option<f64>, Problems> {
     }
     let problem = problem(scenario, &Question::default(), start_level(scenario).ok())?;
     Ok(certify(&problem).proved().map(|certificate| certificate.contraction_rate.approximate()))
-}
-
-fn gains(scenario: &Scenario, gains: &io::SideGains) -> Gains {
-    let numbers = |values: &[f64]| values.iter().map(|&x| Number::read(x, scenario.bounds(x))).collect();
-    Gains {
-        metric: numbers(&gains.metric),
-        shaping: numbers(&gains.shaping),
-        damping: numbers(&gains.damping),
-        kappa: gains.kappa.as_deref().map(numbers),
-    }
-}
-
-fn robot(data: &io::Robot) -> Robot {
-    let numbers = |values: &[f64]| values.iter().map(|&x| Number::read(x, data.bounds(x))).collect();
-    Robot {
-        name: data.name.clone(),
-        joints: data.joint_count(),
-        links: links(data),
-        stiffness: numbers(&data.stiffness),
-        motor_inertia: numbers(&data.motor_inertia),
-        link_damping: numbers(&data.link_damping),
-        motor_damping: numbers(&data.motor_damping),
-    }
-}
-
-fn links(data: &io::Robot) -> Links {
-    let number = |x: f64| Number::read(x, data.bounds(x));
-    match (&data.links, &data.enclosed) {
-        (io::Links::PlanarTwoLink { mass, length, com, inertia }, _) => Links::PlanarTwoLink {
-            mass: mass.map(number),
-            length: number(length[0]),
-            com: com.map(number),
-            inertia: inertia.map(number),
-        },
-        (io::Links::Pendulum { mass, com, inertia }, _) => {
-            Links::Pendulum { mass: number(*mass), com: number(*com), inertia: number(*inertia) }
-        }
-        (_, io::Links::Tree(bodies)) => {
-            let bodies = bodies.iter().enumerate().map(|(i, enclosed)| body(data, i, enclosed));
-            Links::Tree { bodies: bodies.collect() }
-        }
-        _ => unreachable!("enclosed links are of the same kind"),
-    }
-}
-
-fn body(data: &io::Robot, joint: usize, body: &io::Body<Interval>) -> certificate::Body {
-    let computed = Number::computed;
-    let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = body.inertia;
-    let (lower, upper) = (data.limits.lower[joint], data.limits.upper[joint]);
-    let number = |x: f64| Number::read(x, data.bounds(x));
-    let prismatic = body.kind == io::JointKind::Prismatic;
-    certificate::Body {
-        parent: body.parent,
-        kind: if prismatic { JointKind::Prismatic } else { JointKind::Revolute },
-        axis: body.axis.map(computed),
-        rotation: body.rotation.map(|row| row.map(computed)),
-        translation: body.translation.map(computed),
-        mass: computed(body.mass),
-        com: body.com.map(computed),
-        inertia: [xx, xy, xz, yy, yz, zz].map(computed),
-        travel: (prismatic && lower.is_finite() && upper.is_finite()).then(|| [number(lower), number(upper)]),
-    }
 }
