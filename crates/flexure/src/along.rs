@@ -99,7 +99,7 @@ impl<R> RobotVisitor<Interval> for Build<'_, R> {
         let scenario = self.scenario;
         suitable(scenario)?;
         let reference = AnyReference::<Interval, N>::enclosed(scenario)?;
-        let law = law_over(&scenario.controller, |x| scenario.bounds(x));
+        let law = law_over(scenario.vcbc()?, |x| scenario.bounds(x));
         let [breaks, kinks] = [reference.breaks(), reference.kinks()];
         Ok((self.then)(&Enclosed { robot, law, reference, breaks, kinks }))
     }
@@ -107,6 +107,7 @@ impl<R> RobotVisitor<Interval> for Build<'_, R> {
 
 /// Whether W is what the bounds take it to be, and continuous.
 fn suitable(scenario: &Scenario) -> Result<(), Problems> {
+    scenario.vcbc()?;
     if let Some(problem) = uneven_metric(scenario) {
         return Err(problem.into());
     }
@@ -120,7 +121,7 @@ fn suitable(scenario: &Scenario) -> Result<(), Problems> {
 
 /// What to say of a metric that depends on the error, if it does.
 pub(crate) fn uneven_metric(scenario: &Scenario) -> Option<Problem> {
-    let io::Controller::Vcbc { link, .. } = &scenario.controller;
+    let link = &scenario.vcbc().ok()?.link;
     link.metric_hardening.as_ref().filter(|hardening| hardening.iter().any(|&h| h != 0.0))?;
     let message = "controller.link.metric_hardening is not 0: proofs take a constant metric";
     let help =

@@ -7,7 +7,7 @@ use crate::certify::Verdict;
 use crate::certify::certificate::Certificate;
 use crate::certify::direct::{ClosedLoop, Proved, Region, Witness, full_turn, prove, vcbc};
 use crate::certify::number::Number;
-use crate::io::{JointKind, Problems, Robot, Scenario};
+use crate::io::{JointKind, Problems, Robot, Scenario, VcbcGains};
 use crate::registry::{TwinVisitor, law, law_over, with_twins};
 
 /// What is left of a certified rate for the direct engine to prove: the certificate's last digits are those of its own
@@ -21,18 +21,20 @@ pub type Confirmation = Verdict<Proved, Witness>;
 /// the full inequality, looking at no more than `budget` boxes.
 ///
 /// # Errors
-/// If the robot has too many joints.
+/// If the robot has too many joints, or the law is not v-CBC.
 pub fn confirm(
     scenario: &Scenario,
     certificate: &Certificate,
     speed: f64,
     budget: usize,
 ) -> Result<Confirmation, Problems> {
-    with_twins(&scenario.robot, Confirm { scenario, certificate, speed, budget })
+    let gains = scenario.vcbc()?;
+    with_twins(&scenario.robot, Confirm { scenario, gains, certificate, speed, budget })
 }
 
 struct Confirm<'a> {
     scenario: &'a Scenario,
+    gains: &'a VcbcGains,
     certificate: &'a Certificate,
     speed: f64,
     budget: usize,
@@ -46,7 +48,7 @@ impl TwinVisitor for Confirm<'_> {
         enclosed: Fjr<Interval, E, N>,
         point: Fjr<f64, F, N>,
     ) -> Confirmation {
-        let Self { scenario, certificate, speed, budget } = self;
+        let Self { scenario, gains, certificate, speed, budget } = self;
         let errors = &certificate.region.error;
         let around = |x: f64| Interval::point(-x).hull(Interval::point(x));
         let error =
@@ -59,9 +61,8 @@ impl TwinVisitor for Confirm<'_> {
             position: std::array::from_fn(|i| range(&scenario.robot, i)),
             velocity: [around(speed); N],
         };
-        let bounds =
-            ClosedLoop { robot: enclosed, law: law_over(&scenario.controller, |x| scenario.bounds(x)) };
-        let point = ClosedLoop { robot: point, law: law(&scenario.controller) };
+        let bounds = ClosedLoop { robot: enclosed, law: law_over(gains, |x| scenario.bounds(x)) };
+        let point = ClosedLoop { robot: point, law: law(gains) };
         let rate = certificate.contraction_rate.bounds().lo() * SHARE;
         prove(&vcbc(bounds, point, &region), rate, budget)
     }

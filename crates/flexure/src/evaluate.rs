@@ -3,12 +3,13 @@
 use flexure_core::linalg::{Matrix, Vector};
 use flexure_core::model::{Fjr, LinkMatrices, Links, Motion};
 use flexure_core::reference::Reference;
+use flexure_core::scalar::Jet;
 use serde::Serialize;
 
 use crate::io::{Problem, Problems, Robot, Scenario, StateFile, StateRow};
-use crate::registry::{self, AnyReference, Law, RobotVisitor, law, vector, with_robot};
+use crate::registry::{self, AnyLaw, AnyReference, RobotVisitor, any_law, vector, with_robot};
 
-/// The law at one state: a line of `flexure eval`.
+/// The law at one state: a line of `flexure eval`. What is none is known of v-CBC only.
 #[expect(non_snake_case, reason = "keys of the contract")]
 #[derive(Clone, Debug, Serialize)]
 pub struct LawRow {
@@ -17,17 +18,22 @@ pub struct LawRow {
     /// Motor torque [N m].
     pub u_m: Vec<f64>,
     /// Link torque that the springs should give [N m].
-    pub u_l: Vec<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub u_l: Option<Vec<f64>>,
     /// Motor position that would give it, in rad.
-    pub q_md: Vec<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub q_md: Option<Vec<f64>>,
     /// Link position error in rad.
     pub e_l: Vec<f64>,
     /// Motor position error in rad.
-    pub e_m: Vec<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub e_m: Option<Vec<f64>>,
     /// Link momentum error [kg m²/s].
-    pub sigma_l: Vec<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sigma_l: Option<Vec<f64>>,
     /// Motor momentum error [kg m²/s].
-    pub sigma_m: Vec<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sigma_m: Option<Vec<f64>>,
     /// Total energy in J.
     pub H: f64,
 }
@@ -89,31 +95,20 @@ impl RobotVisitor for EvaluateLaw<'_> {
     type Output = Result<Vec<LawRow>, Problems>;
 
     fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) -> Self::Output {
-        let law: Law<f64, N> = law(&self.scenario.controller);
+        let law: AnyLaw<f64, N> = any_law(&self.scenario.controller, |x| x);
         let reference = AnyReference::new(self.scenario)?;
         let row = |state: &StateRow| -> Result<LawRow, Problem> {
             let x = motion(state);
-            let command = registry::command(&law, &robot, &x, &reference.at(state.t));
-            let sigma = robot.state(&Motion { v_l: command.s_l, v_m: command.s_m, ..x });
-            let row = LawRow {
-                t: state.t,
-                u_m: list(&command.u_m),
-                u_l: list(&command.u_l),
-                q_md: list(&command.q_md),
-                e_l: list(&command.e_l),
-                e_m: list(&command.e_m),
-                sigma_l: list(&sigma.p_l),
-                sigma_m: list(&sigma.p_m),
-                H: robot.total_energy(&x),
-            };
+            let row = law_row(&law, &robot, state.t, &x, &reference.at(state.t));
+            let given = |values: &Option<Vec<f64>>| values.clone().unwrap_or_default();
             let numbers: [(_, &[f64]); 8] = [
                 ("u_m", &row.u_m),
-                ("u_l", &row.u_l),
-                ("q_md", &row.q_md),
+                ("u_l", &given(&row.u_l)),
+                ("q_md", &given(&row.q_md)),
                 ("e_l", &row.e_l),
-                ("e_m", &row.e_m),
-                ("sigma_l", &row.sigma_l),
-                ("sigma_m", &row.sigma_m),
+                ("e_m", &given(&row.e_m)),
+                ("sigma_l", &given(&row.sigma_l)),
+                ("sigma_m", &given(&row.sigma_m)),
                 ("H", &[row.H]),
             ];
             finite(self.states, state, numbers)?;
@@ -121,6 +116,40 @@ impl RobotVisitor for EvaluateLaw<'_> {
         };
         Ok(self.states.rows.iter().map(row).collect::<Result<_, Problem>>()?)
     }
+}
+
+/// The law at the motion `x`; what only v-CBC computes on the way is left out for other laws.
+fn law_row<L: Links<f64, N>, const N: usize>(
+    law: &AnyLaw<f64, N>,
+    robot: &Fjr<f64, L, N>,
+    t: f64,
+    x: &Motion<f64, N>,
+    q_ld: &Vector<Jet<f64, 5>, N>,
+) -> LawRow {
+    let mut row = LawRow {
+        t,
+        u_m: Vec::new(),
+        u_l: None,
+        q_md: None,
+        e_l: list(&(x.q_l - q_ld.map(|jet| jet.coefficient(0)))),
+        e_m: None,
+        sigma_l: None,
+        sigma_m: None,
+        H: robot.total_energy(x),
+    };
+    if let AnyLaw::Vcbc(law) = law {
+        let command = registry::command(law, robot, x, q_ld);
+        let sigma = robot.state(&Motion { v_l: command.s_l, v_m: command.s_m, ..*x });
+        row.u_m = list(&command.u_m);
+        row.u_l = Some(list(&command.u_l));
+        row.q_md = Some(list(&command.q_md));
+        row.e_m = Some(list(&command.e_m));
+        row.sigma_l = Some(list(&sigma.p_l));
+        row.sigma_m = Some(list(&sigma.p_m));
+    } else {
+        row.u_m = list(&registry::torque(law, robot, x, q_ld));
+    }
+    row
 }
 
 struct EvaluateModel<'a> {

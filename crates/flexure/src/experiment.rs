@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::io::{self, Controller, Hold, Problems, Scenario, load_scenario};
+use crate::io::{self, Hold, Problems, Scenario, load_scenario};
 use crate::proof::{Direct, Proof, Question, Region, certified_rate, prove};
 use crate::proof_summary::ProofSummary;
 use crate::report::number::engineering;
@@ -88,7 +88,6 @@ pub fn certificates() -> Result<Vec<Certified>, Problems> {
 
 /// One line about a scenario.
 fn describe(scenario: &Scenario) -> String {
-    let Controller::Vcbc { phi, .. } = &scenario.controller;
     let start = match scenario.smooth_start {
         Some(duration) => format!("smooth start over {duration} s"),
         None => "no smooth start".to_owned(),
@@ -99,7 +98,13 @@ fn describe(scenario: &Scenario) -> String {
     };
     let unknown =
         unknown(&scenario.plant.options()).map(|unknown| format!("; {unknown}")).unwrap_or_default();
-    format!("{} under v-CBC with φ = {}; {start}; {hold}{unknown}", scenario.robot.name, phi.name())
+    let law = law_name(scenario.controller.kind(), scenario.controller.phi());
+    format!("{} under {law}; {start}; {hold}{unknown}", scenario.robot.name)
+}
+
+/// A law in words.
+fn law_name(kind: &str, phi: Option<&str>) -> String {
+    phi.map_or_else(|| kind.to_owned(), |phi| format!("v-CBC with φ = {phi}"))
 }
 
 /// What the plant has that the law does not know, from the keys of `[plant]`.
@@ -146,10 +151,9 @@ const INTRODUCTION: &str = "The experiments of Reyes-Báez, van der Schaft, Jaya
 
 fn certificate_report(certified: &Certified) -> CertificateReport {
     let Certified { scenario, proof } = certified;
-    let Controller::Vcbc { phi, .. } = &scenario.controller;
     CertificateReport {
         summary: ProofSummary::new(scenario, proof),
-        phi: phi.name().to_owned(),
+        phi: scenario.controller.phi().unwrap_or_default().to_owned(),
         file: certificate_name(&scenario.name),
     }
 }
@@ -176,10 +180,10 @@ fn outcome(summary: &Summary) -> String {
         }
         None => "the links do not settle within 1 mrad of the reference".to_owned(),
     };
+    let law = summary.phi.as_ref().map_or_else(|| summary.controller.clone(), |phi| format!("φ = {phi}"));
     let unknown = unknown(&summary.plant).map(|unknown| format!("; {unknown}")).unwrap_or_default();
     format!(
-        "φ = {}: {settled}; largest motor torque {} N m, root mean square {} N m{unknown}.",
-        summary.phi,
+        "{law}: {settled}; largest motor torque {} N m, root mean square {} N m{unknown}.",
         engineering(summary.max_abs_u_m),
         engineering(summary.rms_u_m)
     )

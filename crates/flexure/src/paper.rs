@@ -4,14 +4,14 @@ use crate::certify::Problem;
 use crate::certify::certificate::Phi;
 use crate::certify::region::region;
 use crate::certify::structural::positions;
-use crate::io::{Controller, Robot};
+use crate::io::{Robot, VcbcGains};
 
 /// The rate of paper, corollaries on the three shaping functions, by its own formula, with its factor 2 corrected
 /// (docs/errata.md, 1) [1/s]: min{β_q, λ_min(D + K_d) λ_min(M⁻¹)}, with β_q = λ_min(Π ∂φ)/λ_max(Π), or ½ min κ for `coupled-tanh`.
 ///
 /// `largest_inertia` is λ_max of M_l over all configurations [kg m²].
-pub fn paper_rate(robot: &Robot, controller: &Controller, problem: &Problem, largest_inertia: f64) -> f64 {
-    let Controller::Vcbc { link, motor, .. } = controller;
+pub fn paper_rate(robot: &Robot, gains: &VcbcGains, problem: &Problem, largest_inertia: f64) -> f64 {
+    let VcbcGains { link, motor, .. } = gains;
     let smallest = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
     let largest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
 

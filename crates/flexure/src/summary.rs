@@ -9,8 +9,8 @@ pub struct Summary {
     pub name: String,
     /// Controller kind, as in the scenario file.
     pub controller: String,
-    /// Shaping function, as in the scenario file.
-    pub phi: String,
+    /// Shaping function, as in the scenario file; none for laws without one.
+    pub phi: Option<String>,
     /// What the plant has that the law does not know, as keys of `[plant]` in the scenario file.
     pub plant: Vec<&'static str>,
     /// Largest |q_l − q_ld| over all joints and the whole run, in rad. Like the next two NaN (null in JSON) for a run
@@ -28,7 +28,8 @@ pub struct Summary {
     pub rms_u_m: f64,
     /// Fraction of control periods in which a torque limit was active.
     pub saturated_fraction: f64,
-    /// Smallest contraction rate evaluated along the run [1/s]: a sample, not a proof.
+    /// Smallest contraction rate evaluated along the run [1/s]: a sample, not a proof. NaN (null in JSON) for laws that
+    /// have none.
     pub rate_measured: f64,
     /// Proved contraction rate [1/s]; none until it is certified.
     pub rate_certified: Option<f64>,

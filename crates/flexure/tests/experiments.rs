@@ -172,7 +172,7 @@ fn seven_joints_with_gravity_off_by(factor: f64) -> f64 {
     };
     let (plant, model) = (sim::Plant::from(robot(factor)), robot(1.0));
     let (law, reference) =
-        (law::<7>(&scenario.controller), AnyReference::<f64, 7>::new(&scenario).expect("a path"));
+        (law::<7>(scenario.vcbc().expect("v-CBC")), AnyReference::<f64, 7>::new(&scenario).expect("a path"));
     let command = |t: f64, x: &Motion<f64, 7>| law.command(&model, x, &reference.at(t), &Input::ZERO);
     let q = |values: &[f64]| Vector::from_fn(|i| values[i]);
     let (q_l, q_m) = (q(&scenario.initial.q_l), q(&scenario.initial.q_m));

@@ -5,6 +5,7 @@ mod inverse_dynamics;
 mod link_motion;
 mod links;
 mod matrices;
+mod rest;
 mod rotors;
 mod state;
 

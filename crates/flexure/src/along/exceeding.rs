@@ -53,7 +53,7 @@ impl RobotVisitor for Look<'_> {
 
     fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) -> Self::Output {
         let Candidate { time: t, error } = self.candidate;
-        let law: Law<f64, N> = law(&self.scenario.controller);
+        let law: Law<f64, N> = law(self.scenario.vcbc().ok()?);
         let reference = AnyReference::new(self.scenario).ok()?;
         let q_ld = reference.at(*t);
         let part = |i: usize| vector::<N>(&error[i * N..(i + 1) * N]);

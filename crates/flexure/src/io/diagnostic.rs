@@ -20,7 +20,7 @@ pub struct Problem {
 
 impl Problem {
     /// An error that concerns no place in a file.
-    pub(super) fn new(code: &'static str, message: impl Into<String>, help: impl Into<String>) -> Self {
+    pub(crate) fn new(code: &'static str, message: impl Into<String>, help: impl Into<String>) -> Self {
         Self { message: message.into(), code, help: help.into(), severity: Severity::Error, place: None }
     }
 

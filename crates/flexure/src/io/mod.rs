@@ -46,7 +46,7 @@ mod urdf;
 pub use any::{Checked, check};
 pub use atomic::{WriteError, write_atomic};
 pub use builtin::{ROBOTS, SCENARIOS, load_robot, load_scenario};
-pub use controller::{Controller, Phi, SideGains};
+pub use controller::{BASELINES, Baseline, Controller, Drive, Gain, Phi, Shape, SideGains, VcbcGains};
 pub use diagnostic::{Problem, Problems};
 pub use document::Places;
 pub use initial::Initial;

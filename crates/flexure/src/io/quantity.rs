@@ -169,3 +169,7 @@ pub(super) const GAIN_HARDENING: Quantity =
 pub(super) const GAIN_SHAPING: Quantity = Quantity::positive("gain Λ inside φ", "1/s");
 pub(super) const GAIN_DAMPING: Quantity = Quantity::positive("injected damping K_d", "N m s/rad");
 pub(super) const GAIN_KAPPA: Quantity = Quantity::positive("rate κ of coupled-tanh", "1/s");
+pub(super) const GAIN_STIFFNESS: Quantity =
+    Quantity::positive("stiffness K_P of the feedback of motor positions", "N m/rad");
+pub(super) const GAIN_VELOCITY: Quantity =
+    Quantity::non_negative("damping K_D of the feedback of motor velocities", "N m s/rad");

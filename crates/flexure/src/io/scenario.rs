@@ -6,7 +6,7 @@ use flexure_core::scalar::Interval;
 
 use super::base::Base;
 use super::builtin;
-use super::controller::{self, Controller};
+use super::controller::{self, Controller, VcbcGains};
 use super::decimals::Decimals;
 use super::diagnostic::{Problem, Problems};
 use super::document::{self, Form, Places};
@@ -68,6 +68,21 @@ impl Scenario {
     /// [`AnyReference`](crate::registry::AnyReference).
     pub fn bounds(&self, x: f64) -> Interval {
         self.decimals.and(self.robot.decimals).enclose(x)
+    }
+
+    /// The gains of its v-CBC law: what certificates are about.
+    ///
+    /// # Errors
+    /// If its controller is another one.
+    pub fn vcbc(&self) -> Result<&VcbcGains, Problem> {
+        match &self.controller {
+            Controller::Vcbc(gains) => Ok(gains),
+            Controller::Baseline(law) => {
+                let message = format!("controller.kind is '{}': certificates are for 'vcbc'", law.kind);
+                let help = "of other laws nothing is proved; `flexure run` simulates them";
+                Err(self.places.problem("controller.kind", "unsupported", message, help))
+            }
+        }
     }
 }
 

@@ -99,7 +99,7 @@ pub fn problem(
     question: &Question,
     start: Option<f64>,
 ) -> Result<certify::Problem, Problems> {
-    let io::Controller::Vcbc { phi, link, motor } = &scenario.controller;
+    let io::VcbcGains { phi, link, motor } = scenario.vcbc()?;
     if let Some(problem) = uneven_metric(scenario) {
         return Err(problem.into());
     }
@@ -189,10 +189,9 @@ pub fn prove(scenario: &Scenario, question: &Question) -> Result<Proof, Problems
     let started = Clock::now();
     let start = start_level(scenario).ok().filter(|_| !outside_travel(scenario));
     let problem = problem(scenario, question, start)?;
-    let damping: Vec<f64> = {
-        let io::Controller::Vcbc { link, .. } = &scenario.controller;
-        scenario.robot.link_damping.iter().zip(&link.damping).map(|(a, b)| a + b).collect()
-    };
+    let gains = scenario.vcbc()?;
+    let damping: Vec<f64> =
+        scenario.robot.link_damping.iter().zip(&gains.link.damping).map(|(a, b)| a + b).collect();
     let sampled = sample(&scenario.robot, &damping)?;
     let verdict = match (certify(&problem), question.rate) {
         (Verdict::Proved(certificate), Some(rate)) => at_rate(rate, certificate, &sampled, &damping),
@@ -212,7 +211,7 @@ pub fn prove(scenario: &Scenario, question: &Question) -> Result<Proof, Problems
         confirmation,
         start,
         along,
-        paper_rate: paper_rate(&scenario.robot, &scenario.controller, &problem, sampled.largest_inertia),
+        paper_rate: paper_rate(&scenario.robot, gains, &problem, sampled.largest_inertia),
         verdict,
         sampled,
         assumptions: problem.assumptions,
@@ -288,7 +287,7 @@ fn slower(rate: f64, certificate: &Certificate, sampled: &Sampled, damping: &[f6
 /// # Errors
 /// If its level set cannot be found.
 pub fn certified_rate(scenario: &Scenario) -> Result<Option<f64>, Problems> {
-    if uneven_metric(scenario).is_some() {
+    if scenario.vcbc().is_err() || uneven_metric(scenario).is_some() {
         return Ok(None);
     }
     let problem = problem(scenario, &Question::default(), start_level(scenario).ok())?;

@@ -1,34 +1,89 @@
 //! The controllers by name.
 
-use flexure_core::control::{Command, Input, LinkGains, Metric, MotorGains, Vcbc};
+use flexure_core::control::{
+    Command, ControlLaw, Input, LinkGains, Metric, MotorGains, MotorPd, Pd, PdOnlineGravity, Vcbc,
+};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion};
-use flexure_core::scalar::{Jet, Scalar};
+use flexure_core::scalar::{Jet, Over, Scalar};
 
 use super::robot::vector;
 use super::{AnyShaping, Entry};
-use crate::io::{Controller, Phi, SideGains};
+use crate::io::{Baseline, Controller, Phi, SideGains, VcbcGains};
 
 /// The registered controllers.
-pub const CONTROLLERS: &[Entry] = &[Entry {
-    name: "vcbc",
-    summary: "virtual-contraction law of flexible-joint robots: (φ, Π, K_d) per side",
-}];
+pub const CONTROLLERS: &[Entry] = &[
+    Entry {
+        name: "vcbc", summary: "virtual-contraction law of flexible-joint robots: (φ, Π, K_d) per side"
+    },
+    Entry { name: "pd", summary: "PD of the motors with the gravity of the goal (Tomei 1991)" },
+    Entry {
+        name: "pd-online-gravity",
+        summary: "PD of the motors with the gravity of where they are (De Luca, Siciliano, Zollo 2005)",
+    },
+];
 
-/// A law over the registered shaping functions, with gains of type `C`.
+/// The v-CBC law over the registered shaping functions, with gains of type `C`.
 pub type Law<C, const N: usize> = Vcbc<C, AnyShaping<C, N>, AnyShaping<C, N>, N>;
 
-/// The law that a scenario's controller describes.
-pub fn law<const N: usize>(controller: &Controller) -> Law<f64, N> {
-    law_over(controller, |x| x)
+/// Any registered law, with gains of type `C`.
+#[derive(Clone, Debug)]
+pub enum AnyLaw<C, const N: usize> {
+    /// `vcbc`.
+    Vcbc(Box<Law<C, N>>),
+    /// `pd`.
+    Pd(Pd<C, N>),
+    /// `pd-online-gravity`.
+    PdOnlineGravity(PdOnlineGravity<C, N>),
 }
 
-/// The law that a scenario's controller describes, with every gain through `number`: [`io::Scenario::bounds`] for the law
-/// over intervals that encloses what the decimals in the file say.
+impl<C: Scalar, const N: usize> ControlLaw<C, N> for AnyLaw<C, N> {
+    fn torque<T: Over<C>, L: Links<C, N>>(
+        &self,
+        robot: &Fjr<C, L, N>,
+        x: &Motion<T, N>,
+        q_ld: &Vector<Jet<T, 5>, N>,
+    ) -> Vector<T, N> {
+        match self {
+            Self::Vcbc(law) => law.torque(robot, x, q_ld),
+            Self::Pd(law) => law.torque(robot, x, q_ld),
+            Self::PdOnlineGravity(law) => law.torque(robot, x, q_ld),
+        }
+    }
+}
+
+/// The law that `controller` describes, with every gain through `number`.
+pub fn any_law<C: Scalar, const N: usize>(
+    controller: &Controller,
+    number: impl Fn(f64) -> C,
+) -> AnyLaw<C, N> {
+    match controller {
+        Controller::Vcbc(gains) => AnyLaw::Vcbc(Box::new(law_over(gains, number))),
+        Controller::Baseline(law) => baseline(law, number),
+    }
+}
+
+fn baseline<C: Scalar, const N: usize>(law: &Baseline, number: impl Fn(f64) -> C) -> AnyLaw<C, N> {
+    let gain = |key: &str| vector(law.gain(key)).map(&number);
+    let motor = || MotorPd { stiffness: gain("stiffness"), damping: gain("damping") };
+    match law.kind {
+        "pd" => AnyLaw::Pd(Pd { motor: motor() }),
+        "pd-online-gravity" => AnyLaw::PdOnlineGravity(PdOnlineGravity { motor: motor() }),
+        kind => unreachable!("{kind} is in the reader's table and not here"),
+    }
+}
+
+/// The v-CBC law with the gains of a scenario.
+pub fn law<const N: usize>(gains: &VcbcGains) -> Law<f64, N> {
+    law_over(gains, |x| x)
+}
+
+/// The v-CBC law with every gain of a scenario through `number`: [`io::Scenario::bounds`] for the law over intervals that
+/// encloses what the decimals in the file say.
 ///
 /// [`io::Scenario::bounds`]: crate::io::Scenario::bounds
-pub fn law_over<C: Scalar, const N: usize>(controller: &Controller, number: impl Fn(f64) -> C) -> Law<C, N> {
-    let Controller::Vcbc { phi, link, motor } = controller;
+pub fn law_over<C: Scalar, const N: usize>(gains: &VcbcGains, number: impl Fn(f64) -> C) -> Law<C, N> {
+    let VcbcGains { phi, link, motor } = gains;
     let gains = |values: &[f64]| vector(values).map(&number);
     let base = gains(&link.metric);
     let metric = match &link.metric_hardening {
@@ -46,8 +101,8 @@ pub fn law_over<C: Scalar, const N: usize>(controller: &Controller, number: impl
     }
 }
 
-/// What `law` commands the robot at `x` to do, following `q_ld`, the reference in rad to order 4. Compiled once per
-/// robot: it is much code, wanted in many places.
+/// What the v-CBC `law` commands the robot at `x` to do, following `q_ld`, the reference in rad to order 4. Compiled once
+/// per robot: it is much code, wanted in many places.
 #[inline(never)]
 pub fn command<L: Links<f64, N>, const N: usize>(
     law: &Law<f64, N>,
@@ -56,6 +111,21 @@ pub fn command<L: Links<f64, N>, const N: usize>(
     q_ld: &Vector<Jet<f64, 5>, N>,
 ) -> Command<f64, N> {
     law.command(robot, x, q_ld, &Input::ZERO)
+}
+
+/// What `law` asks of the motors of the robot at `x` [N m], following `q_ld`, the reference in rad to order 4. Compiled
+/// once per robot, as [`command`] is.
+#[inline(never)]
+pub fn torque<L: Links<f64, N>, const N: usize>(
+    law: &AnyLaw<f64, N>,
+    robot: &Fjr<f64, L, N>,
+    x: &Motion<f64, N>,
+    q_ld: &Vector<Jet<f64, 5>, N>,
+) -> Vector<f64, N> {
+    match law {
+        AnyLaw::Vcbc(law) => command(law, robot, x, q_ld).u_m,
+        law => law.torque(robot, x, q_ld),
+    }
 }
 
 fn shaping<C: Scalar, const N: usize>(

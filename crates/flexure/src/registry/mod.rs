@@ -5,8 +5,9 @@ mod controller;
 mod reference;
 mod robot;
 mod shaping;
+mod starting;
 
-pub use controller::{CONTROLLERS, Law, command, law, law_over};
+pub use controller::{AnyLaw, CONTROLLERS, Law, any_law, command, law, law_over, torque};
 pub use reference::{AnyReference, REFERENCES};
 pub(crate) use robot::vector;
 pub use robot::{

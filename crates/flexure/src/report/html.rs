@@ -162,7 +162,9 @@ fn summary_table(runs: &[RunReport]) -> Markup {
                         tr {
                             th scope="row" {
                                 a href={ "#run-" (index + 1) } { (summary.name) } br;
-                                span.unit { (summary.controller) ", " (summary.phi) }
+                                span.unit { (summary.controller)
+                                    @if let Some(phi) = &summary.phi { ", " (phi) }
+                                }
                             }
                             @for number in numbers(summary) { td { (number) } }
                         }

@@ -6,9 +6,11 @@ mod recorder;
 
 use std::time::Instant as Clock;
 
+use flexure_core::control::Command;
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion, RotorCoupling};
 use flexure_core::reference::Reference;
+use flexure_core::scalar::Jet;
 
 pub use limits::exceeded;
 pub use preload::preload;
@@ -17,7 +19,7 @@ pub use recorder::SETTLED;
 
 use crate::io::{self, Problem, Problems, Scenario};
 use crate::rates::BlockRates;
-use crate::registry::{self, AnyReference, Law, RobotVisitor, law, vector, with_robot};
+use crate::registry::{self, AnyLaw, AnyReference, RobotVisitor, any_law, vector, with_robot};
 use crate::sim::{ClosedLoop, Divergence, Hold, Instant, Plant};
 use crate::summary::Summary;
 use crate::trace::Trace;
@@ -55,7 +57,6 @@ impl RobotVisitor for Simulate<'_> {
 
     fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) -> Self::Output {
         let Self { scenario, progress } = self;
-        let io::Controller::Vcbc { phi, .. } = &scenario.controller;
         let started = Clock::now();
         let plant = plant(scenario, robot);
         let start = initial(scenario);
@@ -63,7 +64,7 @@ impl RobotVisitor for Simulate<'_> {
             return Err(too_heavy(scenario).into());
         }
         let robot = &plant.robot;
-        let law: Law<f64, N> = law(&scenario.controller);
+        let law: AnyLaw<f64, N> = any_law(&scenario.controller, |x| x);
         let reference = AnyReference::<f64, N>::new(scenario)?;
         let settings = ClosedLoop {
             duration: scenario.duration,
@@ -74,11 +75,16 @@ impl RobotVisitor for Simulate<'_> {
             },
             tolerance: TOLERANCE,
         };
-        let command = |t: f64, x: &Motion<f64, N>| registry::command(&law, robot, x, &reference.at(t));
+        let command = |t: f64, x: &Motion<f64, N>| command(&law, robot, x, &reference.at(t));
         let mut recorder = Recorder::new(vector(&scenario.robot.limits.torque));
         let mut observe = |instant: &Instant<'_, N>| {
-            let rates = BlockRates::at(robot, &law, &instant.motion.q_l, instant.command);
-            recorder.record(robot, instant, &rates);
+            let rate = match &law {
+                AnyLaw::Vcbc(law) => {
+                    BlockRates::at(robot, law, &instant.motion.q_l, instant.command).overall()
+                }
+                _ => f64::NAN,
+            };
+            recorder.record(robot, instant, rate);
             progress(instant.t / settings.duration);
         };
         let outcome = settings.run(&plant, start, &command, &mut observe);
@@ -88,7 +94,7 @@ impl RobotVisitor for Simulate<'_> {
         let summary = Summary {
             name: scenario.name.clone(),
             controller: scenario.controller.kind().to_owned(),
-            phi: phi.name().to_owned(),
+            phi: scenario.controller.phi().map(str::to_owned),
             plant: scenario.plant.options(),
             max_abs_e_l: ended(figures.max_abs_e_l),
             rms_e_l: ended(figures.rms_e_l()),
@@ -105,6 +111,22 @@ impl RobotVisitor for Simulate<'_> {
         };
         Ok(Run { summary, trace, divergence: outcome.divergence })
     }
+}
+
+/// What the law commands; of laws other than v-CBC only torque and link error are numbers.
+fn command<L: Links<f64, N>, const N: usize>(
+    law: &AnyLaw<f64, N>,
+    robot: &Fjr<f64, L, N>,
+    x: &Motion<f64, N>,
+    q_ld: &Vector<Jet<f64, 5>, N>,
+) -> Command<f64, N> {
+    if let AnyLaw::Vcbc(law) = law {
+        return registry::command(law, robot, x, q_ld);
+    }
+    let none = Vector([f64::NAN; N]);
+    let e_l = x.q_l - q_ld.map(|jet| jet.coefficient(0));
+    let u_m = registry::torque(law, robot, x, q_ld);
+    Command { u_m, u_l: none, q_md: none, e_l, e_m: none, s_l: none, s_m: none }
 }
 
 /// The initial motion of the scenario.

@@ -3,7 +3,6 @@
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion};
 
-use crate::rates::BlockRates;
 use crate::sim::Instant;
 use crate::trace::Trace;
 
@@ -97,11 +96,10 @@ impl<const N: usize> Recorder<N> {
         &mut self,
         robot: &Fjr<f64, L, N>,
         instant: &Instant<'_, N>,
-        rates: &BlockRates,
+        rate: f64,
     ) {
         let Instant { t, motion, command, energy, residual, ledger } = *instant;
         let sigma = robot.state(&Motion { v_l: command.s_l, v_m: command.s_m, ..*motion });
-        let rate = rates.overall();
         self.row.clear();
         self.row.push(t);
         let vectors = [
@@ -147,6 +145,9 @@ impl<const N: usize> Recorder<N> {
             ] {
                 *figure = f64::NAN;
             }
+        }
+        if figures.rate == f64::INFINITY {
+            figures.rate = f64::NAN; // a law without rates
         }
         (self.trace, figures)
     }

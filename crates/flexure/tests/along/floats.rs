@@ -37,7 +37,7 @@ fn floats<L, const N: usize>(scenario: &Scenario, links: L) -> Floats<L, N> {
         link_damping: drive(&data.link_damping),
         motor_damping: drive(&data.motor_damping),
     };
-    Floats { robot, law: law(&scenario.controller), reference: AnyReference::new(scenario).unwrap() }
+    Floats { robot, law: law(scenario.vcbc().unwrap()), reference: AnyReference::new(scenario).unwrap() }
 }
 
 pub fn arm(scenario: &Scenario) -> Floats<PlanarTwoLink<f64>, 2> {

@@ -34,7 +34,13 @@ fn enclosed(scenario: &Scenario) -> Arm {
     };
     let reference = AnyReference::enclosed(scenario).unwrap();
     let [breaks, kinks] = [reference.breaks(), reference.kinks()];
-    Enclosed { robot, law: law_over(&scenario.controller, |x| scenario.bounds(x)), reference, breaks, kinks }
+    Enclosed {
+        robot,
+        law: law_over(scenario.vcbc().unwrap(), |x| scenario.bounds(x)),
+        reference,
+        breaks,
+        kinks,
+    }
 }
 
 /// Random slabs of `scenario`: what the law says on the reference at their ends, within, and around it.

@@ -96,7 +96,7 @@ fn laws_are_enclosed() {
     let mut r = Numbers(11);
     for (name, _) in SCENARIOS.iter().filter(|(name, _)| name.starts_with("two-link")) {
         let scenario = load_scenario(name).expect("built in");
-        let law: Law<Interval, 2> = law_over(&scenario.controller, |x| scenario.bounds(x));
+        let law: Law<Interval, 2> = law_over(scenario.vcbc().unwrap(), |x| scenario.bounds(x));
         let reference = AnyReference::<Interval, 2>::enclosed(&scenario).expect("a path");
         let robot = two_links(&scenario.robot);
         for _ in 0..5 {

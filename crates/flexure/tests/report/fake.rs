@@ -49,7 +49,7 @@ pub fn summary(name: &str) -> Summary {
     Summary {
         name: name.to_owned(),
         controller: "vcbc".to_owned(),
-        phi: "tanh".to_owned(),
+        phi: Some("tanh".to_owned()),
         plant: Vec::new(),
         max_abs_e_l: 0.0312,
         rms_e_l: 1.234e-3,

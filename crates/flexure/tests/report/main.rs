@@ -255,7 +255,7 @@ fn the_terminal_table_fits_100_columns() {
     assert!(table.contains("5790") && table.contains("123×10⁻⁹") && !table.contains('\u{1b}'), "{table}");
     assert!(!table.contains("proved") && !table.contains("limit"), "no run has them: {table}");
     let longest = Summary {
-        phi: "coupled-tanh".to_owned(),
+        phi: Some("coupled-tanh".to_owned()),
         max_abs_e_l: 5.12e-6,
         max_abs_u_m: 164e6,
         rate_certified: Some(2.5),

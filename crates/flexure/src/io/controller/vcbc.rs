@@ -1,28 +1,32 @@
-//! `[controller]`: the law and its gains.
+//! The gains of `vcbc`.
 
-use super::field::{Field, Joints};
-use super::quantity;
+use super::super::field::{Field, Joints};
+use super::super::quantity;
 
-/// A control law with its gains, as data.
+/// The gains of virtual-contraction based control.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Controller {
-    /// Virtual-contraction based control: kind `vcbc`.
-    Vcbc {
-        /// Shaping function φ of both sides.
-        phi: Phi,
-        /// Link side.
-        link: SideGains,
-        /// Motor side.
-        motor: SideGains,
-    },
+pub struct VcbcGains {
+    /// Shaping function φ of both sides.
+    pub phi: Phi,
+    /// Link side.
+    pub link: SideGains,
+    /// Motor side.
+    pub motor: SideGains,
 }
 
-impl Controller {
-    /// The name in files.
-    pub fn kind(&self) -> &'static str {
-        match self {
-            Self::Vcbc { .. } => "vcbc",
-        }
+impl VcbcGains {
+    /// Every gain with its path.
+    pub(super) fn named(&self) -> Vec<(String, &[f64])> {
+        let side = |name: &'static str, gains: &SideGains| {
+            gains.keys().map(move |key| format!("{name}.{key}")).collect::<Vec<_>>()
+        };
+        let names = side("link", &self.link).into_iter().chain(side("motor", &self.motor));
+        names.zip(self.link.values().chain(self.motor.values()).map(Vec::as_slice)).collect()
+    }
+
+    /// The same gains, to be changed.
+    pub(super) fn slots(&mut self) -> Vec<&mut Vec<f64>> {
+        self.link.slots().chain(self.motor.slots()).collect()
     }
 }
 
@@ -62,17 +66,38 @@ pub struct SideGains {
     pub metric_hardening: Option<Vec<f64>>,
 }
 
-/// Reads `[controller]`.
-pub(super) fn read(field: &Field<'_>, joints: &Joints) -> Option<Controller> {
+impl SideGains {
+    /// Keys of the gains that are there.
+    fn keys(&self) -> impl Iterator<Item = &'static str> + use<> {
+        let kappa = self.kappa.is_some().then_some("kappa");
+        let hardening = self.metric_hardening.is_some().then_some("metric_hardening");
+        ["metric", "shaping", "damping"].into_iter().chain(kappa).chain(hardening)
+    }
+
+    /// Their values, in the order of [`keys`](Self::keys).
+    fn values(&self) -> impl Iterator<Item = &Vec<f64>> {
+        [&self.metric, &self.shaping, &self.damping]
+            .into_iter()
+            .chain(&self.kappa)
+            .chain(&self.metric_hardening)
+    }
+
+    fn slots(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
+        let Self { metric, shaping, damping, kappa, metric_hardening } = self;
+        [metric, shaping, damping].into_iter().chain(kappa).chain(metric_hardening)
+    }
+}
+
+/// Reads the gains of `vcbc`.
+pub(super) fn read(field: &Field<'_>, joints: &Joints) -> Option<VcbcGains> {
     let table = field.table(&["kind", "phi", "link", "motor"])?;
-    table.choice("kind", &[("vcbc", ())])?;
     let phi = table.choice("phi", PHIS);
     let link = table.required("link", "gains of the link side").and_then(|field| side(&field, phi, joints));
     let motor = table.required("motor", "gains of the motor side").and_then(|field| {
         refuse_hardening(&field)?;
         side(&field, phi, joints)
     });
-    Some(Controller::Vcbc { phi: phi?, link: link?, motor: motor? })
+    Some(VcbcGains { phi: phi?, link: link?, motor: motor? })
 }
 
 fn side(field: &Field<'_>, phi: Option<Phi>, joints: &Joints) -> Option<SideGains> {

@@ -1,0 +1,106 @@
+//! The laws that v-CBC is compared with, as data: which gains each has, what they are, and what to start from.
+
+use super::super::field::{Field, Joints};
+use super::super::quantity::{self, Quantity};
+
+/// A law and its gains, one number per joint each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Baseline {
+    /// The name in files.
+    pub kind: &'static str,
+    /// Key and values of every gain, in the order of its [`Shape`].
+    pub gains: Vec<(&'static str, Vec<f64>)>,
+}
+
+impl Baseline {
+    /// The gain at `key`; empty if the law has none of this name.
+    pub fn gain(&self, key: &str) -> &[f64] {
+        self.gains.iter().find(|(name, _)| *name == key).map_or(&[], |(_, values)| values)
+    }
+}
+
+/// Which gains a law has.
+#[derive(Debug)]
+pub struct Shape {
+    /// The name of the law in files.
+    pub kind: &'static str,
+    /// Its gains.
+    pub gains: &'static [Gain],
+}
+
+/// A gain in files.
+#[derive(Debug)]
+pub struct Gain {
+    /// Its key.
+    pub key: &'static str,
+    quantity: &'static Quantity,
+    /// What to start tuning from, by what a joint has to move.
+    pub start: fn(&Drive) -> f64,
+}
+
+impl Gain {
+    /// What it is, and in which unit.
+    pub fn described(&self) -> String {
+        self.quantity.described()
+    }
+}
+
+/// What a joint has to move: all that starting gains depend on.
+#[derive(Clone, Copy, Debug)]
+pub struct Drive {
+    /// Spring constant K [N m/rad].
+    pub stiffness: f64,
+    /// Motor inertia [kg m²].
+    pub motor_inertia: f64,
+    /// Inertia of the links about the joint at q = 0, the other joints held [kg m²].
+    pub link_inertia: f64,
+}
+
+/// Fastest errors that starting gains ask for [1/s]: a control period of 1 ms does not show at that.
+const FASTEST: f64 = 20.0;
+
+impl Drive {
+    /// How fast errors shall decay [1/s]: half the frequency at which the links swing while the motor is held, at most
+    /// [`FASTEST`].
+    pub fn bandwidth(&self) -> f64 {
+        (0.5 * (self.stiffness / self.link_inertia).sqrt()).min(FASTEST)
+    }
+
+    /// Links and motor as if they were one [kg m²].
+    fn inertia(&self) -> f64 {
+        self.motor_inertia + self.link_inertia
+    }
+
+    /// ω² J.
+    fn motor_stiffness(&self) -> f64 {
+        self.bandwidth().powi(2) * self.inertia()
+    }
+
+    /// 2 ω J: with [`motor_stiffness`](Self::motor_stiffness) critically damped.
+    fn motor_damping(&self) -> f64 {
+        2.0 * self.bandwidth() * self.inertia()
+    }
+}
+
+const STIFFNESS: Gain =
+    Gain { key: "stiffness", quantity: &quantity::GAIN_STIFFNESS, start: Drive::motor_stiffness };
+const DAMPING: Gain =
+    Gain { key: "damping", quantity: &quantity::GAIN_VELOCITY, start: Drive::motor_damping };
+
+/// Every law beside `vcbc`, with its gains.
+pub const BASELINES: &[Shape] = &[
+    Shape { kind: "pd", gains: &[STIFFNESS, DAMPING] },
+    Shape { kind: "pd-online-gravity", gains: &[STIFFNESS, DAMPING] },
+];
+
+/// Reads the gains of a law.
+pub(super) fn read(field: &Field<'_>, shape: &Shape, joints: &Joints) -> Option<Baseline> {
+    let known: Vec<_> = std::iter::once("kind").chain(shape.gains.iter().map(|gain| gain.key)).collect();
+    let table = field.table(&known)?;
+    let gains: Vec<_> = shape
+        .gains
+        .iter()
+        .map(|gain| table.per_joint(gain.key, joints, gain.quantity).map(|values| (gain.key, values)))
+        .collect();
+    Some(Baseline { kind: shape.kind, gains: gains.into_iter().collect::<Option<_>>()? })
+}

@@ -1,0 +1,81 @@
+//! `[controller]`: the law and its gains.
+
+mod baseline;
+mod vcbc;
+
+pub use baseline::{BASELINES, Baseline, Drive, Gain, Shape};
+pub use vcbc::{Phi, SideGains, VcbcGains};
+
+use super::field::{Field, Joints};
+use super::suggest;
+
+/// A control law with its gains, as data.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Controller {
+    /// Virtual-contraction based control: kind `vcbc`.
+    Vcbc(VcbcGains),
+    /// One of the laws that it is compared with.
+    Baseline(Baseline),
+}
+
+/// The name of [`Controller::Vcbc`] in files.
+const VCBC: &str = "vcbc";
+
+impl Controller {
+    /// The name in files.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Vcbc(_) => VCBC,
+            Self::Baseline(law) => law.kind,
+        }
+    }
+
+    /// Shaping function φ of laws that let one choose it, as in files.
+    pub fn phi(&self) -> Option<&'static str> {
+        match self {
+            Self::Vcbc(gains) => Some(gains.phi.name()),
+            Self::Baseline(_) => None,
+        }
+    }
+
+    /// Every gain with its path below `[controller]`, one number per joint: `link.metric`, `stiffness`.
+    pub fn gains(&self) -> Vec<(String, &[f64])> {
+        match self {
+            Self::Vcbc(gains) => gains.named(),
+            Self::Baseline(law) => {
+                law.gains.iter().map(|(key, x)| ((*key).to_owned(), x.as_slice())).collect()
+            }
+        }
+    }
+
+    /// The same law with other gains, in the order of [`gains`](Self::gains); gains beyond the end of `values` stay.
+    pub fn with_gains(&self, values: &[Vec<f64>]) -> Self {
+        let mut changed = self.clone();
+        let slots: Vec<&mut Vec<f64>> = match &mut changed {
+            Self::Vcbc(gains) => gains.slots(),
+            Self::Baseline(law) => law.gains.iter_mut().map(|(_, x)| x).collect(),
+        };
+        for (slot, value) in slots.into_iter().zip(values) {
+            slot.clone_from(value);
+        }
+        changed
+    }
+}
+
+/// Reads `[controller]`.
+pub(super) fn read(field: &Field<'_>, joints: &Joints) -> Option<Controller> {
+    let table = field.any_table()?;
+    let names = std::iter::once(VCBC).chain(BASELINES.iter().map(|shape| shape.kind));
+    let listed = names.clone().collect::<Vec<_>>().join(", ");
+    let kind = table.required("kind", &format!("one of {listed}"))?;
+    let text = kind.text()?;
+    if text == VCBC {
+        return vcbc::read(field, joints).map(Controller::Vcbc);
+    }
+    let Some(shape) = BASELINES.iter().find(|shape| shape.kind == text) else {
+        let message = format!("{} is {}, which is not known", kind.path, suggest::quoted(text));
+        kind.error("unknown-name", message, suggest::hint(text, names));
+        return None;
+    };
+    baseline::read(field, shape, joints).map(Controller::Baseline)
+}
