@@ -8,6 +8,9 @@ mod newton;
 mod plant;
 mod scheme;
 mod spring;
+mod stepper;
+mod stepping;
+mod stiction;
 
 pub use closed_loop::{Cause, ClosedLoop, Divergence, Hold, Instant, Outcome};
 pub use friction::Friction;
@@ -15,3 +18,5 @@ pub use gauss::{Integrator, StepFailure};
 pub use ledger::Ledger;
 pub use plant::Plant;
 pub use spring::Hysteresis;
+pub use stepper::Stepper;
+pub use stepping::Stepping;
