@@ -13,15 +13,15 @@ use flexure_core::robots::{Body, JointKind, Pendulum, PlanarTwoLink, Tree};
 fn arm() -> Plant<PlanarTwoLink<f64>, 2> {
     let motor_inertia = Vector([0.23, 0.09]);
     Plant {
-        robot: Fjr {
+        spring_hardening: Vector([1800.0, 800.0]),
+        rotor_coupling: Some(RotorCoupling::new(&motor_inertia, &Vector([5.0, -1.0]))),
+        ..Plant::from(Fjr {
             links: PlanarTwoLink::new([3.0, 0.873], 0.343, [0.159, 0.055], [0.14, 0.00808]),
             motor_inertia,
             stiffness: Vector([9.0, 4.0]),
             link_damping: Vector([0.08, 0.05]),
             motor_damping: Vector([0.2, 0.1]),
-        },
-        spring_hardening: Vector([1800.0, 800.0]),
-        rotor_coupling: Some(RotorCoupling::new(&motor_inertia, &Vector([5.0, -1.0]))),
+        })
     }
 }
 
@@ -39,15 +39,15 @@ fn chain() -> Plant<Tree<f64, 4>, 4> {
     });
     let motor_inertia = Vector([0.3, 0.2, 0.5, 0.05]);
     Plant {
-        robot: Fjr {
+        spring_hardening: Vector([1e4, 2e4, 5e3, 5e3]),
+        rotor_coupling: Some(RotorCoupling::new(&motor_inertia, &Vector([5.0, 2.5, -4.0, 1.0]))),
+        ..Plant::from(Fjr {
             links: Tree::new(&bodies, [0.0, 0.0, -9.81]).expect("a chain"),
             motor_inertia,
             stiffness: Vector([300.0, 300.0, 100.0, 60.0]),
             link_damping: Vector::ZERO,
             motor_damping: Vector::ZERO,
-        },
-        spring_hardening: Vector([1e4, 2e4, 5e3, 5e3]),
-        rotor_coupling: Some(RotorCoupling::new(&motor_inertia, &Vector([5.0, 2.5, -4.0, 1.0]))),
+        })
     }
 }
 

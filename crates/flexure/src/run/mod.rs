@@ -148,7 +148,7 @@ fn plant<L, const N: usize>(scenario: &Scenario, robot: Fjr<f64, L, N>) -> Plant
         rotor_coupling: rotor_coupling
             .as_deref()
             .map(|gears| RotorCoupling::new(&robot.motor_inertia, &vector(gears))),
-        robot,
+        ..Plant::from(robot)
     }
 }
 

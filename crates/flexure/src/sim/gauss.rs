@@ -247,7 +247,7 @@ fn moved<const N: usize>(
 
 /// Number of steps of at most `step` that fill `interval`.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to [1, 1e8]")]
-fn steps_in(interval: f64, step: f64) -> u32 {
+pub(super) fn steps_in(interval: f64, step: f64) -> u32 {
     (interval / step * (1.0 - 1e-12)).ceil().clamp(1.0, 1e8) as u32
 }
 
@@ -255,6 +255,6 @@ fn largest<const N: usize>(v: &Vector<f64, N>) -> f64 {
     v.iter().fold(0.0, |m, x| m.max(x.abs()))
 }
 
-fn is_finite<const N: usize>(x: &Motion<f64, N>) -> bool {
+pub(super) fn is_finite<const N: usize>(x: &Motion<f64, N>) -> bool {
     [&x.q_l, &x.q_m, &x.v_l, &x.v_m].iter().all(|v| v.iter().all(f64::is_finite))
 }

@@ -5,11 +5,11 @@ use flexure_core::model::Power;
 /// Work done on the robot and by it: the two sides of the power balance, integrated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ledger {
-    /// ∫ q̇_mᵀ u_m dt, in J.
+    /// ∫ q̇_mᵀ u_m + q̇_lᵀ τ_external dt, in J.
     pub supplied: f64,
-    /// ∫ q̇_lᵀ D_l q̇_l + q̇_mᵀ D_m q̇_m dt, in J.
+    /// ∫ q̇_lᵀ D_l q̇_l + q̇_mᵀ D_m q̇_m dt and the work of dry friction and hysteresis, in J.
     pub dissipated: f64,
-    /// ∫ |q̇_mᵀ u_m| dt, in J: what the residual is compared with.
+    /// ∫ |q̇_mᵀ u_m + q̇_lᵀ τ_external| dt, in J: what the residual is compared with.
     pub throughput: f64,
 }
 

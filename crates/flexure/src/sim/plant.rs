@@ -3,15 +3,28 @@
 use flexure_core::linalg::{Matrix, Vector};
 use flexure_core::model::{Fjr, Links, MassFactor, Motion, Power, RotorCoupling};
 
+use super::friction::Friction;
+use super::spring::Hysteresis;
+
 /// A robot with what its model leaves out. The law is built on [`robot`](Self::robot) alone.
 #[derive(Clone, Copy, Debug)]
 pub struct Plant<L, const N: usize> {
     /// The reduced model with linear springs.
     pub robot: Fjr<f64, L, N>,
-    /// k ≥ 0 in the spring torque K ζ + k ζ³ [N m/rad³].
+    /// k ≥ 0 in the spring torque K ε + k ε³ [N m/rad³].
     pub spring_hardening: Vector<f64, N>,
+    /// Play ≥ 0 in the springs, all of it, in rad: ε = ζ − clamp(ζ, ±gap/2).
+    pub spring_gap: Vector<f64, N>,
+    /// Springs that slip inside, in parallel with the others.
+    pub hysteresis: Hysteresis<N>,
+    /// Dry friction of the links.
+    pub link_friction: Friction<N>,
+    /// Dry friction of the motors, on the link side of the gear.
+    pub motor_friction: Friction<N>,
     /// Inertial coupling of the rotors; without it they only spin about their own axes.
     pub rotor_coupling: Option<RotorCoupling<f64, N>>,
+    /// Torque on the links from outside, constant while the plant is advanced [N m].
+    pub external: Vector<f64, N>,
 }
 
 /// One vector for the links and one for the motors.
@@ -20,49 +33,40 @@ pub(super) type Sides<const N: usize> = [Vector<f64, N>; 2];
 impl<L, const N: usize> From<Fjr<f64, L, N>> for Plant<L, N> {
     /// The plant that is as its model.
     fn from(robot: Fjr<f64, L, N>) -> Self {
-        Self { robot, spring_hardening: Vector::ZERO, rotor_coupling: None }
+        Self {
+            robot,
+            spring_hardening: Vector::ZERO,
+            spring_gap: Vector::ZERO,
+            hysteresis: Hysteresis::NONE,
+            link_friction: Friction::NONE,
+            motor_friction: Friction::NONE,
+            rotor_coupling: None,
+            external: Vector::ZERO,
+        }
+    }
+}
+
+impl<L, const N: usize> Plant<L, N> {
+    /// Whether torques are smooth functions of the motion: no dry friction, no play, no hysteresis.
+    pub fn is_smooth(&self) -> bool {
+        self.link_friction.is_none()
+            && self.motor_friction.is_none()
+            && self.hysteresis.is_none()
+            && self.spring_gap.iter().all(|gap| gap == 0.0)
     }
 }
 
 impl<L: Links<f64, N>, const N: usize> Plant<L, N> {
-    /// Torque K ζ + k ζ³ of the springs on the links [N m]; the motors feel its opposite.
-    pub fn spring_torque(&self, x: &Motion<f64, N>) -> Vector<f64, N> {
-        self.robot.spring_torque(&x.q_l, &x.q_m) + self.hardening_torque(x)
-    }
-
-    fn hardening_torque(&self, x: &Motion<f64, N>) -> Vector<f64, N> {
-        let zeta = x.deflection();
-        Vector::from_fn(|i| self.spring_hardening[i] * zeta[i] * zeta[i] * zeta[i])
-    }
-
-    /// Slope K + 3 k ζ² of the spring torque [N m/rad].
-    pub(super) fn tangent_stiffness(&self, x: &Motion<f64, N>) -> Vector<f64, N> {
-        let zeta = x.deflection();
-        Vector::from_fn(|i| self.robot.stiffness[i] + 3.0 * self.spring_hardening[i] * zeta[i] * zeta[i])
-    }
-
-    /// Deflection in rad at which the springs give `torque` [N m].
-    pub fn deflection_under(&self, torque: &Vector<f64, N>) -> Vector<f64, N> {
-        Vector::from_fn(|i| {
-            let (stiffness, hardening) = (self.robot.stiffness[i], self.spring_hardening[i]);
-            // Newton's iteration from beyond the root of a function that is convex there: monotone.
-            (0..100).fold(torque[i] / stiffness, |zeta, _| {
-                let square = hardening * zeta * zeta;
-                zeta - ((stiffness + square) * zeta - torque[i]) / (stiffness + 3.0 * square)
-            })
-        })
-    }
-
-    /// Total energy in J.
+    /// Total energy in J, without what hysteresis keeps.
     pub fn total_energy(&self, x: &Motion<f64, N>) -> f64 {
-        let hardening = 0.25 * self.hardening_torque(x).dot(&x.deflection());
         let coupling = self.rotor_coupling.map_or(0.0, |coupling| coupling.energy(&self.robot.links, x));
-        self.robot.total_energy(x) + hardening + coupling
+        self.robot.total_energy(x) + self.nonlinear_energy(x) + coupling
     }
 
-    /// The power that flows in through the motors and out through the dampers.
+    /// The power that flows in through the motors and from outside, and out through the dampers.
     pub fn power(&self, x: &Motion<f64, N>, u_m: &Vector<f64, N>) -> Power<f64> {
-        self.robot.power(x, u_m)
+        let Power { supplied, dissipated } = self.robot.power(x, u_m);
+        Power { supplied: supplied + x.v_l.dot(&self.external), dissipated }
     }
 
     /// S(q_l) of the rotor coupling [kg m²], if there is any.
@@ -70,17 +74,18 @@ impl<L: Links<f64, N>, const N: usize> Plant<L, N> {
         self.rotor_coupling.map(|coupling| coupling.matrix(&self.robot.links, q_l))
     }
 
-    /// Torques on links and motors that the accelerations `a` leave unbalanced under the motor torque `u_m` [N m].
+    /// Torques on links and motors that the accelerations `a` leave unbalanced under the motor torque `u_m` [N m]; without
+    /// friction and hysteresis.
     #[inline]
     pub(super) fn unbalanced(&self, x: &Motion<f64, N>, u_m: &Vector<f64, N>, a: Sides<N>) -> Sides<N> {
         let (robot, [a_l, a_m]) = (&self.robot, a);
-        let hardening = self.hardening_torque(x);
+        let nonlinear = self.nonlinear_torque(x);
         let needed = robot.links.inverse_dynamics(&x.q_l, &x.v_l, &x.v_l, &a_l);
         let spring = robot.spring_torque(&x.q_l, &x.q_m);
         let damping_m = robot.motor_damping.diag_mul(&x.v_m);
         let inertia_m = robot.motor_inertia.diag_mul(&a_m);
-        let link = robot.link_torque(x) + hardening - needed;
-        let motor = *u_m - hardening - spring - damping_m - inertia_m;
+        let link = robot.link_torque(x) + nonlinear - needed + self.external;
+        let motor = *u_m - nonlinear - spring - damping_m - inertia_m;
         match &self.rotor_coupling {
             None => [link, motor],
             Some(coupling) => {
@@ -92,7 +97,7 @@ impl<L: Links<f64, N>, const N: usize> Plant<L, N> {
 
     /// Torques that the coupling needs on links and motors [N m]. Compiled once: it is much code in many places.
     #[inline(never)]
-    fn coupling_torques(
+    pub(super) fn coupling_torques(
         &self,
         coupling: &RotorCoupling<f64, N>,
         x: &Motion<f64, N>,
@@ -102,7 +107,7 @@ impl<L: Links<f64, N>, const N: usize> Plant<L, N> {
         [coupling.link_torque(links, x, &a_m), coupling.motor_torque(links, x, &a_l)]
     }
 
-    /// Accelerations of links and motors [rad/s²] under the motor torque `u_m` [N m].
+    /// Accelerations of links and motors [rad/s²] under the motor torque `u_m` [N m]; without friction and hysteresis.
     pub fn accelerations(&self, x: &Motion<f64, N>, u_m: &Vector<f64, N>) -> [Vector<f64, N>; 2] {
         let robot = &self.robot;
         let [link, motor] = self.unbalanced(x, u_m, [Vector::ZERO; 2]);
