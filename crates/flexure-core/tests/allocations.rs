@@ -4,7 +4,9 @@ use assert_no_alloc::{AllocDisabler, assert_no_alloc, violation_count};
 use flexure_core::control::{Input, RigidVcbc};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{FeedForward, LinkMatrices, Links, MassFactor};
-use flexure_core::reference::{Multisine, PointToPoint, Reference, Sine, SmoothStart, Smoothstep, Term};
+use flexure_core::reference::{
+    Clock, Multisine, PointToPoint, Reference, Retimed, Sine, SmoothStart, Smoothstep, Term,
+};
 use flexure_core::scalar::{Jet, Scalar};
 use flexure_core::virtual_system::{Structure, closed_loop, error_coordinates, virtual_dynamics};
 
@@ -83,7 +85,10 @@ fn references() {
     let sine = Sine { amplitude: one, frequency: one, ..Sine::ZERO };
     let term = Term { amplitude: one, frequency: one, phase: one };
     let multisine = Multisine { offset: one, terms: [term; 5] };
-    let start = SmoothStart { from: one, duration: 2.0, then: sine };
+    let start = Retimed {
+        clock: Clock::FromRest { speed: 0.5, rise: 1.0 },
+        path: SmoothStart::from_rest(one, 2.0, sine),
+    };
     let steps = [Smoothstep::Quintic, Smoothstep::Septic, Smoothstep::Nonic];
     let count = allocations(|| {
         let steps = steps

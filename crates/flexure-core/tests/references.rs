@@ -2,7 +2,9 @@
 #![expect(clippy::float_cmp, reason = "exactness at the ends is the promise under test")]
 
 use flexure_core::linalg::Vector;
-use flexure_core::reference::{Multisine, PointToPoint, Reference, Sine, SmoothStart, Smoothstep, Term};
+use flexure_core::reference::{
+    Clock, Multisine, PointToPoint, Reference, Retimed, Sine, SmoothStart, Smoothstep, Stop, Term,
+};
 use flexure_core::scalar::{Dual, Jet};
 
 const STEPS: [Smoothstep; 3] = [Smoothstep::Quintic, Smoothstep::Septic, Smoothstep::Nonic];
@@ -27,8 +29,32 @@ const fn point_to_point(step: Smoothstep) -> PointToPoint<f64, 2> {
     PointToPoint { from: Vector([0.3, -0.8]), to: Vector([-1.1, 0.7]), start: 0.5, duration: 2.0, step }
 }
 
-const SMOOTH_START: SmoothStart<f64, Sine<f64, 2>, 2> =
-    SmoothStart { from: Vector([-0.4, 0.6]), duration: 2.0, then: SINE };
+const FROM: Vector<f64, 2> = Vector([-0.4, 0.6]);
+
+const SMOOTH_START: SmoothStart<f64, Sine<f64, 2>, 2> = SmoothStart {
+    from: Stop {
+        from: Vector([Jet::new([-0.4, 0.0, 0.0, 0.0]), Jet::new([0.6, 0.0, 0.0, 0.0])]),
+        start: 0.0,
+        duration: 2.0,
+    },
+    duration: 2.0,
+    then: SINE,
+};
+
+/// From a motion with velocity, acceleration and jerk.
+const STOP: Stop<f64, 2> = Stop {
+    from: Vector([Jet::new([0.3, 1.5, 2.0, 1.5]), Jet::new([-0.6, -1.2, -3.0, -2.0])]),
+    start: 0.0,
+    duration: 2.0,
+};
+
+const MOVING_START: SmoothStart<f64, Sine<f64, 2>, 2> = SmoothStart { from: STOP, duration: 2.5, then: SINE };
+
+const fn retimed<R>(clock: Clock<f64>, path: R) -> Retimed<f64, R> {
+    Retimed { clock, path }
+}
+
+const FROM_REST: Clock<f64> = Clock::FromRest { speed: 0.7, rise: 2.0 };
 
 /// Where two pieces meet: the time [s] and the last derivative that they share.
 type Joint = (f64, usize);
@@ -49,6 +75,11 @@ fn sweep(law: &impl Law) {
         law.check(&format!("point to point, {step:?}"), &point_to_point(step), &[(0.5, m), (2.5, m)]);
     }
     law.check("smooth start", &SMOOTH_START, &[(0.0, 4), (2.0, 4)]);
+    law.check("stop", &STOP, &[(0.0, 0), (2.0, 4)]);
+    law.check("smooth start in motion", &MOVING_START, &[(0.0, 0), (2.0, 4), (2.5, 4)]);
+    law.check("slow sine", &retimed(Clock::Steady { speed: 0.7 }, SINE), &[]);
+    law.check("slow start", &retimed(Clock::Steady { speed: 0.5 }, SMOOTH_START), &[(0.0, 4), (4.0, 4)]);
+    law.check("sine from rest", &retimed(FROM_REST, SINE), &[(0.0, 4), (2.0, 4)]);
 }
 
 /// On either side of all joints and in between, never within 0.03 s of one.
@@ -327,7 +358,7 @@ fn point_to_point_rests_exactly_at_both_postures() {
 fn smooth_start_leaves_from_rest() {
     for t in [-1e3, -0.1, 0.0] {
         // Exact: the step is τ⁵ times a polynomial.
-        assert_eq!(SMOOTH_START.at::<5>(t), SMOOTH_START.from.lift(), "at {t} s");
+        assert_eq!(SMOOTH_START.at::<5>(t), FROM.lift(), "at {t} s");
     }
 }
 
@@ -346,7 +377,7 @@ fn smooth_start_jumps_in_the_fifth_derivative_as_documented() {
         let (inside, outside) = (SMOOTH_START.at::<6>(t), SINE.at::<6>(t));
         for i in 0..2 {
             let outside = if t > 0.0 { outside[i].derivative(5) } else { 0.0 };
-            let jump = 15120.0 * (SINE.on(t)[i] - SMOOTH_START.from[i]) / 2.0f64.powi(5);
+            let jump = 15120.0 * (SINE.on(t)[i] - FROM[i]) / 2.0f64.powi(5);
             // 50 operations on numbers below 1e3.
             assert_close(inside[i].derivative(5) - outside, jump, 1e-11, &format!("at {t} s, joint {i}"));
         }
@@ -359,7 +390,7 @@ fn smooth_start_obeys_leibniz() {
         let s = Smoothstep::Nonic.eval(Jet::<f64, 5>::variable(t).scaled_time(2.0));
         let (q_d, r) = (SMOOTH_START.at::<5>(t), SINE.at::<5>(t));
         for i in 0..2 {
-            let expected = Jet::value(SMOOTH_START.from[i]) + s * (r[i] - Jet::value(SMOOTH_START.from[i]));
+            let expected = Jet::value(FROM[i]) + s * (r[i] - Jet::value(FROM[i]));
             for k in 0..5 {
                 let tolerance = 100.0 * f64::EPSILON * expected.derivative(k).abs().max(100.0);
                 let what = format!("at {t} s, joint {i}, derivative {k}");
@@ -384,7 +415,7 @@ impl<const K: usize> ScaledTime for Jet<f64, K> {
 #[test]
 fn smooth_start_to_a_set_point_is_the_nonic_motion() {
     let (from, to) = (Vector([0.3, -0.8]), Vector([-1.1, 0.7]));
-    let start = SmoothStart { from, duration: 1.7, then: to };
+    let start = SmoothStart::from_rest(from, 1.7, to);
     let motion = PointToPoint { from, to, start: 0.0, duration: 1.7, step: Smoothstep::Nonic };
     for t in instants() {
         assert_eq!(start.at::<6>(t), motion.at(t), "at {t} s");
@@ -405,8 +436,8 @@ fn single_precision_follows() {
         frequency: Vector([2.0]),
         phase: Vector([0.5]),
     };
-    let narrow = SmoothStart { from: Vector([0.0]), duration: 4.0, then: narrow };
-    let wide = SmoothStart { from: Vector([0.0]), duration: 4.0, then: wide };
+    let narrow = SmoothStart::from_rest(Vector([0.0]), 4.0, narrow);
+    let wide = SmoothStart::from_rest(Vector([0.0]), 4.0, wide);
     for i in 0..48 {
         let (f32_jet, f64_jet) = (narrow.at::<5>(i as f32 / 8.0), wide.at::<5>(f64::from(i) / 8.0));
         for k in 0..5 {

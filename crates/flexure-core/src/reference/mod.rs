@@ -9,23 +9,29 @@
 //! | [`Vector`] | a set point | all |
 //! | [`Sine`], [`Multisine`] | oscillation about an offset | all |
 //! | [`PointToPoint`] | rest to rest between two postures | 2, 3 or 4 ([`Smoothstep`]) |
-//! | [`SmoothStart`] | any other, joined from rest | 4, or those of the other |
+//! | [`Stop`] | to rest from any motion | 4 |
+//! | [`SmoothStart`] | any other, joined from the robot's motion | 4, or those of the other |
+//! | [`Retimed`] | any other, along a [`Clock`] | 4 or all, or those of the other |
 //!
 //! The laws on flexible joints use four derivatives: a reference that is C⁴ asks for a continuous motor torque, one
 //! that is C³ for a torque with steps, anything less for infinite torque.
 
 mod multisine;
 mod point_to_point;
+mod retimed;
 mod set_point;
 mod sine;
 mod smooth_start;
 mod smoothstep;
+mod stop;
 
 pub use multisine::{Multisine, Term};
 pub use point_to_point::PointToPoint;
+pub use retimed::{Clock, Retimed};
 pub use sine::Sine;
 pub use smooth_start::SmoothStart;
 pub use smoothstep::{Progress, Smoothstep};
+pub use stop::Stop;
 
 use crate::linalg::Vector;
 use crate::scalar::{Jet, Over, Piecewise, Scalar};

@@ -1,33 +1,64 @@
-//! Joining a moving reference from rest.
+//! Joining a moving reference from where the robot is and how it moves.
 
-use super::{Reference, Smoothstep};
+use super::{Reference, Smoothstep, Stop};
 use crate::linalg::Vector;
-use crate::scalar::{Over, Piecewise, Scalar};
+use crate::scalar::{Jet, Over, Piecewise, Scalar};
 
-/// Any reference r, joined from rest at q_0: q_d(t) = q_0 + s(t / T) (r(t) − q_0) with the nonic [`Smoothstep`].
+/// Any reference r, joined from a motion of the robot: q_d(t) = p(t) + s((t − t_0) / T) (r(t) − p(t)) with the nonic
+/// [`Smoothstep`] s, where p is the [`Stop`] that brings the robot to rest.
 ///
-/// A robot at rest that is asked to be on a sine at once answers with torques of thousands of N m. This reference starts
-/// where the robot is and is r, exactly, from t = T on.
+/// A robot that is asked to be on a sine at once answers with torques of thousands of N m. This reference starts where
+/// the robot is and moves as it does, and is r, exactly, from t = t_0 + T on. With `from` the link motion of the robot's
+/// state, to the jerk ([`Fjr::link_motion`](crate::model::Fjr::link_motion)), every error of a law on flexible joints
+/// starts at zero: motor positions and velocities follow from q_d, …, q⃛_d.
 ///
-/// It is C⁴ wherever r is. By Leibniz, derivative k of q_d is Σ_j C(k, j) s⁽ʲ⁾(t / T) T⁻ʲ (r − q_0)⁽ᵏ⁻ʲ⁾(t). At t = 0
-/// every s⁽ʲ⁾ with j ≤ 4 is zero, so (q_d, q̇_d, …, q_d⁗) = (q_0, 0, …, 0); at t = T all are zero but s = 1, so the first
-/// four derivatives are those of r. The fifth jumps at both ends, by 15120 (r(0) − q_0) / T⁵ and
-/// 15120 (r(T) − q_0) / T⁵; there it is that of the transition.
+/// By Leibniz, derivative k of q_d is that of p plus Σ_j C(k, j) s⁽ʲ⁾((t − t_0) / T) T⁻ʲ (r − p)⁽ᵏ⁻ʲ⁾(t). At t_0 every s⁽ʲ⁾
+/// with j ≤ 4 is zero, so the first four derivatives are those of p; at t_0 + T all are zero but s = 1, so they are those of
+/// r, and q_d is C⁴ there where r is. The fifth jumps at both ends, by 15120 (r − p) / T⁵ more than those of p and r; there
+/// it is that of the transition.
+///
+/// Why two times: blending the Taylor polynomial of the state itself into r would have T decide both how fast r is
+/// reached, seconds, and how long the springs swing on, q⃛ T³ far, where the springs of a robot know milliseconds. `Stop`
+/// has its own. A robot at rest has p = q_0, and nothing of it is left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmoothStart<C, R, const N: usize> {
-    /// Posture at rest up to t = 0 in rad.
-    pub from: Vector<C, N>,
-    /// Time T that the transition takes in s; `duration` > 0 is the caller's duty.
+    /// How the robot moves at t_0, and how it would come to rest.
+    pub from: Stop<C, N>,
+    /// Time T that the transition takes in s, from t_0 = `from.start` on; `duration` > 0 is the caller's duty.
     pub duration: C,
     /// The reference r to join; it must be finite at every t, before the start too.
     pub then: R,
 }
 
+impl<C: Scalar, R, const N: usize> SmoothStart<C, R, N> {
+    /// From rest at `q_0` in rad at t = 0, reaching `then` after `duration` in s.
+    #[inline]
+    pub fn from_rest(q_0: Vector<C, N>, duration: C, then: R) -> Self {
+        let from = Stop { from: q_0.map(Jet::value), start: C::ZERO, duration };
+        Self { from, duration, then }
+    }
+
+    /// p joined with `r`, positions of the reference at `t`.
+    #[inline]
+    fn join<T: Over<C> + Piecewise>(&self, t: T, r: &Vector<T, N>) -> Vector<T, N> {
+        let tau = (t - T::constant(self.from.start)).scale(self.duration.recip());
+        let (progress, p) = (Smoothstep::Nonic.at(tau), self.from.on(t));
+        Vector::from_fn(|i| progress.between(p[i], r[i]))
+    }
+}
+
 impl<C: Scalar, R: Reference<C, N>, const N: usize> Reference<C, N> for SmoothStart<C, R, N> {
     #[inline]
     fn on<T: Over<C> + Piecewise>(&self, t: T) -> Vector<T, N> {
-        let tau = t.scale(self.duration.recip());
-        let (progress, r) = (Smoothstep::Nonic.at(tau), self.then.on(t));
-        Vector::from_fn(|i| progress.between(T::constant(self.from[i]), r[i]))
+        self.join(t, &self.then.on(t))
+    }
+
+    /// With the derivatives of r as it finds them fastest.
+    #[inline]
+    fn at<const K: usize>(&self, t: C) -> Vector<Jet<C, K>, N>
+    where
+        C: Over<C> + Piecewise,
+    {
+        self.join(Jet::variable(t), &self.then.at(t))
     }
 }

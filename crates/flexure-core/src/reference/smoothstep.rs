@@ -52,6 +52,28 @@ impl Smoothstep {
         Progress { done: self.polynomial(tau), left: self.polynomial(remaining), early: remaining - tau }
     }
 
+    /// ∫ s from 0 to τ, for any τ: 0 up to τ = 0, exactly τ − ½ from τ = 1 on.
+    ///
+    /// Beyond τ = ½ it counts from the other end, by s(τ) + s(1 − τ) = 1.
+    #[inline]
+    pub fn integral<T: Piecewise>(self, tau: T) -> T {
+        let inside = tau.clamp(T::ZERO, T::ONE);
+        let remaining = T::ONE - inside;
+        let late = tau - T::from_f64(0.5) + self.antiderivative(remaining);
+        (remaining - inside).select(self.antiderivative(inside), late)
+    }
+
+    /// ∫ s from 0 to τ, for τ from 0 to 1.
+    #[inline]
+    fn antiderivative<T: Scalar>(self, tau: T) -> T {
+        let quotient = match self {
+            Self::Quintic => horner(const { &integrated::<3>() }, tau),
+            Self::Septic => horner(const { &integrated::<4>() }, tau),
+            Self::Nonic => horner(const { &integrated::<5>() }, tau),
+        };
+        quotient * tau
+    }
+
     /// The polynomial itself.
     #[inline]
     fn polynomial<T: Scalar>(self, tau: T) -> T {
@@ -108,6 +130,21 @@ const fn coefficients<const M: usize>() -> [f64; M] {
     let mut k = 0;
     while k < M {
         c[k] = (binomial(m + k, k) * binomial(2 * m + 1, m - k)) as f64;
+        k += 1;
+    }
+    c
+}
+
+/// The [`coefficients`] over the exponents of their integrals, M + 1 + k; binary fractions all of them, so exact.
+#[expect(
+    clippy::indexing_slicing,
+    reason = "evaluated by the compiler, where a wrong index is a build error"
+)]
+const fn integrated<const M: usize>() -> [f64; M] {
+    let mut c = coefficients::<M>();
+    let mut k = 0;
+    while k < M {
+        c[k] /= (M + 1 + k) as f64;
         k += 1;
     }
     c

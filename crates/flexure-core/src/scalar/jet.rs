@@ -101,6 +101,17 @@ impl<S: Scalar, const K: usize> Jet<S, K> {
         Jet::from_fn(|k| self.coefficients[k + 2] * S::from_f64(((k + 1) * (k + 2)) as f64))
     }
 
+    /// f(x(t)), where `self` is f as a series about x(t) and `x` is x(t): the chain rule of every order, by Horner's scheme.
+    #[inline]
+    pub fn compose(&self, x: &Self) -> Self {
+        let change = Self::from_fn(|k| if k == 0 { S::ZERO } else { x.coefficients[k] });
+        let mut sum = Self::ZERO;
+        for &coefficient in self.coefficients.iter().rev() {
+            sum = sum * change + Self::value(coefficient);
+        }
+        sum
+    }
+
     /// Solves `y' = f x'` order by order, where `f` may depend on lower orders of `y`: the recurrence behind
     /// `exp`, `tanh`, … `f(k, y)` returns coefficient `k` of `f` given `y` up to order `k`.
     #[inline]
