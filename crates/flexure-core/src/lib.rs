@@ -18,6 +18,8 @@
 )]
 
 pub mod control;
+pub mod estimate;
+pub mod guard;
 pub mod linalg;
 pub mod model;
 pub mod reference;

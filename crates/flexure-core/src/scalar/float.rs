@@ -1,6 +1,12 @@
 //! `f64` and `f32`: elementary functions from `libm`, the same bits on every platform.
 
-use super::{Piecewise, Scalar, leaf};
+use super::{Over, Piecewise, Scalar, leaf};
+
+/// A plain number that code may decide on: what estimators and guards run on. `f64` and `f32`, nothing else.
+pub trait Float: Piecewise + Over<Self> + PartialOrd {
+    /// Neither infinite nor NaN.
+    fn is_finite(self) -> bool;
+}
 
 macro_rules! float {
     ($t:ident, $from:expr, $sqrt:ident, $exp:ident, $ln:ident, $sincos:ident, $tanh:ident, $sinh:ident, $log1p:ident, $fabs:ident, $atan:ident) => {
@@ -69,6 +75,13 @@ macro_rules! float {
             #[inline]
             fn max(self, other: Self) -> Self {
                 if self >= other { self } else if other > self { other } else { self + other }
+            }
+        }
+
+        impl Float for $t {
+            #[inline]
+            fn is_finite(self) -> bool {
+                Self::is_finite(self)
             }
         }
 

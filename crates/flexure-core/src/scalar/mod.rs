@@ -22,6 +22,7 @@ use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 pub use dual::Dual;
+pub use float::Float;
 #[cfg(feature = "interval")]
 pub use interval::Interval;
 pub use jet::Jet;
