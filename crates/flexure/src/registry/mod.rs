@@ -2,11 +2,13 @@
 //! member.
 
 mod controller;
+mod imperfection;
 mod reference;
 mod robot;
 mod shaping;
 
 pub use controller::{CONTROLLERS, Law, command, law, law_over};
+pub use imperfection::{IMPERFECTIONS, actuator, sensors};
 pub use reference::{AnyReference, REFERENCES};
 pub(crate) use robot::vector;
 pub use robot::{

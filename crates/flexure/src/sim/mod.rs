@@ -2,6 +2,7 @@
 
 mod closed_loop;
 mod gauss;
+pub mod imperfection;
 mod ledger;
 mod newton;
 mod plant;
