@@ -131,6 +131,7 @@ pub enum Kind {
     Shaping,
     References,
     Controllers,
+    Imperfections,
 }
 
 /// `JOINT=POSITION`.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use flexure::io::{ROBOTS, SCENARIOS};
-use flexure::registry::{CONTROLLERS, Entry, REFERENCES, SHAPING};
+use flexure::registry::{CONTROLLERS, Entry, IMPERFECTIONS, REFERENCES, SHAPING};
 
 use super::print;
 use crate::args::Kind;
@@ -16,6 +16,7 @@ pub fn list(kind: Option<Kind>, json: bool) -> Result<(), Failure> {
         (Kind::Controllers, "controllers", entries(CONTROLLERS)),
         (Kind::Shaping, "shaping", entries(SHAPING)),
         (Kind::References, "references", entries(REFERENCES)),
+        (Kind::Imperfections, "imperfections", entries(IMPERFECTIONS)),
     ]
     .into_iter()
     .filter(|(own, ..)| kind.is_none_or(|kind| kind == *own))

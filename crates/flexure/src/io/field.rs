@@ -79,6 +79,24 @@ impl<'a> Field<'a> {
         self.log.accept(&self.path, x, quantity, self.span.clone())
     }
 
+    /// The whole number from `least` to `most`, called `what` in hints.
+    pub fn whole(&self, what: &str, least: u64, most: u64) -> Option<u64> {
+        let expected = format!("a whole number from {least} to {most}");
+        let number = match self.value {
+            DeValue::Integer(integer) => i128::from_str_radix(integer.as_str(), integer.radix()).ok(),
+            _ => {
+                self.wrong_type(&expected, what);
+                return None;
+            }
+        };
+        let found = number.and_then(|x| u64::try_from(x).ok()).filter(|x| (least..=most).contains(x));
+        if found.is_none() {
+            let shown = number.map_or_else(|| "beyond all bounds".to_owned(), |x| x.to_string());
+            self.error("range", format!("{} is {shown}, must be {expected}", self.path), what);
+        }
+        found
+    }
+
     fn entries(&self, array: &'a DeArray<'a>) -> impl Iterator<Item = Field<'a>> {
         array.iter().enumerate().map(|(i, entry)| Field {
             value: entry.get_ref(),

@@ -24,7 +24,10 @@ mod controller;
 mod decimals;
 mod diagnostic;
 mod document;
+mod estimator;
 mod field;
+mod guard;
+mod imperfection;
 mod initial;
 mod joints;
 mod links;
@@ -49,6 +52,12 @@ pub use builtin::{ROBOTS, SCENARIOS, load_robot, load_scenario};
 pub use controller::{BASELINES, Baseline, Controller, Drive, Gain, Phi, Shape, SideGains, VcbcGains};
 pub use diagnostic::{Problem, Problems};
 pub use document::Places;
+pub use estimator::{DisturbanceObserver, Encoders, Estimator};
+pub use guard::GuardSettings;
+pub use imperfection::{
+    Deadline, Delay, Dropout, DropoutMode, Encoder, Factors, Friction, Imperfection, ModelError, Noise,
+    Outage, Payload, Push, PushShape, Sampling, Side, Sides, Spring, Stribeck, VelocityFilter,
+};
 pub use initial::Initial;
 pub use joints::Limits;
 pub use links::{Body, DriveDefaults, JointKind, Links, MovingJoint};

@@ -14,6 +14,8 @@ enum Sign {
     Positive,
     NonNegative,
     NonZero,
+    AtLeastOne,
+    Probability,
 }
 
 /// A kind of number in a file.
@@ -40,6 +42,12 @@ impl Quantity {
     }
     const fn nonzero(what: &'static str, unit: &'static str) -> Self {
         Self { sign: Sign::NonZero, ..Self::any(what, unit) }
+    }
+    const fn at_least_one(what: &'static str, unit: &'static str) -> Self {
+        Self { sign: Sign::AtLeastOne, ..Self::any(what, unit) }
+    }
+    const fn probability(what: &'static str) -> Self {
+        Self { sign: Sign::Probability, ..Self::any(what, "") }
     }
     const fn plausible(self, low: f64, high: f64, doubt: &'static str) -> Self {
         Self { plausible: (low, high, doubt), ..self }
@@ -69,6 +77,10 @@ impl Quantity {
             "must be >= 0"
         } else if self.sign == Sign::NonZero && x == 0.0 {
             "must not be 0"
+        } else if self.sign == Sign::AtLeastOne && x < 1.0 {
+            "must be >= 1"
+        } else if self.sign == Sign::Probability && !(0.0..=1.0).contains(&x) {
+            "must be from 0 to 1"
         } else if x == 0.0 || (low..=high).contains(&size) {
             return None;
         } else if !(TINY..=LARGEST).contains(&size) {
@@ -173,3 +185,66 @@ pub(super) const GAIN_STIFFNESS: Quantity =
     Quantity::positive("stiffness K_P of the feedback of motor positions", "N m/rad");
 pub(super) const GAIN_VELOCITY: Quantity =
     Quantity::non_negative("damping K_D of the feedback of motor velocities", "N m s/rad");
+pub(super) const TORQUE_RATE_LIMIT: Quantity = Quantity::positive(
+    "largest rate of the motor torque, link side of the gear",
+    "N m/s",
+)
+.plausible(1e-1, 1e9, "is it in N m/ms?");
+pub(super) const TORQUE_STEP: Quantity =
+    Quantity::non_negative("step that the motor torque comes in, link side of the gear", "N m");
+pub(super) const COUNTS: Quantity = Quantity::positive("counts per turn of the encoder's shaft", "")
+    .plausible(10.0, 1e9, "encoders have between 100 and 1e7");
+pub(super) const RESOLUTION: Quantity =
+    Quantity::non_negative("one count of the encoder, link side of the gear", "rad")
+        .plausible(TINY, 0.3, DEGREES);
+pub(super) const NOISE: Quantity =
+    Quantity::non_negative("standard deviation of measured positions", "rad").plausible(TINY, 0.3, DEGREES);
+pub(super) const VELOCITY_NOISE: Quantity = Quantity::non_negative(
+    "standard deviation of measured velocities",
+    "rad/s",
+)
+.plausible(TINY, 30.0, "is it in degrees/s or rev/min?");
+pub(super) const SENSOR_PERIOD: Quantity = Quantity::positive("time between two readings", "s").plausible(
+    1e-7,
+    1.0,
+    "is it in milliseconds, or the rate in Hz?",
+);
+pub(super) const PROBABILITY: Quantity = Quantity::probability("probability per control period");
+pub(super) const MEAN_LENGTH: Quantity =
+    Quantity::at_least_one("mean length of an outage", "control periods");
+pub(super) const FROM: Quantity = Quantity::non_negative("time of the beginning", "s");
+pub(super) const UNTIL: Quantity = Quantity::positive("time of the end", "s");
+pub(super) const CUTOFF: Quantity = Quantity::positive(
+    "cut-off frequency, the one in rad/s divided by 2π",
+    "Hz",
+)
+.plausible(0.1, 1e5, "filters of velocities lie between 10 and 1000 Hz");
+pub(super) const DAMPING_RATIO: Quantity =
+    Quantity::positive("damping ratio", "").plausible(0.05, 20.0, "0.7 to 1 is usual");
+pub(super) const DELAY: Quantity =
+    Quantity::non_negative("delay", "s").plausible(1e-9, 0.5, "is it in milliseconds?");
+pub(super) const STATIC_FRICTION: Quantity =
+    Quantity::non_negative("torque that breaks the joint loose, link side of the gear", "N m");
+pub(super) const STRIBECK_VELOCITY: Quantity = Quantity::positive(
+    "speed at which 1/e of the rise of friction is left",
+    "rad/s",
+)
+.plausible(1e-6, 100.0, "is it in degrees/s or rev/min?");
+pub(super) const DEAD_ZONE: Quantity =
+    Quantity::non_negative("deflection to either side without torque", "rad").plausible(TINY, 0.5, DEGREES);
+pub(super) const HYSTERESIS_STIFFNESS: Quantity =
+    Quantity::non_negative("stiffness of the element that slips", "N m/rad");
+pub(super) const HYSTERESIS_TORQUE: Quantity =
+    Quantity::non_negative("torque at which the element slips", "N m");
+pub(super) const FACTOR: Quantity = Quantity::positive(
+    "the simulated robot's number divided by the one that the law knows",
+    "",
+)
+.plausible(0.01, 100.0, "1 leaves it as it is; is it in percent?");
+pub(super) const PAYLOAD: Quantity =
+    Quantity::non_negative("mass of the payload", "kg").plausible(1e-7, 1e5, "is it in grams?");
+pub(super) const PUSH: Quantity = Quantity::any("torque from outside on the link", "N m");
+pub(super) const BANDWIDTH: Quantity = Quantity::positive("bandwidth, 2π times the one in Hz", "rad/s")
+    .plausible(0.1, 1e5, "observers lie between 10 and 10000 rad/s");
+pub(super) const STOP_DAMPING: Quantity =
+    Quantity::non_negative("damping of the motor while stopped, link side of the gear", "N m s/rad");

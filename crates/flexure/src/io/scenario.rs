@@ -10,7 +10,10 @@ use super::controller::{self, Controller, VcbcGains};
 use super::decimals::Decimals;
 use super::diagnostic::{Problem, Problems};
 use super::document::{self, Form, Places};
+use super::estimator::{self, DisturbanceObserver, Estimator};
 use super::field::Field;
+use super::guard::{self, GuardSettings};
+use super::imperfection::{self, Context, Imperfection};
 use super::initial::{self, Initial};
 use super::links;
 use super::plant::{self, Plant};
@@ -53,6 +56,16 @@ pub struct Scenario {
     pub plant: Plant,
     /// The law.
     pub controller: Controller,
+    /// What sensors, actuators and mechanics do that the ideal loop does not, in the order of the file.
+    pub imperfections: Vec<Imperfection>,
+    /// Where the motion that the law sees comes from, if not from its sensors alone.
+    pub estimator: Option<Estimator>,
+    /// What estimates unknown torques, if anything.
+    pub disturbance_observer: Option<DisturbanceObserver>,
+    /// What the controller refuses to do.
+    pub guard: Option<GuardSettings>,
+    /// Of all random numbers.
+    pub seed: u64,
     /// Numbers that no source vouches for: the robot's, then those of the scenario.
     pub assumptions: Vec<Assumption>,
     /// What is suspicious in the robot's file and in this one.
@@ -107,7 +120,17 @@ pub fn scenario_from_text(name: &str, text: &str, folder: &Path) -> Result<Scena
 const FORM: Form = Form {
     what: "scenario file",
     required: &["robot", "duration", "control_period", "reference", "controller"],
-    optional: &["hold", "initial", "plant", "sources", "imperfection"],
+    optional: &[
+        "hold",
+        "initial",
+        "plant",
+        "sources",
+        "imperfection",
+        "estimator",
+        "disturbance_observer",
+        "guard",
+        "seed",
+    ],
     other: (
         "links",
         "robot file",
@@ -142,7 +165,8 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> 
     let controller = root.required("controller", "a table with the kind");
     let controller = controller.and_then(|field| controller::read(&field, &joints));
     let plant = plant::read(root, &joints, robot.as_ref());
-    refuse_imperfections(root);
+    let base_context = Context { joints: &joints, robot: robot.as_ref(), times, base };
+    let real = real_loop(root, &base_context, hold, plant.as_ref());
     let own = provenance::assumptions(root, places);
     if let (Some(field), Some(reference), Some(None), Some(initial)) =
         (reference_field, &reference, smooth_start, &initial)
@@ -150,7 +174,7 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> 
         check_start(&field, robot.as_ref(), reference, initial);
     }
     assumed.extend(own?);
-    let ((duration, control_period), robot) = (times?, robot?);
+    let ((duration, control_period), real, robot) = (times?, real?, robot?);
     Some(Scenario {
         name: stem(places.file()),
         warnings: robot.warnings.clone(),
@@ -163,6 +187,11 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> 
         smooth_start: smooth_start?,
         plant: plant?,
         controller: controller?,
+        imperfections: real.imperfections,
+        estimator: real.estimator,
+        disturbance_observer: real.disturbance_observer,
+        guard: real.guard,
+        seed: real.seed,
         assumptions: assumed,
         places: places.clone(),
         decimals: root.decimals(),
@@ -209,26 +238,49 @@ fn times(root: &Table<'_>) -> Option<(f64, f64)> {
 /// The robot named or pointed at; problems with its file go to the scenario's log.
 fn read_robot(field: &Field<'_>, base: &Base) -> Option<Robot> {
     let name = field.text()?;
-    match builtin::robot(name, base) {
-        Ok(robot) => Some(robot),
-        Err(problems) => {
-            for problem in problems {
-                field.log.push(problem.or_at(&field.log.source, field.span.clone()));
-            }
-            None
-        }
-    }
+    field.absorb(builtin::robot(name, base))
 }
 
-fn refuse_imperfections(root: &Table<'_>) {
-    if let Some(field) = root.get("imperfection") {
-        let message = "imperfection: imperfections of sensing and actuation are not in this version";
-        field.error(
-            "unsupported",
-            message,
-            "remove [[imperfection]]; the run is then ideal but for the control period",
-        );
-    }
+/// What makes a loop a real one.
+struct RealLoop {
+    imperfections: Vec<Imperfection>,
+    estimator: Option<Estimator>,
+    disturbance_observer: Option<DisturbanceObserver>,
+    guard: Option<GuardSettings>,
+    seed: u64,
+}
+
+/// Reads imperfections and what the controller does about them.
+fn real_loop(
+    root: &Table<'_>,
+    context: &Context<'_>,
+    hold: Option<Option<Hold>>,
+    plant: Option<&Plant>,
+) -> Option<RealLoop> {
+    let found = imperfection::read(root, context);
+    let estimator = estimator::read(root, context.joints);
+    let disturbance_observer = estimator::read_disturbance_observer(root, context.joints);
+    let guard = guard::read(root, context);
+    // What fits into the integers of the file format.
+    let most = i64::MAX.unsigned_abs();
+    let seed = root.optional("seed", |field| field.whole("seed of all random numbers", 0, most));
+    let (found, estimator, disturbance_observer, guard) = (found?, estimator?, disturbance_observer?, guard?);
+    imperfection::agree(&imperfection::Loop {
+        root,
+        context,
+        found: &found,
+        hold: hold?.unwrap_or_default(),
+        plant: plant?,
+        estimator: estimator.as_ref(),
+        guard: guard.as_ref(),
+    });
+    Some(RealLoop {
+        imperfections: found.into_iter().map(|found| found.what).collect(),
+        estimator,
+        disturbance_observer,
+        guard,
+        seed: seed?.unwrap_or(0),
+    })
 }
 
 /// Notes an error if the reference starts far from the robot.

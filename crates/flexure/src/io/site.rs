@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::diagnostic::Problem;
+use super::diagnostic::{Problem, Problems};
 use super::document::Log;
 use super::suggest;
 
@@ -29,6 +29,24 @@ impl Site<'_> {
             return None;
         }
         Some(text)
+    }
+
+    /// The line, counted from 1.
+    pub fn line(&self) -> usize {
+        self.log.source.line_column(self.span.start).map_or(0, |(line, _)| line)
+    }
+
+    /// What another file was read to; its problems are noted as they are, at this place if they have none.
+    pub fn absorb<T>(&self, read: Result<T, Problems>) -> Option<T> {
+        match read {
+            Ok(value) => Some(value),
+            Err(problems) => {
+                for problem in problems {
+                    self.log.push(problem.or_at(&self.log.source, self.span.clone()));
+                }
+                None
+            }
+        }
     }
 
     /// Notes a warning here.

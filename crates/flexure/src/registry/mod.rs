@@ -2,12 +2,14 @@
 //! member.
 
 mod controller;
+mod imperfection;
 mod reference;
 mod robot;
 mod shaping;
 mod starting;
 
 pub use controller::{AnyLaw, CONTROLLERS, Law, any_law, command, law, law_over, torque};
+pub use imperfection::{IMPERFECTIONS, actuator, sensors};
 pub use reference::{AnyReference, REFERENCES};
 pub(crate) use robot::vector;
 pub use robot::{

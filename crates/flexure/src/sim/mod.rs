@@ -3,6 +3,7 @@
 mod closed_loop;
 mod friction;
 mod gauss;
+pub mod imperfection;
 mod ledger;
 mod newton;
 mod plant;

@@ -3,6 +3,7 @@
 pub(super) mod assembly;
 pub(super) mod inertia;
 pub(super) mod joint;
+mod load;
 pub(super) mod rigid;
 mod tree;
 mod urdf;
