@@ -13,6 +13,8 @@ pub struct Summary {
     pub phi: Option<String>,
     /// What the plant has that the law does not know, as keys of `[plant]` in the scenario file.
     pub plant: Vec<&'static str>,
+    /// What stands between the ideal loop and this one, as kinds of `[[imperfection]]` in the scenario file.
+    pub imperfections: Vec<&'static str>,
     /// Largest |q_l − q_ld| over all joints and the whole run, in rad. Like the next two NaN (null in JSON) for a run
     /// that diverged.
     pub max_abs_e_l: f64,
@@ -26,8 +28,16 @@ pub struct Summary {
     pub max_abs_u_m: f64,
     /// Root mean square of u_m over time, the largest over the joints [N m].
     pub rms_u_m: f64,
+    /// Root mean square of the change of u_m from one control instant to the next, the largest over the joints [N m]: what
+    /// noise makes of the command.
+    pub rms_torque_change: f64,
     /// Fraction of control periods in which a torque limit was active.
     pub saturated_fraction: f64,
+    /// Fraction of control periods in which no certificate of the law could hold: a limit was active, or the guard had
+    /// stopped the robot.
+    pub suspended_fraction: f64,
+    /// Times that the guard stopped the robot.
+    pub stops: u32,
     /// Smallest contraction rate evaluated along the run [1/s]: a sample, not a proof. NaN (null in JSON) for laws that
     /// have none.
     pub rate_measured: f64,

@@ -2,6 +2,7 @@
 //! member.
 
 mod controller;
+mod estimator;
 mod imperfection;
 mod reference;
 mod robot;
@@ -9,11 +10,12 @@ mod shaping;
 mod starting;
 
 pub use controller::{AnyLaw, CONTROLLERS, Law, any_law, command, law, law_over, torque};
+pub use estimator::{AnyEstimator, ESTIMATORS, estimator};
 pub use imperfection::{IMPERFECTIONS, actuator, sensors};
 pub use reference::{AnyReference, REFERENCES};
 pub(crate) use robot::vector;
 pub use robot::{
-    MAX_JOINTS, RobotVisitor, TwinVisitor, supported, with_enclosed_robot, with_robot, with_twins,
+    MAX_JOINTS, PairVisitor, RobotVisitor, TwinVisitor, supported, with_enclosed_robot, with_pair, with_robot, with_twins,
 };
 pub use shaping::{AnyShaping, SHAPING};
 

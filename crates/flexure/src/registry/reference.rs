@@ -98,7 +98,7 @@ impl<C: Scalar, const N: usize> AnyReference<C, N> {
             Some(duration) => {
                 let from = vector(&scenario.initial.q_l);
                 let duration = number(duration);
-                Self::SmoothStart(Box::new(SmoothStart { from, duration, then: reference }))
+                Self::SmoothStart(Box::new(SmoothStart::from_rest(from, duration, reference)))
             }
             None => reference,
         })

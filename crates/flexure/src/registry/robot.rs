@@ -27,6 +27,18 @@ pub trait TwinVisitor {
     ) -> Self::Output;
 }
 
+/// Something to do with two robots of the same kind: the one that a controller knows, and the one that is simulated.
+pub trait PairVisitor {
+    /// What comes of it.
+    type Output;
+    /// Does it.
+    fn visit<L: Links<f64, N> + Clone + Sync, const N: usize>(
+        self,
+        model: Fjr<f64, L, N>,
+        plant: Fjr<f64, L, N>,
+    ) -> Self::Output;
+}
+
 /// Largest joint count of a tree. To raise it, add the numbers to the list below and build again.
 pub const MAX_JOINTS: usize = 10;
 
@@ -89,6 +101,49 @@ pub fn with_twins<V: TwinVisitor>(data: &io::Robot, visitor: V) -> Result<V::Out
             robot(data, pendulum(m, c, i, data.gravity), |x| x),
         ),
         _ => unreachable!("enclosed links are of the same kind"),
+    })
+}
+
+/// Calls `visitor` with the robots that `model` and `plant` describe; their links must be of the same kind.
+///
+/// # Errors
+/// For a tree with more than [`MAX_JOINTS`] moving joints.
+///
+/// # Panics
+/// If the links are of different kinds: the reader of scenarios refuses such pairs.
+pub fn with_pair<V: PairVisitor>(
+    model: &io::Robot,
+    plant: &io::Robot,
+    visitor: V,
+) -> Result<V::Output, io::Problems> {
+    macro_rules! tree {
+        ($model:expr, $plant:expr, $($n:literal)*) => {
+            match $model.len() {
+                $($n => visitor.visit(
+                    robot(model, tree::<_, $n>($model, model.gravity, |x| x), |x| x),
+                    robot(plant, tree::<_, $n>($plant, plant.gravity, |x| x), |x| x),
+                ),)*
+                joints => return Err(too_many(model, joints)),
+            }
+        };
+    }
+    Ok(match (&model.links, &plant.links) {
+        (io::Links::Tree(ours), io::Links::Tree(theirs)) => joint_counts!(tree, ours, theirs),
+        (
+            &io::Links::PlanarTwoLink { mass, length, com, inertia },
+            &io::Links::PlanarTwoLink { mass: m, length: l, com: c, inertia: i },
+        ) => visitor.visit::<_, 2>(
+            robot(model, robots::PlanarTwoLink::new(mass, length[0], com, inertia), |x| x),
+            robot(plant, robots::PlanarTwoLink::new(m, l[0], c, i), |x| x),
+        ),
+        (
+            &io::Links::Pendulum { mass, com, inertia },
+            &io::Links::Pendulum { mass: m, com: c, inertia: i },
+        ) => visitor.visit::<_, 1>(
+            robot(model, pendulum(mass, com, inertia, model.gravity), |x| x),
+            robot(plant, pendulum(m, c, i, plant.gravity), |x| x),
+        ),
+        _ => unreachable!("links of different kinds"),
     })
 }
 

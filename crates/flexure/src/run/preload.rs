@@ -3,7 +3,7 @@
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links};
 
-use super::{initial, plant};
+use super::assembly::{initial, plant};
 use crate::io::{Problem, Problems, Scenario};
 use crate::registry::{RobotVisitor, with_robot};
 

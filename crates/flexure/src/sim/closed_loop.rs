@@ -1,12 +1,18 @@
 //! A controller on a robot: sampled with a zero-order hold, or continuous.
 
-use flexure_core::control::Command;
+use flexure_core::estimate::Estimator;
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Links, Motion};
+use flexure_core::reference::Reference;
+use flexure_core::scalar::Jet;
 
-use super::gauss::Integrator;
+use super::controller::{Action, Controller};
+use super::gauss::StepFailure;
+use super::imperfection::{Pieces, Tick};
 use super::ledger::Ledger;
 use super::plant::Plant;
+use super::push::Push;
+use super::stepper::Stepper;
 
 /// How the torque behaves between control instants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,8 +32,10 @@ pub struct ClosedLoop {
     pub period: f64,
     /// Torque between control instants.
     pub hold: Hold,
-    /// Tolerated local error of the integrator, relative to the joint speeds.
+    /// Tolerated local error of the integrator of smooth plants, relative to the joint speeds.
     pub tolerance: f64,
+    /// Longest step of the integrator of other plants in s.
+    pub longest_step: f64,
 }
 
 /// What a control instant looks like to an observer.
@@ -37,8 +45,8 @@ pub struct Instant<'a, const N: usize> {
     pub t: f64,
     /// Motion of the robot.
     pub motion: &'a Motion<f64, N>,
-    /// What the law commands.
-    pub command: &'a Command<f64, N>,
+    /// What the controller does.
+    pub action: &'a Action<N>,
     /// Total energy H in J.
     pub energy: f64,
     /// H(t) − H(0) − supplied + dissipated in J: zero up to integration errors.
@@ -83,57 +91,47 @@ pub enum Cause {
 const BEYOND: f64 = 1e6;
 
 impl ClosedLoop {
-    /// Runs `law(t, x)` on `plant` from `x` and shows every control instant to `observe`, the last included.
-    pub fn run<L: Links<f64, N>, const N: usize>(
+    /// Runs `controller` on `plant` from `x`, pushed by `pushes`, and shows every control instant to `observe`, the last included.
+    pub fn run<L, R, F, E, const N: usize>(
         &self,
         plant: &Plant<L, N>,
         mut x: Motion<f64, N>,
-        law: &impl Fn(f64, &Motion<f64, N>) -> Command<f64, N>,
+        pushes: &[Push<N>],
+        controller: &mut Controller<'_, L, R, F, E, N>,
         observe: &mut impl FnMut(&Instant<'_, N>),
-    ) -> Outcome {
-        let mut integrator = Integrator::new(self.tolerance);
-        let mut ledger = Ledger::default();
-        let start = plant.total_energy(&x);
+    ) -> Outcome
+    where
+        L: Links<f64, N> + Clone,
+        R: Reference<f64, N>,
+        F: Fn(f64, &Motion<f64, N>, &Vector<Jet<f64, 5>, N>) -> Vector<f64, N>,
+        E: Estimator<f64, N>,
+    {
+        let stepper = Stepper::new(plant, self.tolerance, self.longest_step);
+        let mut world = World { plant: plant.clone(), pushes, stepper, ledger: Ledger::default() };
+        let start = world.energy(&x);
         let (mut worst, mut scale) = (0.0_f64, start.abs());
         let periods = self.periods();
         let mut divergence = None;
         for k in 0..=periods {
-            let t = self.period * f64::from(k);
-            let command = law(t, &x);
-            let energy = plant.total_energy(&x);
+            let tick = Tick::new(u64::from(k), self.period);
+            let t = tick.t;
+            let action = controller.step(&tick, &x);
+            let (energy, ledger) = (world.energy(&x), world.ledger);
             let residual = energy - start - ledger.supplied + ledger.dissipated;
             scale = scale.max(energy.abs()).max(ledger.throughput).max(ledger.dissipated);
             worst = worst.max(residual.abs());
-            let magnitude = [&x.q_l, &x.q_m, &x.v_l, &x.v_m]
-                .iter()
-                .flat_map(|v| v.iter())
-                .fold(0.0, |m: f64, x| m.max(x.abs()));
-            let sane = magnitude < BEYOND && command.u_m.iter().all(f64::is_finite);
-            if !sane {
+            let magnitude = largest(&x);
+            if !(magnitude < BEYOND && action.applied.last().iter().all(f64::is_finite)) {
                 divergence = Some(Divergence { time: t, magnitude, cause: Cause::Unbounded });
                 break;
             }
-            observe(&Instant { t, motion: &x, command: &command, energy, residual, ledger: &ledger });
+            observe(&Instant { t, motion: &x, action: &action, energy, residual, ledger: &ledger });
             if k == periods {
                 break;
             }
             let next = match self.hold {
-                Hold::ZeroOrder => integrator.advance(
-                    plant,
-                    x,
-                    t,
-                    self.period,
-                    &|_, _: &Motion<f64, N>| command.u_m,
-                    &mut ledger,
-                ),
-                Hold::Continuous => integrator.advance(
-                    plant,
-                    x,
-                    t,
-                    self.period,
-                    &|t, x: &Motion<f64, N>| -> Vector<f64, N> { law(t, x).u_m },
-                    &mut ledger,
-                ),
+                Hold::ZeroOrder => world.advance_pieces(x, &tick, &action.applied),
+                Hold::Continuous => world.advance(x, t, self.period, &|t, x| controller.torque(t, x)),
             };
             match next {
                 Ok(next) => x = next,
@@ -145,12 +143,68 @@ impl ClosedLoop {
             }
         }
         let energy_drift = if scale > 0.0 { worst / scale } else { worst };
-        Outcome { energy_drift, steps: integrator.steps(), divergence }
+        Outcome { energy_drift, steps: world.stepper.steps(), divergence }
     }
 
     /// Number of control periods in the run.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to [1, 1e9]")]
     fn periods(&self) -> u32 {
         (self.duration / self.period).round().clamp(1.0, 1e9) as u32
+    }
+}
+
+/// Largest position in rad or speed [rad/s]; NaN if one is.
+fn largest<const N: usize>(x: &Motion<f64, N>) -> f64 {
+    let parts = [&x.q_l, &x.q_m, &x.v_l, &x.v_m];
+    parts.iter().flat_map(|v| v.iter()).fold(0.0, |m: f64, x| if x.is_nan() { x } else { m.max(x.abs()) })
+}
+
+/// The robot and what acts on it.
+struct World<'a, L, const N: usize> {
+    plant: Plant<L, N>,
+    pushes: &'a [Push<N>],
+    stepper: Stepper<N>,
+    ledger: Ledger,
+}
+
+impl<L: Links<f64, N>, const N: usize> World<'_, L, N> {
+    fn energy(&self, x: &Motion<f64, N>) -> f64 {
+        self.stepper.total_energy(&self.plant, x)
+    }
+
+    /// Over a control period with the torque constant on `pieces` of it.
+    fn advance_pieces(
+        &mut self,
+        mut x: Motion<f64, N>,
+        tick: &Tick,
+        pieces: &Pieces<N>,
+    ) -> Result<Motion<f64, N>, StepFailure> {
+        for (offset, length, torque) in pieces.spans(tick.period) {
+            let begin = tick.t + offset;
+            let after = |failure: StepFailure| StepFailure { after: offset + failure.after };
+            x = self.advance(x, begin, length, &|_, _| torque).map_err(after)?;
+        }
+        Ok(x)
+    }
+
+    /// Over `[t, t + interval]`, divided where pushes begin and end. A push is constant between: its mean.
+    fn advance(
+        &mut self,
+        mut x: Motion<f64, N>,
+        t: f64,
+        interval: f64,
+        torque: &impl Fn(f64, &Motion<f64, N>) -> Vector<f64, N>,
+    ) -> Result<Motion<f64, N>, StepFailure> {
+        let mut done = 0.0;
+        while done < interval {
+            let edges = self.pushes.iter().flat_map(|push| [push.from, push.until()]).map(|edge| edge - t);
+            let next = edges.filter(|&edge| edge > done).fold(interval, f64::min);
+            let (begin, length) = (t + done, next - done);
+            self.plant.external = self.pushes.iter().fold(Vector::ZERO, |sum, push| sum + push.mean(begin, length));
+            let moved = self.stepper.advance(&self.plant, x, begin, length, torque, &mut self.ledger);
+            x = moved.map_err(|failure| StepFailure { after: done + failure.after })?;
+            done = next;
+        }
+        Ok(x)
     }
 }

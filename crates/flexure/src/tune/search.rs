@@ -1,0 +1,103 @@
+//! A search for the smallest value of a function that is expensive, has no derivatives and may be cliffs.
+
+use cobyla::{RhoBeg, minimize};
+use rand::distr::{Distribution, Uniform};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::rand_core::SeedableRng;
+
+/// A point and its cost.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Best {
+    /// Where the cost is smallest of all points that were tried.
+    pub at: Vec<f64>,
+    /// The cost there.
+    pub cost: f64,
+    /// Points that were tried.
+    pub evaluations: usize,
+}
+
+/// First step of the local search, as a part of the half width.
+const FIRST_STEP: f64 = 0.25;
+
+/// The best of at most `budget` points within ±`half_width` of zero in each of `dimension` directions: zero itself first, then
+/// half the budget at random, then Powell's COBYLA from the best of those. Random numbers come from `seed` alone.
+///
+/// A cost that is not a number counts as infinite. M. J. D. Powell, *A direct search optimization method that models the
+/// objective and constraint functions by linear interpolation*, 1994.
+pub fn search(
+    dimension: usize,
+    half_width: f64,
+    budget: usize,
+    seed: u64,
+    cost: &dyn Fn(&[f64]) -> f64,
+) -> Best {
+    let finite = |x: &[f64]| Some(cost(x)).filter(|cost| !cost.is_nan()).unwrap_or(f64::INFINITY);
+    let origin = vec![0.0; dimension];
+    let mut best = Best { cost: finite(&origin), at: origin, evaluations: 1 };
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+    let within = Uniform::new_inclusive(-half_width, half_width).expect("a half width above zero");
+    while best.evaluations < budget.div_ceil(2) {
+        let at: Vec<f64> = (0..dimension).map(|_| within.sample(&mut random)).collect();
+        let cost = finite(&at);
+        best.consider(&at, cost);
+    }
+    let left = budget.saturating_sub(best.evaluations);
+    if left == 0 || dimension == 0 {
+        return best;
+    }
+    let start = best.at.clone();
+    let tried = std::cell::RefCell::new(best);
+    let objective = |x: &[f64], (): &mut ()| {
+        let cost = finite(x);
+        tried.borrow_mut().consider(x, cost);
+        // The method fits planes: infinity has none.
+        cost.min(f64::MAX.sqrt())
+    };
+    let bounds = vec![(-half_width, half_width); dimension];
+    let unconstrained: [fn(&[f64], &mut ()) -> f64; 0] = [];
+    // However it ends, what counts is the best point that was seen.
+    let _ = minimize(objective, &start, &bounds, &unconstrained, (), left, RhoBeg::All(FIRST_STEP * half_width), None);
+    tried.into_inner()
+}
+
+impl Best {
+    fn consider(&mut self, at: &[f64], cost: f64) {
+        self.evaluations += 1;
+        if cost < self.cost {
+            self.cost = cost;
+            self.at = at.to_vec();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::search;
+
+    fn bowl(x: &[f64]) -> f64 {
+        x.iter().zip([0.7, -1.1, 0.4]).map(|(x, c)| (x - c) * (x - c)).sum()
+    }
+
+    /// The bottom of a bowl, to a hundredth of the distance at the start; never more points than allowed.
+    #[test]
+    fn finds_the_bottom_of_a_bowl_within_the_budget() {
+        let best = search(3, 2.0, 80, 1, &bowl);
+        assert!(best.cost < 1e-4 * bowl(&[0.0; 3]), "{best:?}");
+        assert!(best.evaluations <= 80);
+        assert_eq!(best.cost.to_bits(), bowl(&best.at).to_bits());
+    }
+
+    /// Costs that are infinite or no numbers on most of the region neither stop the search nor win it.
+    #[test]
+    fn survives_cliffs() {
+        let cliff = |x: &[f64]| if x[0] > 1.0 { f64::NAN } else if x[1] > 0.5 { f64::INFINITY } else { bowl(x) };
+        let best = search(3, 2.0, 80, 1, &cliff);
+        assert!(best.cost < 0.01, "{best:?}");
+    }
+
+    #[test]
+    fn the_same_seed_finds_the_same_point() {
+        assert_eq!(search(3, 2.0, 40, 7, &bowl), search(3, 2.0, 40, 7, &bowl));
+        assert_ne!(search(3, 2.0, 20, 7, &bowl).at, search(3, 2.0, 20, 8, &bowl).at);
+    }
+}
