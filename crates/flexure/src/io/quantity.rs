@@ -171,5 +171,18 @@ pub(super) const GAIN_DAMPING: Quantity = Quantity::positive("injected damping K
 pub(super) const GAIN_KAPPA: Quantity = Quantity::positive("rate κ of coupled-tanh", "1/s");
 pub(super) const GAIN_STIFFNESS: Quantity =
     Quantity::positive("stiffness K_P of the feedback of motor positions", "N m/rad");
+pub(super) const GAIN_FIRST: Quantity =
+    Quantity::positive("gain of the error's derivative of the order before the last", "1/s");
+pub(super) const GAIN_SECOND: Quantity =
+    Quantity::positive("gain of the error's derivative two orders before the last", "1/s^2");
+pub(super) const GAIN_THIRD: Quantity =
+    Quantity::positive("gain of the error's derivative three orders before the last", "1/s^3");
+pub(super) const GAIN_FOURTH: Quantity =
+    Quantity::positive("gain of the error's derivative four orders before the last", "1/s^4");
+pub(super) const GAIN_LINK: Quantity = Quantity::non_negative("damping injected into the links", "N m s/rad");
+pub(super) const GAIN_MOTOR: Quantity =
+    Quantity::non_negative("damping injected into the motors", "N m s/rad");
+pub(super) const GAIN_INERTIA: Quantity =
+    Quantity::positive("motor inertia that feedback of the spring torque makes", "kg m^2");
 pub(super) const GAIN_VELOCITY: Quantity =
     Quantity::non_negative("damping K_D of the feedback of motor velocities", "N m s/rad");
