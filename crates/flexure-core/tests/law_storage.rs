@@ -9,7 +9,7 @@ use flexure_core::scalar::{Jet, Over};
 
 mod common;
 use common::laws::{self, Course, resting};
-use common::{Numbers, branched, flexible};
+use common::{Numbers, branched, close, flexible};
 
 type Series<const K: usize, const N: usize> = Vector<Jet<f64, K>, N>;
 
@@ -124,6 +124,21 @@ fn torque_feedback<L: Links<f64, N>, const N: usize>(links: fn() -> L, r: &mut N
     decays(V, loss, size);
 }
 
+fn gravity_cancellation<L: Links<f64, N>, const N: usize>(links: fn() -> L, r: &mut Numbers) {
+    let (robot, law, goal) = (flexible(links(), r), laws::gravity_cancellation(r), r.vector(1.0));
+    let (x, course, size) = course(&robot, &law, &resting(&goal), r);
+    // The robot without gravity, its motors shifted.
+    let q = course.q_l.map(|q| q.truncate::<3>());
+    let shifted = course.q_m - robot.stiffness.map(f64::recip).diag_mul(&robot.links.gravity_torque(&q));
+    let (q_m, v_m) = (shifted.map(|x| x.truncate()), shifted.map(|x| x.differentiate()));
+    let along = Motion { q_m, v_m, ..course.motion() };
+    let V = robot.total_energy(&along) - robot.links.potential_energy(&along.q_l)
+        + half_square(&law.motor.stiffness, &(along.q_m - goal.lift()));
+    let loss = dissipation(&robot.link_damping, &x.v_l)
+        + dissipation(&(robot.motor_damping + law.motor.damping), &v_m.map(|v| v.coefficient(0)));
+    decays(V, loss, size + V.coefficient(0) * 100.0);
+}
+
 /// (q, q̇) of the links to order 2 and the reference as long.
 type Tracked<const N: usize> = [Series<3, N>; 6];
 
@@ -141,13 +156,10 @@ fn tracked<const N: usize>(course: &Course<N>, q_ld: &Series<5, N>) -> Tracked<N
 fn passivity<L: Links<f64, N>, const N: usize>(links: fn() -> L, r: &mut Numbers) {
     let (robot, law, q_ld) = (flexible(links(), r), laws::passivity(r), r.series(1.0));
     let (_, course, size) = course(&robot, &law, &q_ld, r);
-    let [q, v, _, q_d, v_d, a_d] = tracked(&course, &q_ld);
+    let (s_1, beside) = springs_by_position(&robot, &course, &q_ld, &law.shaping, &law.link_damping);
+    let [q, _, _, q_d, ..] = tracked(&course, &q_ld);
     let (e, lambda) = (q - q_d, law.shaping);
-    let s_1 = v - v_d + lambda.diag_mul(&e);
-    let (v_r, a_r) = (v - s_1, a_d - lambda.diag_mul(&(v - v_d)));
-    let u_r = robot.links.inverse_dynamics(&q, &v, &v_r, &a_r) + robot.link_damping.diag_mul(&v_r)
-        - law.link_damping.diag_mul(&s_1);
-    let error = course.q_m - q_d - robot.stiffness.map(f64::recip).diag_mul(&u_r);
+    let error = beside + e;
     let short = |x: Series<3, N>| x.map(|x| x.truncate::<2>());
     let s_2 = error.map(|x| x.differentiate::<2>()) + lambda.diag_mul(&short(error));
     let (s_1, between) = (short(s_1), short(error - e));
@@ -160,6 +172,55 @@ fn passivity<L: Links<f64, N>, const N: usize>(links: fn() -> L, r: &mut Numbers
         + dissipation(&(robot.motor_damping + law.motor_damping), &value(&s_2))
         + dissipation(&spring, &value(&between));
     decays(V, loss, size + V.coefficient(0) * 100.0);
+}
+
+fn backstepping<L: Links<f64, N>, const N: usize>(links: fn() -> L, r: &mut Numbers) {
+    let (robot, law, q_ld) = (flexible(links(), r), laws::backstepping(r), r.series(1.0));
+    let (_, course, size) = course(&robot, &law, &q_ld, r);
+    let (s_1, error) = springs_by_position(&robot, &course, &q_ld, &law.shaping, &law.link_damping);
+    let short = |x: Series<3, N>| x.map(|x| x.truncate::<2>());
+    let coupling = Vector::from_fn(|i| robot.stiffness[i] / law.metric[i]);
+    let (s_1, rate, error) = (short(s_1), error.map(|x| x.differentiate::<2>()), short(error));
+    let z = rate + law.motor_shaping.diag_mul(&error) + coupling.diag_mul(&s_1);
+    let weight = |power: i32| Vector::from_fn(|i| law.metric[i] * law.motor_shaping[i].powi(power));
+    let q = course.q_l.map(|q| q.truncate());
+    let V = s_1.dot(&robot.links.mass_mul(&q, &s_1)).scale(0.5)
+        + half_square(&law.metric, &error)
+        + half_square(&weight(-2), &z);
+    let value = |x: &Series<2, N>| x.map(|x| x.coefficient(0));
+    let loss = dissipation(&(robot.link_damping + law.link_damping), &value(&s_1))
+        + dissipation(&weight(1), &value(&error))
+        + dissipation(&weight(-1), &value(&z));
+    decays(V, loss, size + V.coefficient(0) * 100.0);
+}
+
+fn cascade<L: Links<f64, N>, const N: usize>(links: fn() -> L, r: &mut Numbers) {
+    let (robot, law, q_ld) = (flexible(links(), r), laws::cascade(r), r.series(1.0));
+    let (_, course, _) = course(&robot, &law, &q_ld, r);
+    let (s, error) = springs_by_position(&robot, &course, &q_ld, &law.shaping, &law.link_damping);
+    let [error, rate, second] = error.derivatives();
+    close(&second, &-(law.velocity.diag_mul(&rate) + law.position.diag_mul(&error)), 1e-9);
+    // What that leaves of the springs drives the links.
+    let [q, v, ..] = course.q_l.derivatives();
+    let [s, ds, _] = s.derivatives();
+    let damped = (robot.link_damping + law.link_damping).diag_mul(&s);
+    close(&(robot.links.inertial_torque(&q, &v, &s, &ds) + damped), &robot.stiffness.diag_mul(&error), 1e-10);
+}
+
+/// s_1 of the links, and θ̃ for motors that shall make the springs give u_R.
+fn springs_by_position<L: Links<f64, N>, const N: usize>(
+    robot: &Fjr<f64, L, N>,
+    course: &Course<N>,
+    q_ld: &Series<5, N>,
+    lambda: &Vector<f64, N>,
+    gamma: &Vector<f64, N>,
+) -> (Series<3, N>, Series<3, N>) {
+    let [q, v, _, q_d, v_d, a_d] = tracked(course, q_ld);
+    let s = v - v_d + lambda.diag_mul(&(q - q_d));
+    let (v_r, a_r) = (v - s, a_d - lambda.diag_mul(&(v - v_d)));
+    let u_r = robot.links.inverse_dynamics(&q, &v, &v_r, &a_r) + robot.link_damping.diag_mul(&v_r)
+        - gamma.diag_mul(&s);
+    (s, course.q_m - q - robot.stiffness.map(f64::recip).diag_mul(&u_r))
 }
 
 fn esp<L: Links<f64, N>, const N: usize>(links: fn() -> L, r: &mut Numbers) {
@@ -201,6 +262,21 @@ fn torque_feedback_stores_energy_in_the_shaped_motors() {
 #[test]
 fn passivity_decays_along_moving_references() {
     on_three_robots!(passivity, 14);
+}
+
+#[test]
+fn gravity_cancellation_leaves_a_robot_without_gravity() {
+    on_three_robots!(gravity_cancellation, 16);
+}
+
+#[test]
+fn backstepping_decays_along_moving_references() {
+    on_three_robots!(backstepping, 17);
+}
+
+#[test]
+fn motors_of_the_cascade_are_second_order_whatever_the_links_do() {
+    on_three_robots!(cascade, 18);
 }
 
 #[test]

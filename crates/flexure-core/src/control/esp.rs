@@ -1,5 +1,6 @@
 //! Damping injection that preserves the elastic structure.
 
+use super::sliding::motors;
 use super::{ControlLaw, LinkGains, MotorPd};
 use crate::linalg::Vector;
 use crate::model::{Fjr, Links, Motion};
@@ -28,8 +29,8 @@ impl<C: Scalar, const N: usize> ControlLaw<C, N> for Esp<C, N> {
         x: &Motion<T, N>,
         q_ld: &Vector<Jet<T, 5>, N>,
     ) -> Vector<T, N> {
-        let wanted = LinkGains::sliding(Vector::ZERO, self.link_damping).spring_torque(robot, x, q_ld);
-        let still = q_ld.map(|x| x.truncate::<3>()) + robot.stiffness.map(C::recip).diag_mul(&wanted);
+        let wanted = LinkGains::sliding(Vector::ZERO, self.link_damping).spring_torque(robot, x, q_ld).torque;
+        let still = motors(robot, &q_ld.map(|x| x.truncate::<3>()), &wanted);
         let [position, rate, second] = still.derivatives();
         self.motor.feedback(&(x.q_m - position), &(x.v_m - rate))
             + wanted.map(|n| n.coefficient(0))

@@ -1,5 +1,6 @@
 //! Passivity-based tracking.
 
+use super::sliding::motors;
 use super::{ControlLaw, LinkGains};
 use crate::linalg::Vector;
 use crate::model::{Fjr, Links, Motion};
@@ -30,8 +31,8 @@ impl<C: Scalar, const N: usize> ControlLaw<C, N> for Passivity<C, N> {
         x: &Motion<T, N>,
         q_ld: &Vector<Jet<T, 5>, N>,
     ) -> Vector<T, N> {
-        let wanted = LinkGains::sliding(self.shaping, self.link_damping).spring_torque(robot, x, q_ld);
-        let theta_d = q_ld.map(|x| x.truncate::<3>()) + robot.stiffness.map(C::recip).diag_mul(&wanted);
+        let wanted = LinkGains::sliding(self.shaping, self.link_damping).spring_torque(robot, x, q_ld).torque;
+        let theta_d = motors(robot, &q_ld.map(|x| x.truncate::<3>()), &wanted);
         let [theta_d, rate_d, second_d] = theta_d.derivatives();
         let (error, rate) = (x.q_m - theta_d, x.v_m - rate_d);
         let v_r = rate_d - self.shaping.diag_mul(&error);

@@ -1,8 +1,9 @@
 //! The laws that v-CBC is compared with, at random gains, and the motion that a torque makes of a state.
 
 use flexure_core::control::{
-    Esp, FeedbackLinearization, FeedforwardPd, IntegralManifold, Linear, LinkGains, Metric, MotorPd,
-    Passivity, Pd, PdOnlineGravity, RigidVcbc, TorqueFeedback,
+    Backstepping, Cascade, Esp, FeedbackLinearization, FeedforwardPd, GravityCancellation, IntegralManifold,
+    Linear, LinkGains, Metric, MotorPd, Passivity, Pd, PdOnlineGravity, RigidVcbc, SingularPerturbation,
+    TorqueFeedback,
 };
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion};
@@ -67,6 +68,36 @@ pub fn passivity<const N: usize>(r: &mut Numbers) -> Passivity<f64, N> {
 
 pub fn esp<const N: usize>(r: &mut Numbers) -> Esp<f64, N> {
     Esp { link_damping: r.between(2.0, 15.0), motor: motor(r) }
+}
+
+pub fn backstepping<const N: usize>(r: &mut Numbers) -> Backstepping<f64, N> {
+    Backstepping {
+        shaping: r.between(5.0, 20.0),
+        link_damping: r.between(2.0, 15.0),
+        metric: r.between(20.0, 80.0),
+        motor_shaping: r.between(5.0, 20.0),
+    }
+}
+
+pub fn cascade<const N: usize>(r: &mut Numbers) -> Cascade<f64, N> {
+    Cascade {
+        shaping: r.between(5.0, 20.0),
+        link_damping: r.between(2.0, 15.0),
+        position: r.between(20.0, 100.0),
+        velocity: r.between(5.0, 20.0),
+    }
+}
+
+pub fn gravity_cancellation<const N: usize>(r: &mut Numbers) -> GravityCancellation<f64, N> {
+    GravityCancellation { motor: motor(r) }
+}
+
+pub fn singular_perturbation<const N: usize>(r: &mut Numbers) -> SingularPerturbation<f64, N> {
+    SingularPerturbation {
+        position: r.between(20.0, 100.0),
+        velocity: r.between(5.0, 20.0),
+        damping: r.between(1.0, 5.0),
+    }
 }
 
 pub fn rigid<const N: usize>(r: &mut Numbers) -> RigidVcbc<f64, Linear<f64, N>, N> {

@@ -1,8 +1,9 @@
 //! The controllers by name.
 
 use flexure_core::control::{
-    Command, ControlLaw, Esp, FeedbackLinearization, FeedforwardPd, Input, IntegralManifold, Linear,
-    LinkGains, Metric, MotorGains, MotorPd, Passivity, Pd, PdOnlineGravity, RigidVcbc, TorqueFeedback, Vcbc,
+    Backstepping, Cascade, Command, ControlLaw, Esp, FeedbackLinearization, FeedforwardPd,
+    GravityCancellation, Input, IntegralManifold, Linear, LinkGains, Metric, MotorGains, MotorPd, Passivity,
+    Pd, PdOnlineGravity, RigidVcbc, SingularPerturbation, TorqueFeedback, Vcbc,
 };
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion};
@@ -40,6 +41,16 @@ pub const CONTROLLERS: &[Entry] = &[
         name: "torque-feedback",
         summary: "regulation with shaped motor inertia (Albu-Schäffer, Ott, Hirzinger 2007)",
     },
+    Entry {
+        name: "singular-perturbation",
+        summary: "rigid computed torque with damping of the springs (Spong 1987)",
+    },
+    Entry {
+        name: "gravity-cancellation",
+        summary: "regulation after gravity is cancelled (De Luca, Flacco 2010)",
+    },
+    Entry { name: "backstepping", summary: "from links to motors (Brogliato, Ortega, Lozano 1995)" },
+    Entry { name: "cascade", summary: "spring torques by an inner loop of motor positions" },
     Entry { name: "esp", summary: "elastic structure preserving damping injection (Keppler et al. 2018)" },
 ];
 
@@ -67,6 +78,14 @@ pub enum AnyLaw<C, const N: usize> {
     Passivity(Passivity<C, N>),
     /// `torque-feedback`.
     TorqueFeedback(TorqueFeedback<C, N>),
+    /// `singular-perturbation`.
+    SingularPerturbation(SingularPerturbation<C, N>),
+    /// `gravity-cancellation`.
+    GravityCancellation(GravityCancellation<C, N>),
+    /// `backstepping`.
+    Backstepping(Backstepping<C, N>),
+    /// `cascade`.
+    Cascade(Cascade<C, N>),
     /// `esp`.
     Esp(Esp<C, N>),
 }
@@ -88,6 +107,10 @@ impl<C: Scalar, const N: usize> ControlLaw<C, N> for AnyLaw<C, N> {
             Self::IntegralManifold(law) => law.torque(robot, x, q_ld),
             Self::Passivity(law) => law.torque(robot, x, q_ld),
             Self::TorqueFeedback(law) => law.torque(robot, x, q_ld),
+            Self::SingularPerturbation(law) => law.torque(robot, x, q_ld),
+            Self::GravityCancellation(law) => law.torque(robot, x, q_ld),
+            Self::Backstepping(law) => law.torque(robot, x, q_ld),
+            Self::Cascade(law) => law.torque(robot, x, q_ld),
             Self::Esp(law) => law.torque(robot, x, q_ld),
         }
     }
@@ -134,6 +157,24 @@ fn baseline<C: Scalar, const N: usize>(law: &Baseline, number: impl Fn(f64) -> C
         "torque-feedback" => {
             AnyLaw::TorqueFeedback(TorqueFeedback { inertia: gain("inertia"), motor: motor() })
         }
+        "singular-perturbation" => AnyLaw::SingularPerturbation(SingularPerturbation {
+            position: gain("position"),
+            velocity: gain("velocity"),
+            damping: gain("damping"),
+        }),
+        "gravity-cancellation" => AnyLaw::GravityCancellation(GravityCancellation { motor: motor() }),
+        "backstepping" => AnyLaw::Backstepping(Backstepping {
+            shaping: gain("shaping"),
+            link_damping: gain("link_damping"),
+            metric: gain("metric"),
+            motor_shaping: gain("motor_shaping"),
+        }),
+        "cascade" => AnyLaw::Cascade(Cascade {
+            shaping: gain("shaping"),
+            link_damping: gain("link_damping"),
+            position: gain("position"),
+            velocity: gain("velocity"),
+        }),
         "esp" => AnyLaw::Esp(Esp { link_damping: gain("link_damping"), motor: motor() }),
         kind => unreachable!("{kind} is in the reader's table and not here"),
     }
