@@ -18,19 +18,17 @@ pub struct PdOnlineGravity<C, const N: usize> {
     pub motor: MotorPd<C, N>,
 }
 
-impl<C: Scalar, const N: usize> PdOnlineGravity<C, N> {
-    /// The law around any motor feedback, K_P and K_D of which may act behind another motor inertia.
-    #[inline]
-    pub(super) fn regulate<T: Over<C>, L: Links<C, N>>(
-        motor: &MotorPd<C, N>,
-        robot: &Fjr<C, L, N>,
-        x: &Motion<T, N>,
-        q_ld: &Vector<Jet<T, 5>, N>,
-    ) -> Vector<T, N> {
-        let [theta_0, rate_0] = robot.motors_at_rest(&q_ld.map(|x| x.truncate::<2>())).derivatives();
-        let resting = robot.links_at_rest(&x.q_m);
-        motor.feedback(&(x.q_m - theta_0), &(x.v_m - rate_0)) + robot.links.gravity_torque(&resting)
-    }
+/// The law with any feedback of the motors.
+#[inline]
+pub(super) fn regulate<C: Scalar, T: Over<C>, L: Links<C, N>, const N: usize>(
+    motor: &MotorPd<C, N>,
+    robot: &Fjr<C, L, N>,
+    x: &Motion<T, N>,
+    q_ld: &Vector<Jet<T, 5>, N>,
+) -> Vector<T, N> {
+    let [theta_0, rate_0] = robot.motors_at_rest(&q_ld.map(|x| x.truncate::<2>())).derivatives();
+    let gravity = robot.links.gravity_torque(&robot.links_at_rest(&x.q_m));
+    motor.feedback(&(x.q_m - theta_0), &(x.v_m - rate_0)) + gravity
 }
 
 impl<C: Scalar, const N: usize> ControlLaw<C, N> for PdOnlineGravity<C, N> {
@@ -41,6 +39,6 @@ impl<C: Scalar, const N: usize> ControlLaw<C, N> for PdOnlineGravity<C, N> {
         x: &Motion<T, N>,
         q_ld: &Vector<Jet<T, 5>, N>,
     ) -> Vector<T, N> {
-        Self::regulate(&self.motor, robot, x, q_ld)
+        regulate(&self.motor, robot, x, q_ld)
     }
 }

@@ -146,6 +146,14 @@ impl<C: Scalar, L: Links<C, N>, const N: usize> Fjr<C, L, N> {
         Vector::from_fn(|i| torque[i] / T::constant(self.motor_inertia[i]))
     }
 
+    /// Motor torque u_m [N m] that gives the motors the accelerations `a_m` [rad/s²].
+    #[inline]
+    pub fn motor_torque<T: Over<C>>(&self, x: &Motion<T, N>, a_m: &Vector<T, N>) -> Vector<T, N> {
+        self.motor_inertia.diag_mul(a_m)
+            + self.motor_damping.diag_mul(&x.v_m)
+            + self.spring_torque(&x.q_l, &x.q_m)
+    }
+
     /// The power that flows in through the motors and out through the dampers.
     #[inline]
     pub fn power<T: Over<C>>(&self, x: &Motion<T, N>, u_m: &Vector<T, N>) -> Power<T> {

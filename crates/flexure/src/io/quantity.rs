@@ -183,6 +183,24 @@ pub(super) const GAIN_DAMPING: Quantity = Quantity::positive("injected damping K
 pub(super) const GAIN_KAPPA: Quantity = Quantity::positive("rate κ of coupled-tanh", "1/s");
 pub(super) const GAIN_STIFFNESS: Quantity =
     Quantity::positive("stiffness K_P of the feedback of motor positions", "N m/rad");
+pub(super) const GAIN_SNAP_POSITION: Quantity =
+    Quantity::positive("gain k_0 of the link position error", "1/s^4");
+pub(super) const GAIN_SNAP_VELOCITY: Quantity =
+    Quantity::positive("gain k_1 of the link velocity error", "1/s^3");
+pub(super) const GAIN_SNAP_ACCELERATION: Quantity =
+    Quantity::positive("gain k_2 of the link acceleration error", "1/s^2");
+pub(super) const GAIN_SNAP_JERK: Quantity = Quantity::positive("gain k_3 of the link jerk error", "1/s");
+pub(super) const GAIN_POSITION: Quantity = Quantity::positive("gain k_p of the position error", "1/s^2");
+pub(super) const GAIN_RATE: Quantity = Quantity::positive("gain k_v of the velocity error", "1/s");
+pub(super) const GAIN_LINK: Quantity = Quantity::non_negative("damping injected into the links", "N m s/rad");
+pub(super) const GAIN_MOTOR: Quantity =
+    Quantity::non_negative("damping injected into the motors", "N m s/rad");
+pub(super) const GAIN_INERTIA: Quantity =
+    Quantity::positive("motor inertia that feedback of the spring torque makes", "kg m^2");
+pub(super) const GAIN_WEIGHT: Quantity = Quantity::positive("weight W of motor position errors", "N m/rad");
+pub(super) const GAIN_MOTOR_SHAPING: Quantity =
+    Quantity::positive("rate a at which motor errors decay", "1/s");
+pub(super) const GAIN_SPRING: Quantity = Quantity::non_negative("damping K_f of the springs", "N m s/rad");
 pub(super) const GAIN_VELOCITY: Quantity =
     Quantity::non_negative("damping K_D of the feedback of motor velocities", "N m s/rad");
 pub(super) const TORQUE_RATE_LIMIT: Quantity = Quantity::positive(

@@ -1,7 +1,9 @@
 //! The controllers by name.
 
 use flexure_core::control::{
-    Command, ControlLaw, Input, LinkGains, Metric, MotorGains, MotorPd, Pd, PdOnlineGravity, Vcbc,
+    Backstepping, Cascade, Command, ControlLaw, Esp, FeedbackLinearization, FeedforwardPd,
+    GravityCancellation, Input, IntegralManifold, Linear, LinkGains, Metric, MotorGains, MotorPd, Passivity,
+    Pd, PdOnlineGravity, RigidVcbc, SingularPerturbation, TorqueFeedback, Vcbc,
 };
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion};
@@ -21,6 +23,35 @@ pub const CONTROLLERS: &[Entry] = &[
         name: "pd-online-gravity",
         summary: "PD of the motors with the gravity of where they are (De Luca, Siciliano, Zollo 2005)",
     },
+    Entry {
+        name: "rigid-vcbc",
+        summary: "virtual-contraction law of rigid robots on the motors, as if the springs were rigid",
+    },
+    Entry { name: "feedback-linearization", summary: "four integrators per joint (Spong 1987)" },
+    Entry {
+        name: "feedforward-pd",
+        summary: "nominal torque of the reference and PD of the motors (De Luca 2000)",
+    },
+    Entry {
+        name: "integral-manifold",
+        summary: "rigid computed torque corrected for compliance (Spong, Khorasani, Kokotović 1987)",
+    },
+    Entry { name: "passivity", summary: "passivity-based tracking (Brogliato, Ortega, Lozano 1995)" },
+    Entry {
+        name: "torque-feedback",
+        summary: "regulation with shaped motor inertia (Albu-Schäffer, Ott, Hirzinger 2007)",
+    },
+    Entry {
+        name: "singular-perturbation",
+        summary: "rigid computed torque with damping of the springs (Spong 1987)",
+    },
+    Entry {
+        name: "gravity-cancellation",
+        summary: "regulation after gravity is cancelled (De Luca, Flacco 2010)",
+    },
+    Entry { name: "backstepping", summary: "from links to motors (Brogliato, Ortega, Lozano 1995)" },
+    Entry { name: "cascade", summary: "spring torques by an inner loop of motor positions" },
+    Entry { name: "esp", summary: "elastic structure preserving damping injection (Keppler et al. 2018)" },
 ];
 
 /// The v-CBC law over the registered shaping functions, with gains of type `C`.
@@ -35,6 +66,28 @@ pub enum AnyLaw<C, const N: usize> {
     Pd(Pd<C, N>),
     /// `pd-online-gravity`.
     PdOnlineGravity(PdOnlineGravity<C, N>),
+    /// `rigid-vcbc`.
+    RigidVcbc(RigidVcbc<C, Linear<C, N>, N>),
+    /// `feedback-linearization`.
+    FeedbackLinearization(FeedbackLinearization<C, N>),
+    /// `feedforward-pd`.
+    FeedforwardPd(FeedforwardPd<C, N>),
+    /// `integral-manifold`.
+    IntegralManifold(IntegralManifold<C, N>),
+    /// `passivity`.
+    Passivity(Passivity<C, N>),
+    /// `torque-feedback`.
+    TorqueFeedback(TorqueFeedback<C, N>),
+    /// `singular-perturbation`.
+    SingularPerturbation(SingularPerturbation<C, N>),
+    /// `gravity-cancellation`.
+    GravityCancellation(GravityCancellation<C, N>),
+    /// `backstepping`.
+    Backstepping(Backstepping<C, N>),
+    /// `cascade`.
+    Cascade(Cascade<C, N>),
+    /// `esp`.
+    Esp(Esp<C, N>),
 }
 
 impl<C: Scalar, const N: usize> ControlLaw<C, N> for AnyLaw<C, N> {
@@ -48,6 +101,17 @@ impl<C: Scalar, const N: usize> ControlLaw<C, N> for AnyLaw<C, N> {
             Self::Vcbc(law) => law.torque(robot, x, q_ld),
             Self::Pd(law) => law.torque(robot, x, q_ld),
             Self::PdOnlineGravity(law) => law.torque(robot, x, q_ld),
+            Self::RigidVcbc(law) => law.torque(robot, x, q_ld),
+            Self::FeedbackLinearization(law) => law.torque(robot, x, q_ld),
+            Self::FeedforwardPd(law) => law.torque(robot, x, q_ld),
+            Self::IntegralManifold(law) => law.torque(robot, x, q_ld),
+            Self::Passivity(law) => law.torque(robot, x, q_ld),
+            Self::TorqueFeedback(law) => law.torque(robot, x, q_ld),
+            Self::SingularPerturbation(law) => law.torque(robot, x, q_ld),
+            Self::GravityCancellation(law) => law.torque(robot, x, q_ld),
+            Self::Backstepping(law) => law.torque(robot, x, q_ld),
+            Self::Cascade(law) => law.torque(robot, x, q_ld),
+            Self::Esp(law) => law.torque(robot, x, q_ld),
         }
     }
 }
@@ -69,6 +133,49 @@ fn baseline<C: Scalar, const N: usize>(law: &Baseline, number: impl Fn(f64) -> C
     match law.kind {
         "pd" => AnyLaw::Pd(Pd { motor: motor() }),
         "pd-online-gravity" => AnyLaw::PdOnlineGravity(PdOnlineGravity { motor: motor() }),
+        "rigid-vcbc" => AnyLaw::RigidVcbc(RigidVcbc {
+            link: LinkGains {
+                metric: Metric::Constant(gain("metric")),
+                shaping: Linear { gain: gain("shaping") },
+                damping: gain("damping"),
+            },
+        }),
+        "feedback-linearization" => AnyLaw::FeedbackLinearization(FeedbackLinearization {
+            gains: ["position", "velocity", "acceleration", "jerk"].map(gain),
+        }),
+        "feedforward-pd" => AnyLaw::FeedforwardPd(FeedforwardPd { motor: motor() }),
+        "integral-manifold" => AnyLaw::IntegralManifold(IntegralManifold {
+            position: gain("position"),
+            velocity: gain("velocity"),
+            damping: gain("damping"),
+        }),
+        "passivity" => AnyLaw::Passivity(Passivity {
+            shaping: gain("shaping"),
+            link_damping: gain("link_damping"),
+            motor_damping: gain("motor_damping"),
+        }),
+        "torque-feedback" => {
+            AnyLaw::TorqueFeedback(TorqueFeedback { inertia: gain("inertia"), motor: motor() })
+        }
+        "singular-perturbation" => AnyLaw::SingularPerturbation(SingularPerturbation {
+            position: gain("position"),
+            velocity: gain("velocity"),
+            damping: gain("damping"),
+        }),
+        "gravity-cancellation" => AnyLaw::GravityCancellation(GravityCancellation { motor: motor() }),
+        "backstepping" => AnyLaw::Backstepping(Backstepping {
+            shaping: gain("shaping"),
+            link_damping: gain("link_damping"),
+            metric: gain("metric"),
+            motor_shaping: gain("motor_shaping"),
+        }),
+        "cascade" => AnyLaw::Cascade(Cascade {
+            shaping: gain("shaping"),
+            link_damping: gain("link_damping"),
+            position: gain("position"),
+            velocity: gain("velocity"),
+        }),
+        "esp" => AnyLaw::Esp(Esp { link_damping: gain("link_damping"), motor: motor() }),
         kind => unreachable!("{kind} is in the reader's table and not here"),
     }
 }

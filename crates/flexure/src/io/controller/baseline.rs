@@ -29,7 +29,7 @@ pub struct Shape {
 }
 
 /// A gain in files.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Gain {
     /// Its key.
     pub key: &'static str,
@@ -82,15 +82,94 @@ impl Drive {
     }
 }
 
-const STIFFNESS: Gain =
-    Gain { key: "stiffness", quantity: &quantity::GAIN_STIFFNESS, start: Drive::motor_stiffness };
-const DAMPING: Gain =
-    Gain { key: "damping", quantity: &quantity::GAIN_VELOCITY, start: Drive::motor_damping };
+const fn gain(key: &'static str, quantity: &'static Quantity, start: fn(&Drive) -> f64) -> Gain {
+    Gain { key, quantity, start }
+}
 
-/// Every law beside `vcbc`, with its gains.
+/// K_P and K_D of the feedback of the motors.
+const MOTOR: [Gain; 2] = [
+    gain("stiffness", &quantity::GAIN_STIFFNESS, Drive::motor_stiffness),
+    gain("damping", &quantity::GAIN_VELOCITY, Drive::motor_damping),
+];
+
+/// (s + ω)² on the links.
+const LINKS: [Gain; 2] = [
+    gain("position", &quantity::GAIN_POSITION, |drive| drive.bandwidth().powi(2)),
+    gain("velocity", &quantity::GAIN_RATE, |drive| 2.0 * drive.bandwidth()),
+];
+
+const SHAPING: Gain = gain("shaping", &quantity::GAIN_SHAPING, Drive::bandwidth);
+const LINK_DAMPING: Gain =
+    gain("link_damping", &quantity::GAIN_LINK, |drive| drive.link_inertia * drive.bandwidth());
+
+const SPRING_DAMPING: Gain =
+    gain("damping", &quantity::GAIN_SPRING, |drive| drive.motor_inertia * drive.bandwidth());
+
+/// How much faster than the links motors shall be that stand between them and the law.
+const INNER: f64 = 3.0;
+const MOTOR_SHAPING: Gain =
+    gain("motor_shaping", &quantity::GAIN_MOTOR_SHAPING, |drive| INNER * drive.bandwidth());
+
+/// Every law beside `vcbc`, with its gains and what to start them from.
 pub const BASELINES: &[Shape] = &[
-    Shape { kind: "pd", gains: &[STIFFNESS, DAMPING] },
-    Shape { kind: "pd-online-gravity", gains: &[STIFFNESS, DAMPING] },
+    Shape {
+        kind: "rigid-vcbc",
+        gains: &[
+            gain("metric", &quantity::GAIN_METRIC, Drive::motor_stiffness),
+            SHAPING,
+            gain("damping", &quantity::GAIN_DAMPING, |drive| drive.inertia() * drive.bandwidth()),
+        ],
+    },
+    Shape { kind: "pd", gains: &MOTOR },
+    Shape { kind: "pd-online-gravity", gains: &MOTOR },
+    Shape {
+        kind: "feedback-linearization",
+        gains: &[
+            gain("position", &quantity::GAIN_SNAP_POSITION, |drive| drive.bandwidth().powi(4)),
+            gain("velocity", &quantity::GAIN_SNAP_VELOCITY, |drive| 4.0 * drive.bandwidth().powi(3)),
+            gain("acceleration", &quantity::GAIN_SNAP_ACCELERATION, |drive| 6.0 * drive.bandwidth().powi(2)),
+            gain("jerk", &quantity::GAIN_SNAP_JERK, |drive| 4.0 * drive.bandwidth()),
+        ],
+    },
+    Shape { kind: "feedforward-pd", gains: &MOTOR },
+    Shape { kind: "integral-manifold", gains: &[LINKS[0], LINKS[1], SPRING_DAMPING] },
+    Shape { kind: "singular-perturbation", gains: &[LINKS[0], LINKS[1], SPRING_DAMPING] },
+    Shape {
+        kind: "passivity",
+        gains: &[
+            SHAPING,
+            LINK_DAMPING,
+            gain("motor_damping", &quantity::GAIN_MOTOR, |drive| drive.motor_inertia * drive.bandwidth()),
+        ],
+    },
+    Shape {
+        kind: "torque-feedback",
+        gains: &[
+            gain("inertia", &quantity::GAIN_INERTIA, |drive| 0.5 * drive.motor_inertia),
+            MOTOR[0],
+            MOTOR[1],
+        ],
+    },
+    Shape { kind: "gravity-cancellation", gains: &MOTOR },
+    Shape {
+        kind: "backstepping",
+        gains: &[
+            SHAPING,
+            LINK_DAMPING,
+            gain("metric", &quantity::GAIN_WEIGHT, |drive| drive.stiffness),
+            MOTOR_SHAPING,
+        ],
+    },
+    Shape {
+        kind: "cascade",
+        gains: &[
+            SHAPING,
+            LINK_DAMPING,
+            gain("position", &quantity::GAIN_POSITION, |drive| (INNER * drive.bandwidth()).powi(2)),
+            gain("velocity", &quantity::GAIN_RATE, |drive| 2.0 * INNER * drive.bandwidth()),
+        ],
+    },
+    Shape { kind: "esp", gains: &[LINK_DAMPING, MOTOR[0], MOTOR[1]] },
 ];
 
 /// Reads the gains of a law.
