@@ -1,6 +1,8 @@
 //! Robots, gains and numbers that the tests share.
 #![allow(dead_code, reason = "each test file uses its part")]
 
+pub mod plant;
+
 use flexure_core::control::{CoupledTanh, Linear, LinkGains, Metric, MotorGains, Shaping, Tanh, Vcbc};
 use flexure_core::linalg::{Matrix, Vector};
 use flexure_core::model::{Fjr, Links, Motion};
