@@ -1,4 +1,4 @@
-//! Links only if the optimiser proves that law, dynamics and arithmetic cannot panic:
+//! Links only if the optimiser proves that law, dynamics, estimators, guard and arithmetic cannot panic:
 //!
 //! `cargo build -p flexure-core --profile no-panic --example no_panic`
 //!
@@ -7,6 +7,10 @@
 use std::hint::black_box;
 
 use flexure_core::control::{CoupledTanh, Input, Vcbc};
+use flexure_core::estimate::{
+    Disturbance, DisturbanceObserver, Estimator, FilteredDifference, MotorObserver, Observer,
+};
+use flexure_core::guard::{Age, Decision, Guard};
 use flexure_core::linalg::Vector as V;
 use flexure_core::model::{FeedForward, Fjr, Links, Motion, RotorCoupling, State};
 use flexure_core::robots::{PlanarTwoLink, Tree};
@@ -65,6 +69,47 @@ fn rotors(
     [coupling.link_torque(&robot.links, x, a), coupling.motor_torque(&robot.links, x, a)]
 }
 
+/// Encoder readings in rad and the torque that was applied [N m].
+type Seen = [V<f64, 7>; 3];
+
+#[cfg_attr(not(debug_assertions), no_panic)]
+fn difference(
+    estimator: &mut FilteredDifference<f64, 7>,
+    robot: &Chain,
+    [q_l, q_m, u]: &Seen,
+) -> Motion<f64, 7> {
+    estimator.update(robot, q_l, q_m, u)
+}
+
+#[cfg_attr(not(debug_assertions), no_panic)]
+fn observer(estimator: &mut Observer<f64, 7>, robot: &Chain, [q_l, q_m, u]: &Seen) -> Motion<f64, 7> {
+    estimator.update(robot, q_l, q_m, u)
+}
+
+#[cfg_attr(not(debug_assertions), no_panic)]
+fn motor_observer(
+    estimator: &mut MotorObserver<f64, 7>,
+    robot: &Chain,
+    [q_l, q_m, u]: &Seen,
+) -> Motion<f64, 7> {
+    estimator.update(robot, q_l, q_m, u)
+}
+
+#[cfg_attr(not(debug_assertions), no_panic)]
+fn disturbance(
+    observer: &mut DisturbanceObserver<f64, 7>,
+    robot: &Chain,
+    x: &Motion<f64, 7>,
+    u: &V<f64, 7>,
+) -> Disturbance<f64, 7> {
+    observer.update(robot, x, u)
+}
+
+#[cfg_attr(not(debug_assertions), no_panic)]
+fn guarded(guard: &mut Guard<f64, 7>, robot: &Chain, x: &Motion<f64, 7>, age: Age) -> Decision<f64, 7> {
+    guard.step(x, age, |x| robot.link_torque(x), |q| robot.links.gravity_torque(q))
+}
+
 #[cfg_attr(not(debug_assertions), no_panic)]
 fn jets(x: Jet<f64, 5>) -> Jet<f64, 5> {
     (x.sin() * x.exp() + x.tanh() / x.ln()).sqrt().atan().ln_cosh().square()
@@ -81,6 +126,13 @@ fn main() {
         forward_dynamics as fn(&_, &_, &_, &_) -> _,
         factor_and_solve as fn(&_, &_, &_) -> _,
         rotors as fn(&_, &_, &_, &_) -> _,
+    ));
+    black_box((
+        difference as fn(&mut _, &_, &_) -> _,
+        observer as fn(&mut _, &_, &_) -> _,
+        motor_observer as fn(&mut _, &_, &_) -> _,
+        disturbance as fn(&mut _, &_, &_, &_) -> _,
+        guarded as fn(&mut _, &_, &_, _) -> _,
     ));
     assert!(jets(black_box(Jet::variable(0.5))).coefficient(4).is_finite());
 }

@@ -1,7 +1,11 @@
-//! Law, dynamics and references allocate nothing.
+//! Law, dynamics, references, estimators and guards allocate nothing.
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc, violation_count};
 use flexure_core::control::{Input, RigidVcbc};
+use flexure_core::estimate::{
+    DisturbanceObserver, Estimator, FilteredDifference, LowPass, MotorObserver, Observer,
+};
+use flexure_core::guard::{Age, Guard, Settings};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{FeedForward, LinkMatrices, Links, MassFactor};
 use flexure_core::reference::{
@@ -77,6 +81,40 @@ fn planar_arm() {
 #[test]
 fn branched_tree() {
     law_and_dynamics_allocate_nothing(branched::<7>(2));
+}
+
+#[test]
+fn estimators_and_guard() {
+    let mut r = Numbers(3);
+    let robot = flexible(branched::<7>(2), &mut r);
+    let (x, u) = (r.motion::<7>(0.5), r.vector::<7>(1.0));
+    let (one, period) = (Vector([1.0; 7]), 1e-3);
+    let count = allocations(|| {
+        let mut difference = FilteredDifference::new(LowPass::second_order(40.0, 0.9, period)?);
+        let mut both = Observer::new(&one, period)?;
+        let mut motor = MotorObserver::new(&one, period)?;
+        let mut disturbance = DisturbanceObserver::new(&one, period)?;
+        let mut guard = Guard::new(Settings {
+            period,
+            torque_limit: one,
+            torque_rate_limit: one,
+            stop_damping: one,
+            allowed_age: 0,
+            rejoin_after: 1,
+            position_bound: one,
+            speed_bound: one,
+        })?;
+        (difference.start(&x), both.start(&x), motor.start(&x));
+        let estimates = [
+            difference.update(&robot, &x.q_l, &x.q_m, &u),
+            both.update(&robot, &x.q_l, &x.q_m, &u),
+            motor.update(&robot, &x.q_l, &x.q_m, &u),
+        ];
+        let found = [disturbance.update(&robot, &x, &u), disturbance.update(&robot, &x, &u)];
+        let decisions = [0, 1].map(|age| guard.step(&x, Age { link: age, motor: 0 }, |_| u, |_| u));
+        Some((estimates, found, decisions))
+    });
+    assert_eq!(count, 0);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The robot one control period ahead.
 
-use super::placement::{JointGains, JointModel};
+use super::placement::{Drive, Gains};
 use crate::linalg::{Ldl, Matrix, Vector};
 use crate::model::{Fjr, Links, Motion};
 use crate::scalar::Float;
@@ -14,7 +14,7 @@ pub(super) struct Correction<'a, C, const N: usize> {
 }
 
 /// The flexible-joint robot over one period by the trapezoidal rule, implicit in springs and dampers: second order, one
-/// mass matrix, one factorisation, two inverse dynamics, and stable however stiff the drives are.
+/// mass matrix, two inverse dynamics, and stable however stiff the drives are.
 ///
 /// Everything is in half periods, h = T/2 and V = h v, and solved for the means over the period (locals `_bar`); motors are
 /// eliminated joint by joint. Mass matrix, Coriolis and gravity torques are those at mid-period: the first pass takes the
@@ -33,57 +33,45 @@ pub(super) fn predict<C: Float, L: Links<C, N>, const N: usize>(
     let (V_l, V_m) = (x.v_l.scaled(h), x.v_m.scaled(h));
     let middle = x.q_l + V_l;
     let M_l = robot.links.mass_matrix(&middle);
-    let joints: [Joint<C>; N] = core::array::from_fn(|i| {
-        let model = joint_model(robot, M_l[(i, i)], i, h);
-        let (gains, reading) = match correction {
-            Some(given) => (JointGains::shifting(&model, given.shift[i]), given.reading[i]),
-            None => (JointGains::ZERO, x.q_m[i]),
-        };
-        // h² u_m / J
-        let drive = model.kappa_m / robot.stiffness[i] * u_m[i];
-        Joint { model, gains, reading, q_l: x.q_l[i], q_m: x.q_m[i], V_m: V_m[i] + drive }
-    });
-    let joints = Vector(joints);
-    let eliminated: Vector<Eliminated<C>, N> = joints.map(|joint| joint.eliminate());
+    let joints: Vector<Joint<C>, N> = Vector::from_fn(|i| Joint::new(robot, x, u_m, h, i, correction));
 
-    let factor = Ldl::new(&Matrix::from_fn(|i, j| {
-        if i == j { M_l[(i, i)] * (C::ONE + eliminated[i].added) } else { M_l[(i, j)] }
+    let factor = Ldl::new(&Matrix::<C, N, N>::from_fn(|i, j| {
+        if i == j { M_l[(i, i)] + joints[i].added / joints[i].scale } else { M_l[(i, j)] }
     }));
-    let momentum = M_l * V_l;
-    let mean = |v: &Vector<C, N>| {
+    let momentum = M_l * Vector::<C, N>::from_fn(|i| V_l[i] + joints[i].boost);
+    // U and V̄_l, with Coriolis torques at the velocity v.
+    let means = |v: &Vector<C, N>| {
         let bias = robot.links.inverse_dynamics(&middle, v, v, &Vector::ZERO);
-        factor.solve(&Vector::from_fn(|i| {
-            momentum[i] + M_l[(i, i)] * eliminated[i].push - h.square() * bias[i]
-        }))
+        let torque = Vector::from_fn(|i| momentum[i] + joints[i].push - h.square() * bias[i]);
+        let scaled = factor.solve(&torque);
+        let U = Vector::<C, N>::from_fn(|i| scaled[i] / joints[i].scale);
+        (U, correction.map_or(U, |_| U - injected(&M_l, &joints, &U)))
     };
-    let V_l_bar = mean(&mean(&x.v_l).scaled(h.recip()));
-    let means: Vector<[C; 3], N> = Vector::from_fn(|i| joints[i].means(&eliminated[i], V_l_bar[i]));
+    let (_, first) = means(&x.v_l);
+    let (U, V_l_bar) = means(&first.scaled(h.recip()));
+    let motors: Vector<(C, C), N> = Vector::from_fn(|i| joints[i].motor(U[i]));
 
     let ahead = |bar: C, start: C| bar + (bar - start);
+    let two = C::ONE + C::ONE;
     Motion {
-        q_l: Vector::from_fn(|i| ahead(means[i][0], x.q_l[i])),
-        q_m: Vector::from_fn(|i| ahead(means[i][1], x.q_m[i])),
+        q_l: x.q_l + U.scaled(two),
+        q_m: Vector::from_fn(|i| ahead(motors[i].0, x.q_m[i])),
         v_l: Vector::from_fn(|i| ahead(V_l_bar[i], V_l[i]) / h),
-        v_m: Vector::from_fn(|i| ahead(means[i][2], V_m[i]) / h),
+        v_m: Vector::from_fn(|i| ahead(motors[i].1, V_m[i]) / h),
     }
 }
 
-/// Joint `i` with the other joints held, in half periods; `inertia` is M_ii [kg m²].
+/// α r̄ − M⁻¹ β r̄: what the correction adds to the mean rate of the link positions.
 #[inline]
-fn joint_model<C: Float, L, const N: usize>(
-    robot: &Fjr<C, L, N>,
-    inertia: C,
-    i: usize,
-    h: C,
-) -> JointModel<C> {
-    let (K, D_m) = (robot.stiffness[i], robot.motor_damping[i]);
-    let (link, motor) = (h / inertia, h / seen_inertia(robot.motor_inertia[i], D_m, h));
-    JointModel {
-        kappa_l: link * h * K,
-        delta_l: link * robot.link_damping[i],
-        kappa_m: motor * h * K,
-        delta_m: motor * D_m,
-    }
+fn injected<C: Float, const N: usize>(
+    M_l: &Matrix<C, N, N>,
+    joints: &Vector<Joint<C>, N>,
+    U: &Vector<C, N>,
+) -> Vector<C, N> {
+    let residual: Vector<C, N> = Vector::from_fn(|i| joints[i].residual(U[i]));
+    let back = Vector::from_fn(|i| joints[i].gains.link_position_torque * residual[i]);
+    let back = M_l.ldl().solve(&back);
+    Vector::from_fn(|i| joints[i].gains.link_position * residual[i] - back[i])
 }
 
 /// J (δ/2) / tanh(δ/2) with δ = D_m T / J: the inertia with which the trapezoidal rule damps a motor by exactly e^{−δ}.
@@ -99,64 +87,96 @@ fn seen_inertia<C: Float>(inertia: C, damping: C, h: C) -> C {
     inertia * quotient
 }
 
-/// One joint over the period, in half periods:
+/// One joint over the period, with the mean displacement U = q̄_l − q_l of the link as unknown:
 ///
-/// - q̄_l = q_l + V̄_l + λ_ql r̄, with the residual r̄ = ȳ − q̄_m,
-/// - q̄_m = q_m + V̄_m + λ_qm r̄,
-/// - (1 + δ_m) V̄_m = V_m − κ_m (q̄_m − q̄_l) + λ_vm r̄,
-/// - (M V̄_l)_i = (M V_l)_i + M_ii (κ_l (q̄_m − q̄_l) − δ_l V̄_l + λ_vl r̄) − h² bias_i.
+/// - q̄_m = q_m + V̄_m + λ_q r̄, with the residual r̄ = ȳ − q̄_m,
+/// - (1 + δ) V̄_m = V_m + h² u_m / J − κ (q̄_m − q̄_l) + λ_v r̄,
+/// - M (U − (α + γ) r̄) = M V_l + h² K (q̄_m − q̄_l) − h D_l U − (β + η) r̄ − h² (C q̇_l + g).
+///
+/// The first two make r̄ affine in U, so that the third is a system of equations for (1 + (α + γ) slope) U with the
+/// mass matrix and a diagonal on top.
 #[derive(Clone, Copy)]
 struct Joint<C> {
-    model: JointModel<C>,
-    gains: JointGains<C>,
+    drive: Drive<C>,
+    gains: Gains<C>,
     /// ȳ.
     reading: C,
     q_l: C,
-    q_m: C,
-    /// With what the motor torque adds, h² u_m / J.
-    V_m: C,
-}
-
-/// The motor's part of a joint, affine in V̄_l.
-#[derive(Clone, Copy)]
-struct Eliminated<C> {
-    /// r̄ at V̄_l = 0.
+    /// V_m + h² u_m / J.
+    driven: C,
+    /// r̄ at U = 0.
     offset: C,
-    /// −∂r̄/∂V̄_l.
+    /// −∂r̄/∂U.
     slope: C,
-    /// What M_ii V̄_l is multiplied by on top of 1.
+    /// 1 + (α + γ) slope.
+    scale: C,
+    /// What multiplies U besides the mass matrix [kg m²].
     added: C,
-    /// What pushes the link, over M_ii.
+    /// (α + γ) r̄ at U = 0.
+    boost: C,
+    /// What pushes the link at U = 0 [kg m²].
     push: C,
 }
 
 impl<C: Float> Joint<C> {
     #[inline]
-    fn eliminate(&self) -> Eliminated<C> {
-        let Self { model, gains, reading, q_l, q_m, V_m } = *self;
-        let damped = (C::ONE + model.delta_m).recip();
-        let stretch = reading - q_l;
-        let feedback = gains.q_m + damped * (model.kappa_m * (C::ONE + gains.q_l) + gains.v_m);
-        let share = (C::ONE + feedback).recip();
-        let offset = share * (reading - q_m - damped * (V_m - model.kappa_m * stretch));
-        let slope = share * damped * model.kappa_m;
-        let coupling = gains.v_l - model.kappa_l * (C::ONE + gains.q_l);
-        Eliminated {
+    fn new<L, const N: usize>(
+        robot: &Fjr<C, L, N>,
+        x: &Motion<C, N>,
+        u_m: &Vector<C, N>,
+        h: C,
+        i: usize,
+        correction: Option<&Correction<C, N>>,
+    ) -> Self {
+        let J = seen_inertia(robot.motor_inertia[i], robot.motor_damping[i], h);
+        let K = h.square() * robot.stiffness[i];
+        let drive = Drive {
+            inertia: J,
+            damping: h * robot.motor_damping[i] / J,
+            stiffness: K / J,
+            link_damping: h * robot.link_damping[i],
+        };
+        let (gains, reading) = match correction {
+            Some(given) => (Gains::shifting(&drive, given.shift[i]), given.reading[i]),
+            None => (Gains::ZERO, x.q_m[i]),
+        };
+        let driven = h * x.v_m[i] + h.square() * u_m[i] / J;
+
+        let damped = (C::ONE + drive.damping).recip();
+        let share = (C::ONE + gains.position + damped * (drive.stiffness + gains.velocity)).recip();
+        let stretch = reading - x.q_l[i];
+        let offset = share * (reading - x.q_m[i] - damped * (driven - drive.stiffness * stretch));
+        let slope = share * damped * drive.stiffness;
+        let forward = gains.link_position + gains.link_velocity;
+        let back = gains.link_position_torque + gains.link_velocity_torque;
+        Self {
+            scale: C::ONE + forward * slope,
+            added: K + drive.link_damping - (K + back) * slope,
+            boost: forward * offset,
+            push: K * stretch - (K + back) * offset,
+            q_l: x.q_l[i],
+            drive,
+            gains,
+            reading,
+            driven,
             offset,
             slope,
-            added: model.delta_l + model.kappa_l + coupling * slope,
-            push: model.kappa_l * stretch + coupling * offset,
         }
     }
 
-    /// q̄_l, q̄_m and V̄_m.
+    /// r̄.
     #[inline]
-    fn means(&self, eliminated: &Eliminated<C>, V_l_bar: C) -> [C; 3] {
-        let Self { model, gains, reading, q_l, V_m, .. } = *self;
-        let residual = eliminated.offset - eliminated.slope * V_l_bar;
-        let q_l_bar = q_l + V_l_bar + gains.q_l * residual;
-        let q_m_bar = reading - residual;
-        let push = gains.v_m * residual - model.kappa_m * (q_m_bar - q_l_bar);
-        [q_l_bar, q_m_bar, (V_m + push) / (C::ONE + model.delta_m)]
+    fn residual(&self, U: C) -> C {
+        self.offset - self.slope * U
+    }
+
+    /// q̄_m and V̄_m.
+    #[inline]
+    fn motor(&self, U: C) -> (C, C) {
+        let residual = self.residual(U);
+        let q_m_bar = self.reading - residual;
+        let spring = self.drive.stiffness * (q_m_bar - self.q_l - U);
+        let V_m_bar = (self.driven - spring + self.gains.velocity * residual) / (C::ONE + self.drive.damping);
+        (q_m_bar, V_m_bar)
     }
 }

@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test file uses its part")]
 
 pub mod laws;
+pub mod plant;
 
 use flexure_core::control::{CoupledTanh, Linear, LinkGains, Metric, MotorGains, Shaping, Tanh, Vcbc};
 use flexure_core::linalg::{Matrix, Vector};
