@@ -89,7 +89,7 @@ fn torque_rises_in_so_many_periods() {
         .collect();
     for (k, u) in rise.iter().enumerate() {
         let periods = k.saturating_sub(9) as f64;
-        assert_eq!(u.0, [(0.25 * periods).min(1.0), -(0.25 * periods).min(2.0)], "{k}");
+        assert_eq!(*u, Vector([(0.25 * periods).min(1.0), -(0.25 * periods).min(2.0)]), "{k}");
     }
     // No two torques of a wild command are farther apart.
     let wild = torques(&[Imperfection::TorqueRate(vec![20.0, 35.0])], 0, 2000);
