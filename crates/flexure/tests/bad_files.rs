@@ -255,9 +255,9 @@ const SCENARIO_CASES: &[Case] = &[
     ("[controller.motor]", "[controller.motors]", "motors", "unknown key 'motors' in [controller]"),
     (
         "[controller]",
-        "[[imperfection]]\nkind = \"delay\"\n[controller]",
-        "[[imperfection]]",
-        "not in this version",
+        "[[imperfection]]\nkind = \"delays\"\n[controller]",
+        "\"delays\"",
+        "imperfection[0].kind is 'delays', which is not known",
     ),
     (
         "[controller]",

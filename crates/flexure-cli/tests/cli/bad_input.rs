@@ -35,7 +35,11 @@ const SCENARIOS: &[Case] = &[
     ("metric = [55.0, 30.0]", "metric = [55.0, 30.0", &["s.toml:", "not valid TOML"]),
     ("robot = \"quanser-2dof\"", "robot = \"quanser-2dfo\"", &["s.toml:3:9", "did you mean 'quanser-2dof'?"]),
     ("robot = \"quanser-2dof\"", "robot = \"../none.toml\"", &["s.toml:3:9", "cannot read", "none.toml"]),
-    ("[sources]", "[[imperfection]]\nkind = \"delay\"\n[sources]", &["s.toml:", "not in this version"]),
+    (
+        "[sources]",
+        "[[imperfection]]\nkind = \"delay\"\n[sources]",
+        &["s.toml:", "neither computation nor actuation"],
+    ),
     ("[sources]", "[sources]\nstiffness = \"assumed\"", &["s.toml:", "'stiffness' names no key"]),
 ];
 

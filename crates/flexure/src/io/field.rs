@@ -82,13 +82,11 @@ impl<'a> Field<'a> {
     /// The whole number from `least` to `most`, called `what` in hints.
     pub fn whole(&self, what: &str, least: u64, most: u64) -> Option<u64> {
         let expected = format!("a whole number from {least} to {most}");
-        let number = match self.value {
-            DeValue::Integer(integer) => i128::from_str_radix(integer.as_str(), integer.radix()).ok(),
-            _ => {
-                self.wrong_type(&expected, what);
-                return None;
-            }
+        let DeValue::Integer(integer) = self.value else {
+            self.wrong_type(&expected, what);
+            return None;
         };
+        let number = i128::from_str_radix(integer.as_str(), integer.radix()).ok();
         let found = number.and_then(|x| u64::try_from(x).ok()).filter(|x| (least..=most).contains(x));
         if found.is_none() {
             let shown = number.map_or_else(|| "beyond all bounds".to_owned(), |x| x.to_string());

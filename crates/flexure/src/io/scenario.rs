@@ -156,6 +156,7 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> 
     let hold = root.optional("hold", |field| {
         field.choice(&[("zero-order", Hold::ZeroOrder), ("continuous", Hold::Continuous)])
     });
+    let hold = hold.map(Option::unwrap_or_default);
     let mut assumed = robot.as_ref().map(Robot::assumptions).unwrap_or_default();
     let initial = initial::read(root, &joints, places, &mut assumed);
     let reference_field = root.required("reference", "a table with the kind");
@@ -165,8 +166,8 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> 
     let controller = root.required("controller", "a table with the kind");
     let controller = controller.and_then(|field| controller::read(&field, &joints));
     let plant = plant::read(root, &joints, robot.as_ref());
-    let base_context = Context { joints: &joints, robot: robot.as_ref(), times, base };
-    let real = real_loop(root, &base_context, hold, plant.as_ref());
+    let context = Context { joints: &joints, robot: robot.as_ref(), times, base };
+    let real = real_loop(root, &context, hold, plant.as_ref());
     let own = provenance::assumptions(root, places);
     if let (Some(field), Some(reference), Some(None), Some(initial)) =
         (reference_field, &reference, smooth_start, &initial)
@@ -181,7 +182,7 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> 
         robot,
         duration,
         control_period,
-        hold: hold?.unwrap_or_default(),
+        hold: hold?,
         initial: initial?,
         reference: reference?,
         smooth_start: smooth_start?,
@@ -254,7 +255,7 @@ struct RealLoop {
 fn real_loop(
     root: &Table<'_>,
     context: &Context<'_>,
-    hold: Option<Option<Hold>>,
+    hold: Option<Hold>,
     plant: Option<&Plant>,
 ) -> Option<RealLoop> {
     let found = imperfection::read(root, context);
@@ -269,7 +270,7 @@ fn real_loop(
         root,
         context,
         found: &found,
-        hold: hold?.unwrap_or_default(),
+        hold: hold?,
         plant: plant?,
         estimator: estimator.as_ref(),
         guard: guard.as_ref(),

@@ -38,9 +38,8 @@ impl<'a> Loop<'a> {
     /// Each kind once, or once a side; what comes and goes as often as wanted.
     fn repeated(&self) {
         for (i, second) in self.found.iter().enumerate() {
-            let earlier = self.found.iter().take(i);
-            let clash =
-                earlier.filter_map(|first| Some((first, collision(&first.what, &second.what)?))).next();
+            let mut earlier = self.found.iter().take(i);
+            let clash = earlier.find_map(|first| Some((first, collision(&first.what, &second.what)?)));
             let Some((first, what)) = clash else { continue };
             let kind = second.what.kind();
             let message = format!("a second {kind}{what}; the first is in line {}", first.field.line());

@@ -9,12 +9,7 @@ use super::rigid::{Rigid, Weight};
 impl<C: Scalar> Links<C> {
     /// Multiplies mass and rotational inertia of what joint i carries by `factors[i]`.
     pub(in crate::io) fn multiply_masses(&mut self, factors: &[f64]) {
-        let scale = |x: &mut C, factor: &f64| {
-            // A factor of one changes no bit, nor a bound.
-            if *factor != 1.0 {
-                *x = *x * C::from_f64(*factor);
-            }
-        };
+        let scale = |x: &mut C, factor: &f64| *x *= C::from_f64(*factor);
         match self {
             Self::PlanarTwoLink { mass, inertia, .. } => {
                 for (x, factor) in mass.iter_mut().zip(factors).chain(inertia.iter_mut().zip(factors)) {
