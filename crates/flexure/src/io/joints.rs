@@ -23,6 +23,8 @@ pub(super) struct Drives {
 pub struct Limits {
     /// Largest motor torque [N m].
     pub torque: Vec<f64>,
+    /// Largest rate of the motor torque [N m/s].
+    pub torque_rate: Vec<f64>,
     /// Largest joint velocity [rad/s].
     pub velocity: Vec<f64>,
     /// Largest deflection |ζ| of the springs \[rad\].
@@ -41,6 +43,7 @@ const KEYS: &[&str] = &[
     "motor_damping",
     "gear_ratio",
     "torque_limit",
+    "torque_rate_limit",
     "velocity_limit",
     "deflection_limit",
     "position_lower",
@@ -181,6 +184,7 @@ impl Reader<'_> {
         };
         let none = f64::INFINITY;
         let torque = read("torque_limit", &quantity::TORQUE_LIMIT, none, |drive| drive.torque_limit);
+        let torque_rate = read("torque_rate_limit", &quantity::TORQUE_RATE_LIMIT, none, |_| None);
         let velocity = read("velocity_limit", &quantity::VELOCITY_LIMIT, none, |drive| drive.velocity_limit);
         let deflection = read("deflection_limit", &quantity::DEFLECTION_LIMIT, none, |_| None);
         let lower = read("position_lower", &quantity::STOP, -none, |drive| drive.position_lower);
@@ -196,6 +200,13 @@ impl Reader<'_> {
                 return None;
             }
         }
-        Some(Limits { torque: torque?, velocity: velocity?, deflection: deflection?, lower, upper })
+        Some(Limits {
+            torque: torque?,
+            torque_rate: torque_rate?,
+            velocity: velocity?,
+            deflection: deflection?,
+            lower,
+            upper,
+        })
     }
 }
