@@ -89,7 +89,7 @@ pub fn certificates() -> Result<Vec<Certified>, Problems> {
 /// One line about a scenario.
 fn describe(scenario: &Scenario) -> String {
     let start = match scenario.smooth_start {
-        Some(duration) => format!("smooth start over {duration} s"),
+        Some(start) => format!("smooth start over {} s", start.duration),
         None => "no smooth start".to_owned(),
     };
     let hold = match scenario.hold {
@@ -200,7 +200,7 @@ fn value(assumed: &io::Assumption) -> String {
 /// Unit of the value at `key` of a robot or scenario file; empty for none and for whole tables.
 fn unit(key: &str) -> &'static str {
     match key.rsplit('.').next().unwrap_or_default() {
-        "duration" | "control_period" => " s",
+        "duration" | "control_period" | "settle" | "rise" => " s",
         "gravity" => " m/s²",
         "mass" => " kg",
         "length" | "com" => " m",
@@ -208,6 +208,7 @@ fn unit(key: &str) -> &'static str {
         "stiffness" | "metric" => " N m/rad",
         "link_damping" | "motor_damping" | "damping" => " N m s/rad",
         "torque_limit" => " N m",
+        "torque_rate_limit" => " N m/s",
         "velocity_limit" => " rad/s",
         "deflection_limit" => " rad",
         "spring_hardening" | "metric_hardening" => " N m/rad³",

@@ -8,6 +8,7 @@ pub mod confirmation;
 mod eigenvalues;
 pub mod evaluate;
 pub mod experiment;
+pub mod feasible;
 pub mod io;
 pub mod overview;
 pub mod paper;

@@ -1,9 +1,10 @@
 //! `flexure check`: are these files good?
 
-use flexure::io::{self, Assumption, Checked, Problem, Problems};
+use flexure::feasible::{self, Usage};
+use flexure::io::{self, Assumption, Checked, Problem, Problems, Scenario};
 use flexure::overview::{JointRow, overview};
 use flexure::registry::supported;
-use flexure::report::joint_table;
+use flexure::report::{joint_table, usage_table};
 use serde::Serialize;
 
 use super::print;
@@ -18,6 +19,9 @@ struct Verdict {
     content: Option<Content>,
     warnings: Vec<Complaint>,
     errors: Vec<Complaint>,
+    /// Limits that the reference of a good file exceeds.
+    #[serde(skip)]
+    exceeded: Vec<Problem>,
 }
 
 /// What is in a good file.
@@ -32,6 +36,24 @@ struct Content {
     /// Of a robot file.
     #[serde(skip_serializing_if = "Option::is_none")]
     robot: Option<Vec<JointRow>>,
+    /// Of a scenario.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reference: Option<Along>,
+}
+
+/// What the reference of a scenario does.
+#[derive(Serialize)]
+struct Along {
+    /// Names of the joints.
+    #[serde(skip)]
+    joints: Vec<String>,
+    /// Whether its clock goes at a speed of its own.
+    #[serde(skip)]
+    scaled: bool,
+    /// Seconds of the reference per second of the run.
+    speed: f64,
+    /// What it uses of the robot's limits.
+    usage: Vec<Usage>,
 }
 
 /// A number that no source vouches for.
@@ -56,26 +78,14 @@ pub fn check(files: &[String], json: bool) -> Result<(), Failure> {
     if json {
         print::json(&verdicts)?;
     } else {
-        for verdict in &verdicts {
-            if let Some(Content { kind, name, joints, assumptions, assumed, robot }) = &verdict.content {
-                print::line(&format!(
-                    "{}: {kind} {name}, {}, {}, {}",
-                    verdict.file,
-                    counted(*joints, "joint"),
-                    counted(*assumptions, "assumption"),
-                    counted(verdict.warnings.len(), "warning"),
-                ))?;
-                if let Some(rows) = robot {
-                    print::line(&joint_table(rows))?;
-                    for Assumed { key, value, note } in assumed {
-                        print::line(&format!("assumed: {key} = {value}: {note}"))?;
-                    }
-                }
-            }
-        }
+        verdicts.iter().try_for_each(show)?;
     }
-    match verdicts.iter().filter(|verdict| !verdict.ok).count() {
-        0 => Ok(()),
+    let bad = verdicts.iter().filter(|verdict| !verdict.ok && verdict.exceeded.is_empty()).count();
+    match bad {
+        0 => match verdicts.into_iter().flat_map(|verdict| verdict.exceeded).collect::<Vec<_>>() {
+            none if none.is_empty() => Ok(()),
+            exceeded => Err(Failure::No(exceeded.into_iter().map(Into::into).collect())),
+        },
         // Of one file everything has been said.
         1 if files.len() == 1 => Err(Failure::Input(Vec::new())),
         bad => Err(Failure::input(
@@ -86,39 +96,94 @@ pub fn check(files: &[String], json: bool) -> Result<(), Failure> {
     }
 }
 
+/// What is in a file, on the terminal.
+fn show(verdict: &Verdict) -> Result<(), Failure> {
+    let Some(Content { kind, name, joints, assumptions, assumed, robot, reference }) = &verdict.content
+    else {
+        return Ok(());
+    };
+    print::line(&format!(
+        "{}: {kind} {name}, {}, {}, {}",
+        verdict.file,
+        counted(*joints, "joint"),
+        counted(*assumptions, "assumption"),
+        counted(verdict.warnings.len(), "warning"),
+    ))?;
+    if let Some(rows) = robot {
+        print::line(&joint_table(rows))?;
+        for Assumed { key, value, note } in assumed {
+            print::line(&format!("assumed: {key} = {value}: {note}"))?;
+        }
+    }
+    if let Some(Along { joints, scaled, speed, usage }) = reference {
+        if *scaled {
+            print::line(&format!("the reference is run along at {speed:.5} of its own speed"))?;
+        }
+        if !usage.is_empty() {
+            print::line(&usage_table(joints, usage))?;
+        }
+    }
+    Ok(())
+}
+
 fn counted(n: usize, what: &str) -> String {
     format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
 fn verdict(file: &str, json: bool) -> Verdict {
-    let (content, complaints) = match content(file) {
+    let Found { content, warnings, exceeded } = match content(file) {
         Ok(found) => found,
         Err(problems) => return bad(file, &problems, json),
     };
     if !json {
-        say(&complaints);
+        say(&warnings);
     }
-    let warnings = complaints.iter().map(complaint).collect();
-    Verdict { file: file.to_owned(), ok: true, content, warnings, errors: Vec::new() }
+    Verdict {
+        file: file.to_owned(),
+        ok: exceeded.is_empty(),
+        content: Some(content),
+        warnings: warnings.iter().map(complaint).collect(),
+        errors: exceeded.iter().map(complaint).collect(),
+        exceeded,
+    }
 }
 
-/// What is in the file, if this program can use it, and what is suspicious in it.
-fn content(file: &str) -> Result<(Option<Content>, Vec<Problem>), Problems> {
-    Ok(match io::check(file)? {
+/// What is in a file that this program can use, what is suspicious in it, and which limits its reference exceeds.
+struct Found {
+    content: Content,
+    warnings: Vec<Problem>,
+    exceeded: Vec<Problem>,
+}
+
+fn content(file: &str) -> Result<Found, Problems> {
+    match io::check(file)? {
         Checked::Robot(robot) => {
             let rows = overview(&robot)?;
             let assumed = assumed(&robot.assumptions());
             let (joints, assumptions, name) = (rows.len(), assumed.len(), robot.name);
-            let content = Content { kind: "robot", name, joints, assumptions, assumed, robot: Some(rows) };
-            (Some(content), robot.warnings)
+            let (kind, robot_rows, reference) = ("robot", Some(rows), None);
+            let content = Content { kind, name, joints, assumptions, assumed, robot: robot_rows, reference };
+            Ok(Found { content, warnings: robot.warnings, exceeded: Vec::new() })
         }
         Checked::Scenario(scenario) => {
             supported(&scenario.robot)?;
+            let reference = along(&scenario)?;
+            let exceeded = feasible::exceeded(&scenario, &reference.usage);
             let assumed = assumed(&scenario.assumptions);
             let (joints, assumptions, name) = (scenario.robot.joint_count(), assumed.len(), scenario.name);
-            let content = Content { kind: "scenario", name, joints, assumptions, assumed, robot: None };
-            (Some(content), scenario.warnings)
+            let (kind, robot, reference) = ("scenario", None, Some(reference));
+            let content = Content { kind, name, joints, assumptions, assumed, robot, reference };
+            Ok(Found { content, warnings: scenario.warnings, exceeded })
         }
+    }
+}
+
+fn along(scenario: &Scenario) -> Result<Along, Problems> {
+    Ok(Along {
+        joints: scenario.robot.joints.iter().map(|joint| joint.name.clone()).collect(),
+        scaled: scenario.time_scaling.is_some(),
+        speed: feasible::speed(scenario)?,
+        usage: feasible::usage(scenario)?,
     })
 }
 
@@ -143,6 +208,7 @@ fn bad(file: &str, problems: &Problems, json: bool) -> Verdict {
         content: None,
         warnings: complaints(warnings),
         errors: complaints(errors),
+        exceeded: Vec::new(),
     }
 }
 

@@ -66,7 +66,7 @@ pub use outputs::{
 };
 pub use plant::Plant;
 pub use provenance::Assumption;
-pub use reference::{Profile, Reference, Term};
+pub use reference::{Profile, Reference, SmoothStart, Speed, Term, TimeScaling};
 pub use robot::{Robot, robot_from_text};
 pub use scenario::{Hold, Scenario, scenario_from_text};
 pub use states::{StateFile, StateRow, States, load_states};

@@ -149,6 +149,8 @@ pub(super) const GEAR_RATIO: Quantity =
         .plausible(0.1, 1e5, "gears of arms lie between 1 and 500");
 pub(super) const TORQUE_LIMIT: Quantity =
     Quantity::positive("largest motor torque, link side of the gear", "N m");
+pub(super) const TORQUE_RATE_LIMIT: Quantity =
+    Quantity::positive("largest rate of the motor torque, link side of the gear", "N m/s");
 pub(super) const VELOCITY_LIMIT: Quantity = Quantity::positive("largest joint velocity", "rad/s");
 pub(super) const DEFLECTION_LIMIT: Quantity =
     Quantity::positive("largest deflection of the joint's spring", "rad")
@@ -165,6 +167,13 @@ pub(super) const PERIOD: Quantity = Quantity::positive("control period", "s").pl
     0.1,
     "is it in milliseconds, or the rate in Hz?",
 );
+pub(super) const SPEED_OF_TIME: Quantity = Quantity::positive(
+    "seconds of the reference per second of the run",
+    "",
+)
+.plausible(1e-3, 100.0, "1 is the reference's own speed");
+pub(super) const MARGIN: Quantity = Quantity::positive("largest share of a limit, 0.9 for nine tenths", "")
+    .plausible(0.01, 1.0, "1 is the limit itself: is it in percent?");
 pub(super) const TIME: Quantity = Quantity::any("time", "s");
 pub(super) const START: Quantity = Quantity::non_negative("time of departure", "s");
 pub(super) const ANGLE: Quantity =

@@ -84,40 +84,117 @@ impl Reference {
     }
 }
 
+/// How the robot joins the reference from where it is and how it moves at t = 0: `[reference.smooth_start]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SmoothStart {
+    /// Time in which the reference is reached \[s\].
+    pub duration: f64,
+    /// Time in which the robot's own motion would come to rest; `duration` unless given \[s\].
+    pub settle: f64,
+}
+
+impl SmoothStart {
+    /// Reaching the reference, and the end of the robot's own motion, in `duration` seconds.
+    pub const fn within(duration: f64) -> Self {
+        Self { duration, settle: duration }
+    }
+}
+
+/// Another clock for the reference: `[reference.time_scaling]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimeScaling {
+    /// Seconds of the reference per second of the run.
+    pub speed: Speed,
+    /// Time in which the clock gets from rest to its speed, if it does not run at it from the start \[s\].
+    pub rise: Option<f64>,
+}
+
+/// How fast a clock goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Speed {
+    /// As given, > 0.
+    Given(f64),
+    /// The largest up to 1 that [`feasible`](crate::feasible) finds for this share of the robot's limits, > 0 and ≤ 1.
+    Within(f64),
+}
+
+/// A reference with what is done to it.
+pub(super) struct Timed {
+    pub reference: Reference,
+    pub smooth_start: Option<SmoothStart>,
+    pub time_scaling: Option<TimeScaling>,
+}
+
 /// A kind of reference: its keys and its reader. One line adds one.
 type Reader = (&'static [&'static str], fn(&Table<'_>, &Joints, &Base, f64) -> Option<Reference>);
 
-const POINT_TO_POINT: &[&str] = &["kind", "smooth_start", "from", "to", "start", "duration"];
+/// Keys of every kind.
+const COMMON: &[&str] = &["kind", "smooth_start", "time_scaling"];
+
+const POINT_TO_POINT: &[&str] = &["from", "to", "start", "duration"];
 
 const KINDS: &[(&str, Reader)] = &[
-    ("sine", (&["kind", "smooth_start", "offset", "amplitude", "frequency", "phase"], sine)),
-    ("multisine", (&["kind", "smooth_start", "offset", "term"], multisine)),
+    ("sine", (&["offset", "amplitude", "frequency", "phase"], sine)),
+    ("multisine", (&["offset", "term"], multisine)),
     ("quintic", (POINT_TO_POINT, |table, joints, _, _| point_to_point(table, joints, Profile::Quintic))),
     ("septic", (POINT_TO_POINT, |table, joints, _, _| point_to_point(table, joints, Profile::Septic))),
     ("nonic", (POINT_TO_POINT, |table, joints, _, _| point_to_point(table, joints, Profile::Nonic))),
-    (
-        "samples",
-        (&["kind", "smooth_start", "file"], |table, joints, base, end| {
-            samples::read(table, joints, base, end)
-        }),
-    ),
+    ("samples", (&["file"], |table, joints, base, end| samples::read(table, joints, base, end))),
 ];
 
-/// Reads `[reference]` for a run of `end` seconds (NaN if that is not known), and the time of its smooth start \[s\].
-#[expect(clippy::option_option, reason = "bad, absent and good are three cases")]
-pub(super) fn read(
-    field: &Field<'_>,
-    joints: &Joints,
-    base: &Base,
-    end: f64,
-) -> (Option<Reference>, Option<Option<f64>>) {
-    let Some(table) = field.any_table() else { return (None, None) };
-    let smooth_start = table.optional("smooth_start", |field| {
-        field.table(&["duration"])?.number("duration", &quantity::DURATION)
-    });
-    let Some((known, reader)) = table.choice("kind", KINDS) else { return (None, smooth_start) };
-    table.refuse_unknown(known);
-    (reader(&table, joints, base, end), smooth_start)
+/// Reads `[reference]` for a run of `end` seconds (NaN if that is not known).
+pub(super) fn read(field: &Field<'_>, joints: &Joints, base: &Base, end: f64) -> Option<Timed> {
+    let table = field.any_table()?;
+    let smooth_start = table.optional("smooth_start", smooth_start);
+    let time_scaling = table.optional("time_scaling", time_scaling);
+    let (own, reader) = table.choice("kind", KINDS)?;
+    table.refuse_unknown(&[COMMON, own].concat());
+    let speed = match time_scaling {
+        Some(Some(TimeScaling { speed: Speed::Given(speed), .. })) => speed,
+        _ => 1.0,
+    };
+    let reference = reader(&table, joints, base, end * speed);
+    Some(Timed { reference: reference?, smooth_start: smooth_start?, time_scaling: time_scaling? })
+}
+
+fn smooth_start(field: &Field<'_>) -> Option<SmoothStart> {
+    let table = field.table(&["duration", "settle"])?;
+    let duration = table.number("duration", &quantity::DURATION);
+    let settle = table.optional("settle", |field| field.number(&quantity::DURATION));
+    let (duration, settle) = (duration?, settle?);
+    Some(SmoothStart { duration, settle: settle.unwrap_or(duration) })
+}
+
+fn time_scaling(field: &Field<'_>) -> Option<TimeScaling> {
+    let table = field.table(&["speed", "margin", "rise"])?;
+    let rise = table.optional("rise", |field| field.number(&quantity::DURATION));
+    let speed = match (table.get("speed"), table.get("margin")) {
+        (Some(speed), None) => speed.number(&quantity::SPEED_OF_TIME).map(Speed::Given),
+        (None, Some(margin)) => share(&margin).map(Speed::Within),
+        (given, _) => {
+            let (what, help) =
+                (given.map_or("neither", |_| "both"), "speed = 0.5, or margin = 0.9 to have it found");
+            let message =
+                format!("{}: {what} of speed and margin are given, must be one of them", field.path);
+            field.error("time-scaling", message, help);
+            None
+        }
+    };
+    Some(TimeScaling { speed: speed?, rise: rise? })
+}
+
+/// A share of limits, up to all of them.
+fn share(field: &Field<'_>) -> Option<f64> {
+    let share = field.number(&quantity::MARGIN)?;
+    if share > 1.0 {
+        field.error(
+            "range",
+            format!("{} is {share}, must be <= 1", field.path),
+            quantity::MARGIN.described(),
+        );
+        return None;
+    }
+    Some(share)
 }
 
 fn sine(table: &Table<'_>, joints: &Joints, _: &Base, _: f64) -> Option<Reference> {

@@ -19,7 +19,7 @@ use super::links;
 use super::plant::{self, Plant};
 use super::provenance::{self, Assumption};
 use super::quantity;
-use super::reference::{self, Reference};
+use super::reference::{self, Reference, SmoothStart, TimeScaling, Timed};
 use super::robot::Robot;
 use super::source::Source;
 use super::table::Table;
@@ -50,8 +50,10 @@ pub struct Scenario {
     pub initial: Initial,
     /// Where the links shall be.
     pub reference: Reference,
-    /// Time in which the robot joins the reference from where it is at t = 0, if it does \[s\].
-    pub smooth_start: Option<f64>,
+    /// Another clock for the reference, if it has one.
+    pub time_scaling: Option<TimeScaling>,
+    /// How the robot joins the reference from where it is and how it moves at t = 0, if it does.
+    pub smooth_start: Option<SmoothStart>,
     /// What the simulated robot has that the law does not know.
     pub plant: Plant,
     /// The law.
@@ -161,21 +163,21 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> 
     let initial = initial::read(root, &joints, places, &mut assumed);
     let reference_field = root.required("reference", "a table with the kind");
     let end = times.map_or(f64::NAN, |(duration, _)| duration);
-    let (reference, smooth_start) =
-        reference_field.as_ref().map_or((None, None), |field| reference::read(field, &joints, base, end));
+    let timed = reference_field.as_ref().and_then(|field| reference::read(field, &joints, base, end));
     let controller = root.required("controller", "a table with the kind");
     let controller = controller.and_then(|field| controller::read(&field, &joints));
     let plant = plant::read(root, &joints, robot.as_ref());
     let context = Context { joints: &joints, robot: robot.as_ref(), times, base };
     let real = real_loop(root, &context, hold, plant.as_ref());
     let own = provenance::assumptions(root, places);
-    if let (Some(field), Some(reference), Some(None), Some(initial)) =
-        (reference_field, &reference, smooth_start, &initial)
-    {
-        check_start(&field, robot.as_ref(), reference, initial);
+    if let (Some(field), Some(timed), Some(initial)) = (reference_field, &timed, &initial) {
+        if timed.smooth_start.is_none() {
+            check_start(&field, robot.as_ref(), &timed.reference, initial);
+        }
     }
     assumed.extend(own?);
     let ((duration, control_period), real, robot) = (times?, real?, robot?);
+    let Timed { reference, smooth_start, time_scaling } = timed?;
     Some(Scenario {
         name: stem(places.file()),
         warnings: robot.warnings.clone(),
@@ -184,8 +186,9 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> 
         control_period,
         hold: hold?,
         initial: initial?,
-        reference: reference?,
-        smooth_start: smooth_start?,
+        reference,
+        time_scaling,
+        smooth_start,
         plant: plant?,
         controller: controller?,
         imperfections: real.imperfections,

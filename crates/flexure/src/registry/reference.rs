@@ -1,13 +1,16 @@
 //! The references by name.
 
 use flexure_core::linalg::Vector;
-use flexure_core::reference::{Multisine, PointToPoint, Reference, Sine, SmoothStart, Smoothstep, Term};
+use flexure_core::model::{Fjr, Links, Motion};
+use flexure_core::reference::{
+    Clock, Multisine, PointToPoint, Reference, Retimed, Sine, SmoothStart, Smoothstep, Stop, Term,
+};
 use flexure_core::scalar::{Interval, Jet, Over, Piecewise, Scalar};
 
 use super::Entry;
-use super::robot::vector;
-use crate::io;
-use crate::reference::Samples;
+use super::robot::{RobotVisitor, vector, with_enclosed_robot, with_robot};
+use crate::reference::{Samples, when};
+use crate::{feasible, io};
 
 /// The registered references.
 pub const REFERENCES: &[Entry] = &[
@@ -34,40 +37,96 @@ pub enum AnyReference<C, const N: usize> {
     PointToPoint(PointToPoint<C, N>),
     /// Through samples.
     Samples(Samples<C, N>),
-    /// Any other, joined from rest.
+    /// Any of these, along another clock.
+    Retimed(Box<Retimed<C, AnyReference<C, N>>>),
+    /// Any of these, joined from the robot's motion.
     SmoothStart(Box<SmoothStart<C, AnyReference<C, N>, N>>),
 }
 
 impl<const N: usize> AnyReference<f64, N> {
-    /// The reference of a scenario, with its smooth start from the robot's initial position.
+    /// The reference of a scenario, at the speed of its time scaling, with its smooth start from the robot's initial
+    /// motion.
     ///
     /// # Errors
-    /// If there is no spline through the samples.
+    /// If there is no spline through the samples, the robot has too many joints, or no speed keeps it inside its limits.
     pub fn new(scenario: &io::Scenario) -> Result<Self, io::Problems> {
-        Self::over(scenario, |x| x)
+        Self::at_speed(scenario, feasible::speed(scenario)?)
+    }
+
+    /// The reference of a scenario at the speed of its time scaling, if it has one, replaced by `speed`.
+    pub(crate) fn at_speed(scenario: &io::Scenario, speed: f64) -> Result<Self, io::Problems> {
+        Self::over(scenario, speed, |x| x, |start| with_robot(&scenario.robot, start))
     }
 }
 
 impl<const N: usize> AnyReference<Interval, N> {
-    /// The reference of a scenario with its decimals enclosed, smooth start and initial position too.
+    /// The reference of a scenario with its decimals enclosed, smooth start and initial motion too. A speed that was
+    /// searched for is the float that was found.
     ///
     /// # Errors
-    /// If there is no spline through the samples.
+    /// As for [`new`](AnyReference::new).
     pub fn enclosed(scenario: &io::Scenario) -> Result<Self, io::Problems> {
-        Self::over(scenario, |x| scenario.bounds(x))
+        let speed = match scenario.time_scaling.map(|scaling| scaling.speed) {
+            Some(io::Speed::Given(speed)) => scenario.bounds(speed),
+            _ => Interval::point(feasible::speed(scenario)?),
+        };
+        let start = |start: Start<'_, _>| with_enclosed_robot(&scenario.robot, start);
+        Self::over(scenario, speed, |x| scenario.bounds(x), start)
+    }
+}
+
+/// The links' motion when a scenario begins, to the jerk: what the state says, by the model that the law has.
+struct Start<'a, F> {
+    initial: &'a io::Initial,
+    number: F,
+}
+
+impl<C: Over<C>, F: Fn(f64) -> C> RobotVisitor<C> for Start<'_, F> {
+    type Output = Vec<Jet<C, 4>>;
+
+    fn visit<L: Links<C, N> + Sync, const N: usize>(self, robot: Fjr<C, L, N>) -> Vec<Jet<C, 4>> {
+        let numbers = |values: &[f64]| vector(values).map(&self.number);
+        let io::Initial { q_l, q_m, dq_l, dq_m } = self.initial;
+        let x = Motion { q_l: numbers(q_l), q_m: numbers(q_m), v_l: numbers(dq_l), v_m: numbers(dq_m) };
+        robot.link_motion(&robot.links.factor(&x.q_l), &x).0.to_vec()
     }
 }
 
 impl<C: Scalar, const N: usize> AnyReference<C, N> {
-    /// The reference of a scenario with its numbers, but for samples, through `number`.
-    fn over(scenario: &io::Scenario, number: impl Fn(f64) -> C) -> Result<Self, io::Problems> {
+    /// The reference of a scenario with its numbers, but for samples and the speed, through `number`; `motion` says how a
+    /// robot that starts somewhere moves there.
+    fn over<F: Fn(f64) -> C + Copy>(
+        scenario: &io::Scenario,
+        speed: C,
+        number: F,
+        motion: impl FnOnce(Start<'_, F>) -> Result<Vec<Jet<C, 4>>, io::Problems>,
+    ) -> Result<Self, io::Problems> {
+        let path = Self::path(scenario, number)?;
+        let timed = match scenario.time_scaling {
+            Some(io::TimeScaling { rise, .. }) => {
+                let clock = match rise {
+                    Some(rise) => Clock::FromRest { speed, rise: number(rise) },
+                    None => Clock::Steady { speed },
+                };
+                Self::Retimed(Box::new(Retimed { clock, path }))
+            }
+            None => path,
+        };
+        let Some(io::SmoothStart { duration, settle }) = scenario.smooth_start else { return Ok(timed) };
+        let jets = motion(Start { initial: &scenario.initial, number })?;
+        let from = Stop { from: Vector::from_fn(|i| jets[i]), start: C::ZERO, duration: number(settle) };
+        Ok(Self::SmoothStart(Box::new(SmoothStart { from, duration: number(duration), then: timed })))
+    }
+
+    /// The path of a scenario at its own speed, without smooth start.
+    fn path(scenario: &io::Scenario, number: impl Fn(f64) -> C) -> Result<Self, io::Problems> {
         let vector = |values: &[f64]| vector(values).map(&number);
         let sine = |term: &io::Term| Term {
             amplitude: vector(&term.amplitude),
             frequency: vector(&term.frequency),
             phase: vector(&term.phase),
         };
-        let reference = match &scenario.reference {
+        Ok(match &scenario.reference {
             io::Reference::Sines { offset, terms } => match terms.as_slice() {
                 [term] => {
                     let Term { amplitude, frequency, phase } = sine(term);
@@ -92,16 +151,30 @@ impl<C: Scalar, const N: usize> AnyReference<C, N> {
                     step,
                 })
             }
-            io::Reference::Samples { t, q } => Self::Samples(path(scenario, t, q)?.map(C::from_f64)),
-        };
-        Ok(match scenario.smooth_start {
-            Some(duration) => {
-                let from = vector(&scenario.initial.q_l);
-                let duration = number(duration);
-                Self::SmoothStart(Box::new(SmoothStart::from_rest(from, duration, reference)))
-            }
-            None => reference,
+            io::Reference::Samples { t, q } => Self::Samples(spline(scenario, t, q)?.map(C::from_f64)),
         })
+    }
+
+    /// The same at another speed: the clock that is there, if any, goes at `speed`.
+    pub(crate) fn paced(&self, speed: C) -> Self {
+        match self {
+            Self::Retimed(retimed) => {
+                let clock = match retimed.clock {
+                    Clock::Steady { .. } => Clock::Steady { speed },
+                    Clock::FromRest { rise, .. } => Clock::FromRest { speed, rise },
+                };
+                Self::Retimed(Box::new(Retimed { clock, path: retimed.path.clone() }))
+            }
+            Self::SmoothStart(joined) => {
+                let then = joined.then.paced(speed);
+                Self::SmoothStart(Box::new(SmoothStart {
+                    from: joined.from,
+                    duration: joined.duration,
+                    then,
+                }))
+            }
+            path => path.clone(),
+        }
     }
 }
 
@@ -115,6 +188,9 @@ impl<const N: usize> AnyReference<Interval, N> {
             }
             Self::Sine(_) | Self::Multisine(_) | Self::PointToPoint(_) => Vec::new(),
             Self::Samples(path) => path.knots().collect(),
+            Self::Retimed(retimed) => {
+                retimed.path.breaks().into_iter().map(|s| when(&retimed.clock, s)).collect()
+            }
             Self::SmoothStart(joined) => joined.then.breaks(),
         }
     }
@@ -125,8 +201,15 @@ impl<const N: usize> AnyReference<Interval, N> {
         match self {
             Self::Sine(_) | Self::Multisine(_) | Self::Samples(_) => Vec::new(),
             Self::PointToPoint(motion) => vec![motion.start, motion.start + motion.duration],
+            Self::Retimed(retimed) => {
+                let ends = match retimed.clock {
+                    Clock::Steady { .. } => Vec::new(),
+                    Clock::FromRest { rise, .. } => vec![Interval::ZERO, rise],
+                };
+                retimed.path.kinks().into_iter().map(|s| when(&retimed.clock, s)).chain(ends).collect()
+            }
             Self::SmoothStart(joined) => {
-                let ends = [Interval::ZERO, joined.duration];
+                let ends = [Interval::ZERO, joined.from.duration, joined.duration];
                 joined.then.kinks().into_iter().chain(ends).collect()
             }
         }
@@ -134,7 +217,7 @@ impl<const N: usize> AnyReference<Interval, N> {
 }
 
 /// The spline through the samples of a scenario.
-fn path<const N: usize>(
+fn spline<const N: usize>(
     scenario: &io::Scenario,
     t: &[f64],
     q: &[Vec<f64>],
@@ -156,6 +239,7 @@ where
             Self::Multisine(reference) => reference.on(t),
             Self::PointToPoint(reference) => reference.on(t),
             Self::Samples(reference) => reference.on(t),
+            Self::Retimed(reference) => reference.on(t),
             Self::SmoothStart(reference) => reference.on(t),
         }
     }
@@ -169,6 +253,7 @@ where
             Self::Multisine(reference) => reference.at(t),
             Self::PointToPoint(reference) => reference.at(t),
             Self::Samples(reference) => reference.at(t),
+            Self::Retimed(reference) => reference.at(t),
             Self::SmoothStart(reference) => reference.at(t),
         }
     }

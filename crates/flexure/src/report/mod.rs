@@ -25,4 +25,4 @@ pub use figure::{FigureOptions, four_panel};
 pub use html::{Assumption, Report, RunReport, html};
 pub use proof_table::{certificate_table, proof_table};
 pub use raster::{RasterError, png};
-pub use table::{joint_table, summary_table};
+pub use table::{joint_table, summary_table, usage_table};

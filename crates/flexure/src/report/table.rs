@@ -5,6 +5,7 @@ use comfy_table::{
 };
 
 use super::number::{NONE, engineering, short};
+use crate::feasible::Usage;
 use crate::overview::JointRow;
 use crate::summary::Summary;
 
@@ -108,6 +109,19 @@ pub fn joint_table(joints: &[JointRow]) -> String {
         }
         let numbers = columns.iter().map(|(_, show)| right(show(joint).unwrap_or(NONE.to_owned())));
         table.add_row(Row::from(std::iter::once(Cell::new(name)).chain(numbers).collect::<Vec<_>>()));
+    }
+    table.to_string()
+}
+
+/// One row a limit that `joints` (their names) have, at most 100 columns wide, without colours.
+pub fn usage_table(joints: &[String], usages: &[Usage]) -> String {
+    let mut table = headed(["joint", "limit", "", "reference", "share", "t [s]"].into_iter());
+    for usage in usages {
+        let name = joints.get(usage.joint).map_or(NONE, String::as_str);
+        let numbers =
+            [short(usage.limit, 5), short(usage.value, 5), short(usage.share, 3), short(usage.time, 5)];
+        let words = [name, usage.key].map(Cell::new);
+        table.add_row(Row::from(words.into_iter().chain(numbers.map(right)).collect::<Vec<_>>()));
     }
     table.to_string()
 }

@@ -1,0 +1,81 @@
+//! Does a reference keep the limits of the robot, and how fast may it be run along?
+//!
+//! A flexible-joint robot is flat: the trajectory of its links decides motor torques, their rates, deflections and
+//! velocities, by exact inverse dynamics on Taylor series. They are looked at every control period and at least a thousand
+//! times a run, and once more at the top of each hump between. That is a dense sample, not a proof: `flexure certify
+//! --along` bounds what happens in between. And it is the reference that is asked, not the loop: a robot that starts off its
+//! reference needs more than the reference does.
+
+mod bounds;
+mod peaks;
+mod search;
+mod track;
+
+use serde::Serialize;
+
+use self::bounds::bounds;
+use self::peaks::{Course, peaks};
+pub use self::search::speed;
+use self::track::with_track;
+use crate::io::{Problem, Problems, Scenario};
+
+/// The largest share of a limit that is used along the reference.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Usage {
+    /// Index of the joint.
+    pub joint: usize,
+    /// The limit's key in robot files.
+    pub key: &'static str,
+    /// The limit.
+    pub limit: f64,
+    /// What comes closest to it, or is farthest beyond: N m, N m/s, rad or rad/s.
+    pub value: f64,
+    /// Part of the limit that this is: above 1 the limit is exceeded. Of a position, the distance from the middle of its
+    /// range over half of that; where the range is open on one side, 0 inside and infinite outside.
+    pub share: f64,
+    /// When, in s.
+    pub time: f64,
+}
+
+/// What the reference of `scenario` uses of each limit in the robot's file, joint by joint; nothing for a robot without
+/// limits. Torques that jump, or are infinite, because the reference is not smooth enough have an infinite rate or value.
+///
+/// # Errors
+/// If the robot has too many joints, the samples of the reference make no path, or no speed keeps it inside the limits.
+pub fn usage(scenario: &Scenario) -> Result<Vec<Usage>, Problems> {
+    let speed = speed(scenario)?;
+    with_track(scenario, |track| {
+        let bounds = bounds(&scenario.robot);
+        let peaks = peaks(&Course::new(scenario, track, speed), &bounds, search::fine(scenario));
+        bounds.iter().zip(peaks).map(|(bound, peak)| bound.usage(&peak)).collect()
+    })
+}
+
+/// What to say of each limit that the reference exceeds.
+pub fn exceeded(scenario: &Scenario, usage: &[Usage]) -> Vec<Problem> {
+    let beyond = usage.iter().filter(|usage| usage.share > 1.0);
+    beyond
+        .map(|usage| {
+            let message = format!("the reference exceeds a limit: {}", described(scenario, usage));
+            let help = if bounds::is_position(usage.key) {
+                "no speed mends that: choose another path, or end points inside the limits"
+            } else {
+                "run along it slower, [reference.time_scaling] with margin = 0.9 finds a speed; or join it in a longer \
+                 smooth_start.duration"
+            };
+            scenario.places.problem("reference", "limits", message, help)
+        })
+        .collect()
+}
+
+/// A usage in words.
+fn described(scenario: &Scenario, usage: &Usage) -> String {
+    let robot = &scenario.robot;
+    let joint = &robot.joints[usage.joint];
+    let (what, unit) = bounds::words(usage.key, joint.kind);
+    let share = if usage.share.is_finite() { format!(", {:.3} of it", usage.share) } else { String::new() };
+    format!(
+        "joint {}: {what} of {:.4} {unit} at t = {:.4} s, where {} is {} {unit}{share}",
+        joint.name, usage.value, usage.time, usage.key, usage.limit
+    )
+}
