@@ -23,6 +23,7 @@ pub mod sampling;
 pub mod sim;
 pub mod summary;
 pub mod trace;
+pub mod tune;
 pub mod verify;
 
 /// The program of the README, compiled and run with the tests of the documentation.

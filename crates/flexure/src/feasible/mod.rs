@@ -17,7 +17,7 @@ use self::bounds::bounds;
 use self::peaks::{Course, peaks};
 pub use self::search::speed;
 use self::track::with_track;
-use crate::io::{Problem, Problems, Scenario};
+use crate::io::{Problem, Problems, Scenario, Speed};
 
 /// The largest share of a limit that is used along the reference.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -66,6 +66,18 @@ pub fn exceeded(scenario: &Scenario, usage: &[Usage]) -> Vec<Problem> {
             scenario.places.problem("reference", "limits", message, help)
         })
         .collect()
+}
+
+/// The scenario with the speed of its reference found and written down, so that many runs need not search for it.
+///
+/// # Errors
+/// As [`speed`].
+pub fn pinned(scenario: &Scenario) -> Result<Scenario, Problems> {
+    let mut pinned = scenario.clone();
+    if let Some(scaling) = &mut pinned.time_scaling {
+        scaling.speed = Speed::Given(speed(scenario)?);
+    }
+    Ok(pinned)
 }
 
 /// A usage in words.

@@ -149,8 +149,6 @@ pub(super) const GEAR_RATIO: Quantity =
         .plausible(0.1, 1e5, "gears of arms lie between 1 and 500");
 pub(super) const TORQUE_LIMIT: Quantity =
     Quantity::positive("largest motor torque, link side of the gear", "N m");
-pub(super) const TORQUE_RATE_LIMIT: Quantity =
-    Quantity::positive("largest rate of the motor torque, link side of the gear", "N m/s");
 pub(super) const VELOCITY_LIMIT: Quantity = Quantity::positive("largest joint velocity", "rad/s");
 pub(super) const DEFLECTION_LIMIT: Quantity =
     Quantity::positive("largest deflection of the joint's spring", "rad")

@@ -10,8 +10,14 @@ use crate::io::{self, Encoders, Imperfection, VelocityFilter};
 
 /// The registered estimators.
 pub const ESTIMATORS: &[Entry] = &[
-    Entry { name: "velocity-filter", summary: "filtered differences of both encoders; an imperfection in scenario files" },
-    Entry { name: "observer", summary: "the model of the robot, corrected by both encoders or by those of the motors" },
+    Entry {
+        name: "velocity-filter",
+        summary: "filtered differences of both encoders; an imperfection in scenario files",
+    },
+    Entry {
+        name: "observer",
+        summary: "the model of the robot, corrected by both encoders or by those of the motors",
+    },
 ];
 
 /// Any registered estimator.
@@ -37,7 +43,9 @@ pub fn estimator<const N: usize>(
         let bandwidth = vector(bandwidth);
         return Some(match encoders {
             Encoders::Both => AnyEstimator::Observer(Observer::new(&bandwidth, period).expect(CHECKED)),
-            Encoders::Motor => AnyEstimator::MotorObserver(MotorObserver::new(&bandwidth, period).expect(CHECKED)),
+            Encoders::Motor => {
+                AnyEstimator::MotorObserver(MotorObserver::new(&bandwidth, period).expect(CHECKED))
+            }
         });
     }
     let filter = imperfections.iter().find_map(|imperfection| match imperfection {

@@ -9,7 +9,9 @@ use flexure_core::scalar::Jet;
 
 use crate::io::{self, Imperfection, PushShape, Robot, Scenario, Side};
 use crate::registry::{AnyEstimator, actuator, estimator, sensors, vector};
-use crate::sim::{ClosedLoop, Compensation, Controller, Friction, Guarded, Hold, Hysteresis, Plant, Push, Shape};
+use crate::sim::{
+    ClosedLoop, Compensation, Controller, Friction, Guarded, Hold, Hysteresis, Plant, Push, Shape,
+};
 
 /// Tolerated local error of the plant integrator, relative to the joint speeds.
 pub const TOLERANCE: f64 = 1e-10;
@@ -134,7 +136,8 @@ where
     controller.actuator = actuator(imperfections, *seed, *period, before);
     controller.estimator = estimator(scenario.estimator.as_ref(), imperfections, *period);
     controller.disturbance = scenario.disturbance_observer.as_ref().map(|settings| Compensation {
-        observer: DisturbanceObserver::new(&vector(&settings.bandwidth), *period).expect("bandwidths are above 0"),
+        observer: DisturbanceObserver::new(&vector(&settings.bandwidth), *period)
+            .expect("bandwidths are above 0"),
         compensate: settings.compensate,
     });
     controller.guard = scenario.guard.as_ref().map(|settings| guard(settings, *period, before));

@@ -58,8 +58,7 @@ impl<const N: usize> Figures<N> {
         self.instants += 1;
         self.max_abs_e_l = self.max_abs_e_l.max(error);
         self.final_abs_e_l = error;
-        self.settled_since =
-            if error < SETTLED { self.settled_since.or(Some(instant.t)) } else { None };
+        self.settled_since = if error < SETTLED { self.settled_since.or(Some(instant.t)) } else { None };
         self.max_abs_u_m = self.max_abs_u_m.max(torque);
         self.rate = self.rate.min(rate);
         let limited = (0..N).any(|k| u_m[k].abs() >= self.torque_limit[k]);
@@ -71,11 +70,9 @@ impl<const N: usize> Figures<N> {
         self.stopped = stopped;
         let change = self.last.map_or(Vector::ZERO, |last| u_m - last);
         self.last = Some(u_m);
-        for (sum, x) in [
-            (&mut self.squared_e_l, e_l),
-            (&mut self.squared_u_m, u_m),
-            (&mut self.squared_change, change),
-        ] {
+        for (sum, x) in
+            [(&mut self.squared_e_l, e_l), (&mut self.squared_u_m, u_m), (&mut self.squared_change, change)]
+        {
             *sum += x.map(|x| x * x);
         }
     }

@@ -91,8 +91,7 @@ impl PairVisitor for Simulate<'_> {
         let mut observe = |instant: &Instant<'_, N>| {
             let errors = match (&law, &recorder) {
                 (AnyLaw::Vcbc(law), Some(_)) => {
-                    let command =
-                        registry::command(law, &model, instant.motion, &instant.action.reference);
+                    let command = registry::command(law, &model, instant.motion, &instant.action.reference);
                     let rate = BlockRates::at(&model, law, &instant.motion.q_l, &command).overall();
                     Some((command, rate))
                 }

@@ -37,7 +37,8 @@ const MOTION: [Signal; 7] = [
     ("u_m", "N m"),
 ];
 /// Those of the v-CBC law.
-const ERRORS: [Signal; 4] = [("e_m", "rad"), ("sigma_l", "kg m^2/s"), ("sigma_m", "kg m^2/s"), ("u_l", "N m")];
+const ERRORS: [Signal; 4] =
+    [("e_m", "rad"), ("sigma_l", "kg m^2/s"), ("sigma_m", "kg m^2/s"), ("u_l", "N m")];
 /// Those of loops with devices.
 const DEVICES: [Signal; 6] = [
     ("q_l_seen", "rad"),
@@ -55,12 +56,14 @@ const STATUS: [Signal; 2] = [("certificate", ""), ("stopped", "")];
 
 impl Recorder {
     pub(super) fn new(joints: usize, columns: Columns) -> Self {
-        let per_joint =
-            |(name, unit): Signal| (1..=joints).map(move |k| (format!("{name}{k}"), unit)).collect::<Vec<_>>();
+        let per_joint = |(name, unit): Signal| {
+            (1..=joints).map(move |k| (format!("{name}{k}"), unit)).collect::<Vec<_>>()
+        };
         let scalar = |(name, unit): Signal| vec![(name.to_owned(), unit)];
         let (errors, devices) = (usize::from(columns.errors), usize::from(columns.devices));
         let vectors = MOTION.iter().chain(&ERRORS[..ERRORS.len() * errors]);
-        let vectors = vectors.chain(&DEVICES[..DEVICES.len() * devices]).flat_map(|&signal| per_joint(signal));
+        let vectors =
+            vectors.chain(&DEVICES[..DEVICES.len() * devices]).flat_map(|&signal| per_joint(signal));
         let scalars = ENERGY.iter().chain([RATE].iter().take(errors));
         let scalars = scalars.chain(&STATUS[..STATUS.len() * devices]).flat_map(|&signal| scalar(signal));
         let names = scalar(("t", "s")).into_iter().chain(vectors).chain(scalars);

@@ -200,7 +200,8 @@ impl<L: Links<f64, N>, const N: usize> World<'_, L, N> {
             let edges = self.pushes.iter().flat_map(|push| [push.from, push.until()]).map(|edge| edge - t);
             let next = edges.filter(|&edge| edge > done).fold(interval, f64::min);
             let (begin, length) = (t + done, next - done);
-            self.plant.external = self.pushes.iter().fold(Vector::ZERO, |sum, push| sum + push.mean(begin, length));
+            self.plant.external =
+                self.pushes.iter().fold(Vector::ZERO, |sum, push| sum + push.mean(begin, length));
             let moved = self.stepper.advance(&self.plant, x, begin, length, torque, &mut self.ledger);
             x = moved.map_err(|failure| StepFailure { after: done + failure.after })?;
             done = next;

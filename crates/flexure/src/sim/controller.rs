@@ -88,7 +88,17 @@ where
     pub fn ideal(robot: &'a Fjr<f64, L, N>, reference: &'a R, law: F) -> Self {
         let state = State { applied: Vector::ZERO, rejoined: None };
         let (sensors, actuator) = (Sensors::default(), Actuator::default());
-        Self { robot, reference, law, sensors, estimator: None, disturbance: None, guard: None, actuator, state }
+        Self {
+            robot,
+            reference,
+            law,
+            sensors,
+            estimator: None,
+            disturbance: None,
+            guard: None,
+            actuator,
+            state,
+        }
     }
 
     /// Starts over at the motion `x`, held by the motor torque `applied` [N m] until now.

@@ -1,7 +1,7 @@
 //! A search for the smallest value of a function that is expensive, has no derivatives and may be cliffs.
 
 use cobyla::{RhoBeg, minimize};
-use rand::distr::{Distribution, Uniform};
+use rand_distr::{Distribution, Uniform};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;
 
@@ -56,7 +56,16 @@ pub fn search(
     let bounds = vec![(-half_width, half_width); dimension];
     let unconstrained: [fn(&[f64], &mut ()) -> f64; 0] = [];
     // However it ends, what counts is the best point that was seen.
-    let _ = minimize(objective, &start, &bounds, &unconstrained, (), left, RhoBeg::All(FIRST_STEP * half_width), None);
+    let _ = minimize(
+        objective,
+        &start,
+        &bounds,
+        &unconstrained,
+        (),
+        left,
+        RhoBeg::All(FIRST_STEP * half_width),
+        None,
+    );
     tried.into_inner()
 }
 
@@ -90,7 +99,15 @@ mod tests {
     /// Costs that are infinite or no numbers on most of the region neither stop the search nor win it.
     #[test]
     fn survives_cliffs() {
-        let cliff = |x: &[f64]| if x[0] > 1.0 { f64::NAN } else if x[1] > 0.5 { f64::INFINITY } else { bowl(x) };
+        let cliff = |x: &[f64]| {
+            if x[0] > 1.0 {
+                f64::NAN
+            } else if x[1] > 0.5 {
+                f64::INFINITY
+            } else {
+                bowl(x)
+            }
+        };
         let best = search(3, 2.0, 80, 1, &cliff);
         assert!(best.cost < 0.01, "{best:?}");
     }

@@ -1,0 +1,65 @@
+//! Gains by search: the same effort for every law.
+
+mod search;
+
+pub use search::{Best, search};
+
+use crate::feasible;
+use crate::io::{Controller, Problems, Scenario};
+use crate::run::{Run, measure};
+
+/// Gains that were searched for, and what they cost.
+#[derive(Clone, Debug)]
+pub struct Tuned {
+    /// The law with the best gains.
+    pub controller: Controller,
+    /// Their [`cost`].
+    pub cost: f64,
+    /// What the search began with.
+    pub start_cost: f64,
+    /// Runs that were simulated.
+    pub evaluations: usize,
+}
+
+/// Largest factor, either way, between the gains that the search begins with and those that it tries: e³ ≈ 20.
+const HALF_WIDTH: f64 = 3.0;
+
+/// Torque changes per control period that are no chatter, as a part of the torque.
+const CHATTER: f64 = 0.05;
+
+/// Searches for the gains of the scenario's law that make its [`cost`] least, with at most `budget` runs. Every vector of gains
+/// is multiplied by a factor of its own, the same for all joints: what is searched is the logarithms of these factors.
+///
+/// # Errors
+/// As [`run`](crate::run::run).
+pub fn tune(scenario: &Scenario, budget: usize, seed: u64) -> Result<Tuned, Problems> {
+    let mut trial = feasible::pinned(scenario)?;
+    // Whatever is wrong with the scenario is so for all gains.
+    let start_cost = cost(&measure(&trial)?);
+    let gains: Vec<Vec<f64>> =
+        scenario.controller.gains().into_iter().map(|(_, values)| values.to_vec()).collect();
+    let scaled = |exponents: &[f64]| {
+        let scaled = gains.iter().zip(exponents).map(|(gain, x)| gain.iter().map(|g| g * x.exp()).collect());
+        scenario.controller.with_gains(&scaled.collect::<Vec<Vec<f64>>>())
+    };
+    let trials = std::cell::RefCell::new(&mut trial);
+    let at = |exponents: &[f64]| {
+        let mut trial = trials.borrow_mut();
+        trial.controller = scaled(exponents);
+        measure(&trial).map_or(f64::INFINITY, |run| cost(&run))
+    };
+    let best = search(gains.len(), HALF_WIDTH, budget, seed, &at);
+    Ok(Tuned { controller: scaled(&best.at), cost: best.cost, start_cost, evaluations: best.evaluations })
+}
+
+/// What a run costs: ln(e √(1 + (c / 0.05)²)), with e the root mean square error of the links in rad and c how much the torque
+/// changes from one control instant to the next, as a part of the torque: gains that track well by chattering are no
+/// good gains. A loop that diverges costs more than any that does not, the more the earlier.
+pub fn cost(run: &Run) -> f64 {
+    let summary = &run.summary;
+    if let Some(divergence) = run.divergence {
+        return 1e3 / (1.0 + divergence.time);
+    }
+    let chatter = summary.rms_torque_change / summary.rms_u_m.max(f64::MIN_POSITIVE) / CHATTER;
+    summary.rms_e_l.max(1e-12).ln() + 0.5 * (1.0 + chatter * chatter).ln()
+}
