@@ -74,6 +74,11 @@ pub enum Command {
         #[arg(value_name = "CERTIFICATE")]
         certificate: PathBuf,
     },
+    /// Measure how much delay, gain error, stiffness error and noise a loop bears, by bisection in simulation.
+    Margins {
+        /// Scenario file, or the name of a built-in scenario.
+        scenario: String,
+    },
     /// List what is registered.
     List {
         /// What to list; everything if left out.

@@ -10,6 +10,7 @@ pub mod evaluate;
 pub mod experiment;
 pub mod feasible;
 pub mod io;
+pub mod margins;
 pub mod overview;
 pub mod paper;
 pub mod proof;

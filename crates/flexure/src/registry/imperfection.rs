@@ -7,7 +7,7 @@ use super::robot::vector;
 use crate::io::{self, Imperfection, Side};
 use crate::sim::imperfection::{
     Actuating, Actuator, CurrentQuantisation, Deadlines, Delay, Dropout, Encoder, Missed, Noise, Outage,
-    PerSide, Random, Sampling, Saturation, Sensing, Sensors, Slew,
+    PerSide, Random, Sampling, Saturation, Sensing, Sensors, Slew, TorqueGain,
 };
 
 /// The registered imperfections.
@@ -21,6 +21,7 @@ pub const IMPERFECTIONS: &[Entry] = &[
     Entry { name: "dropout", summary: "sensors that fall silent for a while, holding or giving NaN" },
     Entry { name: "velocity-filter", summary: "velocities as filtered differences of positions" },
     Entry { name: "deadline", summary: "control instants that the law misses" },
+    Entry { name: "torque-gain", summary: "drives that give more or less torque than is asked for" },
     Entry { name: "current-quantisation", summary: "motor torque in steps" },
     Entry { name: "saturation", summary: "largest motor torque" },
     Entry { name: "torque-rate", summary: "largest rate of the motor torque" },
@@ -127,6 +128,7 @@ fn actuating<const N: usize>(
         Imperfection::Deadline(io::Deadline::Every(every)) => {
             Box::new(Deadlines::new(Missed::Every(*every), before))
         }
+        Imperfection::TorqueGain(factor) => Box::new(TorqueGain(vector(factor))),
         Imperfection::CurrentQuantisation(step) => Box::new(CurrentQuantisation(vector(step))),
         Imperfection::Saturation(limit) => Box::new(Saturation(vector(limit))),
         Imperfection::TorqueRate(rate) => Box::new(Slew::new(vector(rate), before)),

@@ -79,6 +79,12 @@ pub(super) fn deadline(table: &Table<'_>, _: &Context<'_>) -> Option<Imperfectio
     Some(Imperfection::Deadline(deadline))
 }
 
+pub(super) const TORQUE_GAIN: &[&str] = &["kind", "factor"];
+
+pub(super) fn torque_gain(table: &Table<'_>, context: &Context<'_>) -> Option<Imperfection> {
+    table.per_joint("factor", context.joints, &quantity::TORQUE_FACTOR).map(Imperfection::TorqueGain)
+}
+
 pub(super) const SATURATION: &[&str] = &["kind", "limit"];
 
 pub(super) fn saturation(table: &Table<'_>, context: &Context<'_>) -> Option<Imperfection> {

@@ -35,6 +35,8 @@ pub enum Imperfection {
     Delay(Delay),
     /// The law misses some control instants: kind `deadline`.
     Deadline(Deadline),
+    /// What the motor torque is multiplied by > 0: kind `torque-gain`.
+    TorqueGain(Vec<f64>),
     /// Largest motor torque > 0 [N m]: kind `saturation`.
     Saturation(Vec<f64>),
     /// Largest rate of the motor torque > 0 [N m/s]: kind `torque-rate`.
@@ -108,6 +110,7 @@ impl Imperfection {
             Self::VelocityFilter(_) => "velocity-filter",
             Self::Delay(_) => "delay",
             Self::Deadline(_) => "deadline",
+            Self::TorqueGain(_) => "torque-gain",
             Self::Saturation(_) => "saturation",
             Self::TorqueRate(_) => "torque-rate",
             Self::CurrentQuantisation(_) => "current-quantisation",
@@ -147,6 +150,7 @@ const KINDS: &[(&str, Reader)] = &[
     ("velocity-filter", (sensing::VELOCITY_FILTER, sensing::velocity_filter)),
     ("delay", (actuation::DELAY, actuation::delay)),
     ("deadline", (actuation::DEADLINE, actuation::deadline)),
+    ("torque-gain", (actuation::TORQUE_GAIN, actuation::torque_gain)),
     ("saturation", (actuation::SATURATION, actuation::saturation)),
     ("torque-rate", (actuation::TORQUE_RATE, actuation::torque_rate)),
     ("current-quantisation", (actuation::CURRENT_QUANTISATION, actuation::current_quantisation)),

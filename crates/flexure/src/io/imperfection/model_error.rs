@@ -36,6 +36,20 @@ pub struct Factors {
     pub motor_inertia: Vec<f64>,
 }
 
+impl Factors {
+    /// All 1: the robot as it is known.
+    pub fn ones(joints: usize) -> Self {
+        let ones = || vec![1.0; joints];
+        Self {
+            mass: ones(),
+            stiffness: ones(),
+            link_damping: ones(),
+            motor_damping: ones(),
+            motor_inertia: ones(),
+        }
+    }
+}
+
 /// A point mass on the last body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Payload {

@@ -1,0 +1,68 @@
+//! A scenario with a little more of one imperfection.
+
+use crate::io::{Delay, Factors, Imperfection, ModelError, Noise, Scenario};
+
+/// What is changed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Change {
+    /// Delay from command to torque, added, in s.
+    Delay(f64),
+    /// Factor on the motor torque.
+    TorqueGain(f64),
+    /// Factor on the springs of the simulated robot.
+    Stiffness(f64),
+    /// Standard deviation of white noise on all measured positions, added, in rad.
+    Noise(f64),
+}
+
+impl Change {
+    /// `scenario` with this change, on top of what it has.
+    pub fn of(self, scenario: &Scenario) -> Scenario {
+        let mut changed = scenario.clone();
+        let joints = scenario.robot.joint_count();
+        let is_there = changed.imperfections.iter_mut().any(|imperfection| self.enter(imperfection));
+        if !is_there {
+            changed.imperfections.push(self.alone(joints));
+        }
+        changed
+    }
+
+    /// Adds to `imperfection` if it is of this kind.
+    fn enter(self, imperfection: &mut Imperfection) -> bool {
+        let multiply = |values: &mut Vec<f64>, factor: f64| values.iter_mut().for_each(|x| *x *= factor);
+        match (self, imperfection) {
+            (Self::Delay(more), Imperfection::Delay(delay)) => delay.actuation += more,
+            (Self::TorqueGain(factor), Imperfection::TorqueGain(gain)) => multiply(gain, factor),
+            (Self::Stiffness(factor), Imperfection::ModelError(error)) => {
+                multiply(&mut error.factors.stiffness, factor);
+            }
+            (Self::Noise(more), Imperfection::Noise(noise)) => {
+                for deviation in noise.link.iter_mut().chain(&mut noise.motor) {
+                    *deviation = deviation.hypot(more);
+                }
+            }
+            _ => return false,
+        }
+        true
+    }
+
+    /// The imperfection that is this change and nothing else.
+    fn alone(self, joints: usize) -> Imperfection {
+        let all = |x: f64| vec![x; joints];
+        match self {
+            Self::Delay(actuation) => Imperfection::Delay(Delay { computation: 0.0, actuation }),
+            Self::TorqueGain(factor) => Imperfection::TorqueGain(all(factor)),
+            Self::Stiffness(factor) => Imperfection::ModelError(Box::new(ModelError {
+                robot: None,
+                factors: Factors { stiffness: all(factor), ..Factors::ones(joints) },
+                payload: None,
+            })),
+            Self::Noise(deviation) => Imperfection::Noise(Noise {
+                link: all(deviation),
+                motor: all(deviation),
+                link_velocity: all(0.0),
+                motor_velocity: all(0.0),
+            }),
+        }
+    }
+}

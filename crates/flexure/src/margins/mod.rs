@@ -1,0 +1,130 @@
+//! How much a loop bears: delay, gain, stiffness and noise, by bisection in simulation.
+
+mod change;
+mod edge;
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+pub use change::Change;
+pub use edge::Edge;
+
+use crate::feasible;
+use crate::io::{Hold, Problem, Problems, Scenario};
+use crate::run::{Run, measure};
+
+/// What a loop bears beyond its scenario.
+#[derive(Clone, Debug, Serialize)]
+pub struct Margins {
+    /// Scenario name.
+    pub name: String,
+    /// Controller kind.
+    pub controller: String,
+    /// Shaping function of a v-CBC law.
+    pub phi: Option<String>,
+    /// Root mean square link error of the scenario as it is, in rad; none if it diverges.
+    pub rms_e_l: Option<f64>,
+    /// Root mean square link error up to which the loop counts as holding, in rad.
+    pub allowed_rms_e_l: f64,
+    /// Delay from command to torque that may be added, in s.
+    pub delay: Edge,
+    /// Factor by which the motor torque may be too small.
+    pub gain_low: Edge,
+    /// Factor by which it may be too large.
+    pub gain_high: Edge,
+    /// Factor by which the springs may be softer than the model.
+    pub stiffness_low: Edge,
+    /// Factor by which they may be stiffer.
+    pub stiffness_high: Edge,
+    /// Standard deviation of white noise that may be added to all measured positions, in rad.
+    pub noise: Edge,
+    /// Root mean square link error per standard deviation of little noise on all measured positions [rad/rad].
+    pub noise_to_error: Option<f64>,
+    /// Root mean square change of the motor torque from one control instant to the next, per standard deviation of that noise
+    /// [N m/rad].
+    pub noise_to_torque: Option<f64>,
+    /// Runs that were simulated.
+    pub runs: usize,
+}
+
+/// A loop holds if it does not diverge and its error is at most this many times what it is without the change …
+const TIMES: f64 = 10.0;
+
+/// … or larger by at most this, in rad.
+const BY: f64 = 0.01;
+
+/// Noise in rad that is little: a loop answers to it as to a small signal.
+const LITTLE: f64 = 1e-6;
+
+/// Measures the margins of a scenario's loop. Each is where the loop still holds on the way from the scenario as it is: loops that
+/// hold again farther out are not looked for.
+///
+/// # Errors
+/// As [`run`](crate::run::run), and for a loop in continuous time, which has no devices that could be late.
+pub fn margins(scenario: &Scenario) -> Result<Margins, Problems> {
+    if scenario.hold == Hold::Continuous {
+        let message = "hold is \"continuous\": margins are of loops with control periods";
+        let help = "remove hold: the torque is then held between control instants";
+        return Err(scenario.places.problem("hold", "unsupported", message.to_owned(), help).into());
+    }
+    let scenario = feasible::pinned(scenario)?;
+    let nominal = measure(&scenario)?;
+    let rms = nominal.divergence.is_none().then_some(nominal.summary.rms_e_l);
+    let allowed = rms.map_or(BY, |rms| (TIMES * rms).max(rms + BY));
+    let holds = |run: &Run| run.divergence.is_none() && run.summary.rms_e_l <= allowed;
+    let try_change = |change: Change| Ok(holds(&measure(&change.of(&scenario))?));
+    let period = scenario.control_period;
+    let searches: [(fn(f64) -> Change, edge::Way); 6] = [
+        (Change::Delay, edge::Way::outward(0.0, 0.125 * period, scenario.duration / 4.0)),
+        (Change::TorqueGain, edge::Way::inward(1.0, 0.01)),
+        (Change::TorqueGain, edge::Way::inward(1.0, 100.0)),
+        (Change::Stiffness, edge::Way::inward(1.0, 0.01)),
+        (Change::Stiffness, edge::Way::inward(1.0, 100.0)),
+        (Change::Noise, edge::Way::outward(0.0, 1e-6, 1.0)),
+    ];
+    let found: Vec<Result<(Edge, usize), Problems>> = searches
+        .par_iter()
+        .map(|(change, way)| if rms.is_some() { way.edge(&|x| try_change(change(x))) } else { Ok((Edge::Nowhere, 0)) })
+        .collect();
+    let mut edges = Vec::new();
+    let mut runs = 1;
+    for found in found {
+        let (edge, tried) = found?;
+        edges.push(edge);
+        runs += tried;
+    }
+    let noisy = measure(&Change::Noise(LITTLE).of(&scenario))?;
+    let per_noise = |of: fn(&Run) -> f64| {
+        let excess = of(&noisy).powi(2) - of(&nominal).powi(2);
+        (rms.is_some() && noisy.divergence.is_none()).then(|| excess.max(0.0).sqrt() / LITTLE)
+    };
+    let [delay, gain_low, gain_high, stiffness_low, stiffness_high, noise] =
+        edges.try_into().expect("six searches");
+    Ok(Margins {
+        name: scenario.name.clone(),
+        controller: scenario.controller.kind().to_owned(),
+        phi: scenario.controller.phi().map(str::to_owned),
+        rms_e_l: rms,
+        allowed_rms_e_l: allowed,
+        delay,
+        gain_low,
+        gain_high,
+        stiffness_low,
+        stiffness_high,
+        noise,
+        noise_to_error: per_noise(|run| run.summary.rms_e_l),
+        noise_to_torque: per_noise(|run| run.summary.rms_torque_change),
+        runs: runs + 1,
+    })
+}
+
+impl Margins {
+    /// Says that the loop does not even hold as it is, if so.
+    pub fn objection(&self, scenario: &Scenario) -> Option<Problem> {
+        self.rms_e_l.is_none().then(|| {
+            let message = format!("{}: the loop diverges as it is: it has no margins", self.name);
+            let help = "lower the gains, shorten control_period, or join the reference smoothly; `flexure run` shows how it diverges";
+            scenario.places.problem("controller", "diverged", message, help)
+        })
+    }
+}
