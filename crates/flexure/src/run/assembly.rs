@@ -74,7 +74,8 @@ pub(super) fn plant<L, const N: usize>(scenario: &Scenario, robot: Fjr<f64, L, N
             }
             Imperfection::Spring(spring) => {
                 plant.spring_hardening += vector(&spring.hardening);
-                plant.spring_gap = vector(&spring.dead_zone);
+                // The file gives it to either side.
+                plant.spring_gap = vector(&spring.dead_zone).scaled(2.0);
                 plant.hysteresis = Hysteresis {
                     stiffness: vector(&spring.hysteresis_stiffness),
                     yield_torque: vector(&spring.hysteresis_torque),

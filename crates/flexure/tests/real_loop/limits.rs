@@ -1,0 +1,31 @@
+//! What happens while a limit is hit, and after.
+
+use flexure::io::Scenario;
+
+use super::{ideal, simulate, with};
+
+/// A push that the drives cannot answer: the torque stays at its limit, the certificate is suspended in the same step, and when
+/// the push is over the loop goes where a loop without limits goes. Nothing winds up: there is nothing that could.
+#[test]
+fn a_limit_that_was_hit_leaves_nothing_behind() {
+    let push = "[[imperfection]]\nkind = \"push\"\ntorque = [0.0, 1.2]\nfrom = 5.0\nduration = 0.5\n";
+    let guard = "[guard]\ntorque_limit = [8.39, 1.5]\nstop_damping = 1.0\n";
+    let parts = with("two-link-tanh-smooth", 1.0, &format!("{push}{guard}"));
+    let free = Scenario { imperfections: parts.imperfections, ..ideal(12.0) };
+    let guarded = simulate(&Scenario { guard: parts.guard, ..free.clone() });
+    let free = simulate(&free);
+    let (t, certificate) = (guarded.trace.column("t").unwrap(), guarded.trace.column("certificate").unwrap());
+    let u = guarded.trace.column("u_command2").unwrap();
+    let at_limit: Vec<f64> = (0..t.len()).filter(|&k| u[k].abs() >= 1.5).map(|k| t[k]).collect();
+    assert!(!at_limit.is_empty(), "the push is strong enough");
+    for k in 0..t.len() {
+        assert_eq!(certificate[k] == 0.0, u[k].abs() >= 1.5, "at {} s", t[k]);
+        assert!(u[k].abs() <= 1.5);
+    }
+    // Three seconds after the last touch the loops agree but for what the gains, of rates above 3 1/s, leave of the error.
+    let after = at_limit.last().unwrap() + 3.0;
+    let (a, b) = (guarded.trace.column("e_l2").unwrap(), free.trace.column("e_l2").unwrap());
+    let late = (0..t.len()).filter(|&k| t[k] > after);
+    let apart = late.map(|k| (a[k] - b[k]).abs()).fold(0.0, f64::max);
+    assert!(apart < 1e-4, "{apart} after {after} s");
+}

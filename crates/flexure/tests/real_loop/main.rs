@@ -1,0 +1,50 @@
+//! Whole loops with imperfections, estimators and guards, as scenario files describe them.
+
+mod effects;
+mod faults;
+mod hardware;
+mod identity;
+mod limits;
+
+use std::path::Path;
+
+use flexure::io::{Scenario, load_scenario, scenario_from_text};
+use flexure::run::{Run, run};
+
+/// A built-in scenario with tables added to its text, `duration` s long.
+pub fn with(name: &str, duration: f64, more: &str) -> Scenario {
+    let text = flexure::io::SCENARIOS.iter().find(|(known, _)| *known == name).expect("built in").1;
+    let lines: Vec<String> = text
+        .lines()
+        .map(|line| if line.starts_with("duration = ") { format!("duration = {duration}") } else { line.to_owned() })
+        .collect();
+    let text = format!("{}\n{more}\n", lines.join("\n"));
+    scenario_from_text(name, &text, Path::new(".")).unwrap_or_else(|problems| panic!("{problems}\n{text}"))
+}
+
+/// The ideal loop on the plausible arm: 2 ms, the gains of its hardware scenario.
+pub fn ideal(duration: f64) -> Scenario {
+    let mut scenario = load_scenario("two-link-hardware").expect("built in");
+    scenario.duration = duration;
+    scenario.imperfections.clear();
+    scenario.guard = None;
+    scenario
+}
+
+pub fn simulate(scenario: &Scenario) -> Run {
+    run(scenario, &|_| ()).expect("a robot of two joints")
+}
+
+/// Whether two runs have the same bits in every column that both have, and how many those are.
+pub fn same_bits(a: &Run, b: &Run) -> usize {
+    let mut common = 0;
+    for column in a.trace.columns() {
+        let Some(other) = b.trace.column(&column.name) else { continue };
+        common += 1;
+        assert_eq!(column.values.len(), other.len(), "{}", column.name);
+        for (k, (x, y)) in column.values.iter().zip(other).enumerate() {
+            assert_eq!(x.to_bits(), y.to_bits(), "{} differs at instant {k}: {x} and {y}", column.name);
+        }
+    }
+    common
+}
