@@ -4,16 +4,16 @@ use std::path::Path;
 
 use flexure::core::control::ControlLaw;
 use flexure::core::linalg::Vector;
-use flexure::core::model::{Fjr, Links, Motion};
-use flexure::core::reference::Reference as _;
-use flexure::core::scalar::{Dual, Interval, Jet, Over};
+use flexure::core::model::{Fjr, Motion};
+use flexure::core::robots::Tree;
+use flexure::core::scalar::{Dual, Interval, Jet, Scalar};
 use flexure::evaluate::evaluate_law;
 use flexure::io::{
-    BASELINES, Controller, Problems, Robot, Scenario, StateFile, StateRow, load_robot, load_scenario,
+    BASELINES, Controller, Links, Problems, Robot, Scenario, StateFile, StateRow, load_robot, load_scenario,
     scenario_from_text,
 };
 use flexure::proof::{Question, prove};
-use flexure::registry::{AnyReference, CONTROLLERS, RobotVisitor, any_law, with_enclosed_robot, with_robot};
+use flexure::registry::{CONTROLLERS, any_law};
 use flexure::run::run;
 
 const HEAD: &str = "robot = \"planar-2r\"\nduration = 1.0\ncontrol_period = 0.001\n\
@@ -158,69 +158,65 @@ fn rows_of_other_laws_leave_out_what_only_v_cbc_has() {
     }
 }
 
-/// A motion near the reference of a scenario at one second.
-fn near<const N: usize>(q_ld: &Vector<Jet<f64, 5>, N>) -> Motion<f64, N> {
+/// Three joints under gravity: the bodies of a built-in arm with numbers through `number`. One joint count only: every
+/// registered law on every number is much code.
+fn arm<C: Scalar>(
+    robot: &Robot,
+    number: impl Fn(f64) -> C,
+    near: impl Fn(C) -> f64,
+) -> Fjr<C, Tree<C, 3>, 3> {
+    let Links::Tree(bodies) = &robot.links else { panic!("a tree") };
+    let bodies: Vec<_> = bodies.iter().map(|body| body.map(&number)).collect();
+    let vector = |values: &[f64]| Vector::from_fn(|i| number(values[i]));
+    Fjr {
+        links: Tree::from_bodies(&std::array::from_fn(|i| bodies[i]), robot.gravity.map(&number), near)
+            .expect("parents come first"),
+        motor_inertia: vector(&robot.motor_inertia),
+        stiffness: vector(&robot.stiffness),
+        link_damping: vector(&robot.link_damping),
+        motor_damping: vector(&robot.motor_damping),
+    }
+}
+
+/// A reference in general position, and a motion near it.
+fn place() -> (Motion<f64, 3>, Vector<Jet<f64, 5>, 3>) {
+    let q_ld: Vector<Jet<f64, 5>, 3> = Vector::from_fn(|i| Jet::variable(0.4 + i as f64).sin());
     let [q, v, ..] = q_ld.derivatives();
     let off = |scale: f64| Vector::from_fn(|i| scale * (i as f64 + 1.0).sin());
-    Motion { q_l: q + off(0.01), q_m: q + off(0.012), v_l: v + off(0.1), v_m: v + off(-0.1) }
+    (Motion { q_l: q + off(0.01), q_m: q + off(0.012), v_l: v + off(0.1), v_m: v + off(-0.1) }, q_ld)
 }
 
-struct Numbers<'a>(&'a Scenario);
-
-impl RobotVisitor for Numbers<'_> {
-    type Output = Vec<f64>;
-
-    /// The same values on duals and jets to the bit, the same rates on both; the torques on floats.
-    fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) -> Vec<f64> {
-        let law = any_law::<f64, N>(&self.0.controller, |x| x);
-        let q_ld = AnyReference::new(self.0).expect("a path").at::<5>(1.0);
-        let x = near(&q_ld);
-        let u = law.torque(&robot, &x, &q_ld);
-        let moving = |x: f64| (Dual { value: x, gradient: [x.sin()] }, Jet::<f64, 2>::new([x, x.sin()]));
-        let dual = law.torque(&robot, &x.map(|x| moving(x).0), &constant::<Dual<f64, 1>, N>(&q_ld));
-        let jet = law.torque(&robot, &x.map(|x| moving(x).1), &constant::<Jet<f64, 2>, N>(&q_ld));
-        for ((u, dual), jet) in u.iter().zip(dual.iter()).zip(jet.iter()) {
-            assert_eq!([dual.value, jet.coefficient(0)], [u, u]);
-            let (a, b) = (dual.gradient[0], jet.coefficient(1));
-            assert!((a - b).abs() <= 1e-9 * (1.0 + a.abs()), "{}: {a} and {b}", self.0.controller.kind());
-        }
-        u.iter().collect()
-    }
+fn on<T: Scalar>(q: &Vector<Jet<f64, 5>, 3>, number: impl Fn(f64) -> T) -> Vector<Jet<T, 5>, 3> {
+    q.map(|q| Jet::from_fn(|k| number(q.coefficient(k))))
 }
 
-fn constant<T: Over<f64>, const N: usize>(q: &Vector<Jet<f64, 5>, N>) -> Vector<Jet<T, 5>, N> {
-    q.map(|q| Jet::from_fn(|k| T::constant(q.coefficient(k))))
-}
-
-struct Enclosed<'a>(&'a Scenario);
-
-impl RobotVisitor<Interval> for Enclosed<'_> {
-    type Output = Vec<Interval>;
-
-    fn visit<L: Links<Interval, N> + Sync, const N: usize>(
-        self,
-        robot: Fjr<Interval, L, N>,
-    ) -> Vec<Interval> {
-        let law = any_law::<Interval, N>(&self.0.controller, |x| self.0.bounds(x));
-        let q_ld = AnyReference::<f64, N>::new(self.0).expect("a path").at::<5>(1.0);
-        let x = near(&q_ld).map(Interval::point);
-        let q_ld = q_ld.map(|q| Jet::from_fn(|k| Interval::point(q.coefficient(k))));
-        law.torque(&robot, &x, &q_ld).iter().collect()
-    }
-}
-
+/// The same values on duals and jets to the bit, the same rates on both, and intervals around them.
 #[test]
 fn every_law_runs_on_every_number() {
+    let data = load_robot("tomei-3r").expect("built in");
+    let (robot, enclosed) = (arm(&data, |x| x, |x| x), arm(&data, Interval::point, Interval::midpoint));
+    let (x, q_ld) = place();
     for kind in names() {
-        let scenario = panda(kind);
-        let robot: &Robot = &scenario.robot;
-        let floats = with_robot(robot, Numbers(&scenario)).expect("seven joints");
-        let bounds = with_enclosed_robot(robot, Enclosed(&scenario)).expect("seven joints");
-        for (u, bounds) in floats.iter().zip(&bounds) {
+        let controller = Controller::default_for(kind, &data).expect("registered");
+        let law = any_law::<f64, 3>(&controller, |x| x);
+        let u = law.torque(&robot, &x, &q_ld);
+        let dual_motion = x.map(|x| Dual::<f64, 1> { value: x, gradient: [x.sin()] });
+        let dual = law.torque(&robot, &dual_motion, &on(&q_ld, Dual::constant));
+        let jet = law.torque(&robot, &x.map(|x| Jet::<f64, 2>::new([x, x.sin()])), &on(&q_ld, Jet::value));
+        let law = any_law::<Interval, 3>(&controller, Interval::point);
+        let bounds = law.torque(&enclosed, &x.map(Interval::point), &on(&q_ld, Interval::point));
+        for i in 0..3 {
+            assert_eq!([dual[i].value, jet[i].coefficient(0)], [u[i], u[i]], "{kind}");
+            let (a, b) = (dual[i].gradient[0], jet[i].coefficient(1));
+            assert!((a - b).abs() <= 1e-9 * (1.0 + a.abs()), "{kind}: {a} and {b}");
             // Exact torques lie inside, floats a few thousand roundings from them.
-            let slack = 1e-10 * (1.0 + u.abs());
-            assert!(bounds.lo() - slack <= *u && *u <= bounds.hi() + slack, "{kind}: {u} and {bounds:?}");
-            assert!(bounds.width() < 1e-3 * (1.0 + u.abs()), "{kind}: {bounds:?}");
+            let slack = 1e-10 * (1.0 + u[i].abs());
+            assert!(
+                bounds[i].lo() - slack <= u[i] && u[i] <= bounds[i].hi() + slack,
+                "{kind}: {:?}",
+                bounds[i]
+            );
+            assert!(bounds[i].width() < 1e-3 * (1.0 + u[i].abs()), "{kind}: {:?}", bounds[i]);
         }
     }
 }

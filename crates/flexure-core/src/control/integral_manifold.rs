@@ -11,9 +11,9 @@ use crate::scalar::{Jet, Over, Scalar};
 /// Robotics and Automation 3, 1987; Spong 1987, section 5.
 ///
 /// On the manifold links obey ë + k_v ė + k_p e = 0 for every stiffness. With the accelerations that this makes of a link
-/// position and velocity, u_0 + μ u_1 is the inverse dynamics of the flexible robot: they are not computed apart. The springs
-/// off the manifold, in η = z − h, z = K (q − θ), are damped by u_f = −K_f K⁻¹ (−η̇) = −K_f (θ̇ − θ̇_h); μ must be small for the
-/// loop to be stable.
+/// position and velocity, u_0 + μ u_1 is the inverse dynamics of the flexible robot: they are not computed apart. Off the
+/// manifold, where motors are not at its θ_h, u_f = −K_f (θ̇ − θ̇_h) damps the springs; μ must be small for the loop to be
+/// stable.
 #[derive(Clone, Copy, Debug)]
 pub struct IntegralManifold<C, const N: usize> {
     /// k_p [1/s²].
