@@ -60,8 +60,10 @@ fn bad(guard: &mut Guard<f64, 2>, x: &Motion<f64, 2>, age: Age) -> Decision<f64,
 fn nasty(r: &mut Numbers) -> f64 {
     const VALUES: [f64; 10] =
         [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e308, -1e308, f64::MAX, 5e-324, 1e38, -1e38, -0.0];
-    let pick = (10.0 * (r.next() + 1.0)) as usize;
-    VALUES.get(pick).copied().unwrap_or_else(|| 3.0 * r.next())
+    // One number in two is sane.
+    let pick = 10.0 * (r.next() + 1.0);
+    let found = VALUES.iter().enumerate().find(|(i, _)| pick < *i as f64 + 1.0);
+    found.map_or_else(|| 3.0 * r.next(), |(_, value)| *value)
 }
 
 /// Whatever comes in, finite torques inside both limits go out, and a step that was decided by the law had a good reading.
