@@ -70,6 +70,7 @@ fn nasty(r: &mut Numbers) -> f64 {
 fn whatever_comes_in<C: Float + Debug>(epsilon: f64, seed: u64) {
     let mut r = Numbers(seed);
     let set = settings::<C>();
+    let mut followed = 0;
     for _ in 0..50 {
         let mut guard = Guard::new(set).expect("sound settings");
         let mut last: Vector<C, 2> = Vector::ZERO;
@@ -96,6 +97,7 @@ fn whatever_comes_in<C: Float + Debug>(epsilon: f64, seed: u64) {
             }
             let finite = |v: &Vector<C, 2>| v.iter().all(C::is_finite);
             if decision.status.phase == Phase::Following {
+                followed += 1;
                 assert!(
                     finite(&x.q_l) && finite(&x.q_m) && finite(&x.v_l) && finite(&x.v_m) && finite(&torque)
                 );
@@ -104,6 +106,8 @@ fn whatever_comes_in<C: Float + Debug>(epsilon: f64, seed: u64) {
             last = decision.torque;
         }
     }
+    // Of 20,000: both sides of the guard are tried.
+    assert!((1_000..19_000).contains(&followed), "{followed}");
 }
 
 #[test]

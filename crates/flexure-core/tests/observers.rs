@@ -212,20 +212,19 @@ type Estimate<'a> = &'a mut dyn FnMut(&Motion<f64, 2>, &Vector<f64, 2>) -> Motio
 #[test]
 fn what_remains_is_of_second_order() {
     let (arm, x) = (plausible_arm(), Motion::at_rest(Vector([0.3, -0.5])));
-    let remains =
-        |period: f64, estimator: &mut dyn FnMut(&Motion<f64, 2>, &Vector<f64, 2>) -> Motion<f64, 2>| {
-            let mut x = x;
-            let mut worst: f64 = 0.0;
-            for k in 0..(1.0 / period) as u32 {
-                // Held over 4 ms either way, so that both see the same robot.
-                let t = (f64::from(k) * period / 4e-3 + 1e-6).floor() * 4e-3;
-                let u = stirring(1.0, t);
-                x = advance(&arm, &x, &u, &Push::NONE, period, 20);
-                let estimate = estimator(&x, &u);
-                worst = if t > 0.6 { worst.max(distance(&estimate, &x, 50.0)) } else { worst };
-            }
-            worst
-        };
+    let remains = |period: f64, estimator: Estimate| {
+        let mut x = x;
+        let mut worst: f64 = 0.0;
+        for k in 0..(1.0 / period) as u32 {
+            // Held over 4 ms either way, so that both see the same robot.
+            let t = (f64::from(k) * period / 4e-3 + 1e-6).floor() * 4e-3;
+            let u = stirring(1.0, t);
+            x = advance(&arm, &x, &u, &Push::NONE, period, 20);
+            let estimate = estimator(&x, &u);
+            worst = if t > 0.6 { worst.max(distance(&estimate, &x, 50.0)) } else { worst };
+        }
+        worst
+    };
     let two = [2e-3, 1e-3].map(|period| {
         let mut observer = Observer::new(&Vector([50.0; 2]), period).expect("positive");
         observer.start(&off(&x, 0.05));
