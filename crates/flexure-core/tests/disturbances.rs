@@ -9,7 +9,7 @@ use common::plant::{PERIOD, Push, advance, paper_arm, plausible_arm, stirring};
 use common::{Numbers, branched, flexible};
 
 fn largest<const N: usize>(v: &Vector<f64, N>) -> f64 {
-    v.iter().fold(0.0, |m: f64, x| if x.is_nan() { f64::NAN } else { m.max(x.abs()) })
+    v.iter().fold(0.0, |m: f64, x| if x.is_nan() { f64::INFINITY } else { m.max(x.abs()) })
 }
 
 /// The largest distance of the residuals to `expected(t)` [N m] over `periods`, on the true motion under `push(t)`.

@@ -58,7 +58,7 @@ fn response_to_a_sine_is_the_closed_form() {
                 let v = velocities(filter, period, settled as u32 + 20, |t| (w * t).sin());
                 for (k, v) in v.iter().enumerate().skip(v.len() - 20) {
                     let expected = gain * (w * k as f64 * period + phase).cos();
-                    assert!((v - expected).abs() < 1e-8 * gain, "{cutoff} Hz at {share}: {} {expected}", v);
+                    assert!((v - expected).abs() < 1e-8 * gain, "{cutoff} Hz at {share}: {v} {expected}");
                 }
             }
         }

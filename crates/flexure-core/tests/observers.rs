@@ -60,7 +60,7 @@ fn falls_at_the_rate(errors: &[f64], bandwidth: f64, order: i32) -> f64 {
     let per_constant = 1.0 / (bandwidth * PERIOD);
     let largest = |from: f64| {
         let window = (from * per_constant) as usize..((from + 1.0) * per_constant) as usize;
-        errors[window].iter().fold(0.0, |m: f64, e| if e.is_nan() { f64::NAN } else { m.max(*e) })
+        errors[window].iter().fold(0.0, |m: f64, e| m.max(*e))
     };
     let (early, late) = (largest(8.0), largest(14.0));
     let polynomial = |t: f64| (1.0 + t).powi(order);

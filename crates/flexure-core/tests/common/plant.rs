@@ -83,10 +83,10 @@ pub fn advance<L: Links<f64, N>, const N: usize>(
     })
 }
 
-/// Largest difference of two motions: positions in rad, velocities over `per` [1/s].
+/// Largest difference of two motions: positions in rad, velocities over `per` [1/s]; infinite if one is not a number.
 pub fn distance<const N: usize>(a: &Motion<f64, N>, b: &Motion<f64, N>, per: f64) -> f64 {
     let largest = |a: &Vector<f64, N>, b: &Vector<f64, N>| {
-        (*a - *b).iter().fold(0.0, |m: f64, x| if x.is_nan() { f64::NAN } else { m.max(x.abs()) })
+        (*a - *b).iter().fold(0.0, |m: f64, x| if x.is_nan() { f64::INFINITY } else { m.max(x.abs()) })
     };
     [
         largest(&a.q_l, &b.q_l),
