@@ -143,6 +143,37 @@ fn a_dead_encoder_is_seen_and_forgotten() {
     }
 }
 
+/// A dropout of one encoder on a moving robot: what the others see is as well known as before, and so is everything when it is back.
+#[test]
+fn a_dead_encoder_leaves_the_others_alone() {
+    let arm = plausible_arm();
+    let x = Motion::at_rest(Vector([0.3, -0.5]));
+    let (mut two, mut one) = (both(50.0), motor(50.0));
+    two.start(&x);
+    one.start(&x);
+    for (k, (x, u)) in course(&arm, &x, 1.0, 600).into_iter().enumerate() {
+        let dead = (500..510).contains(&k);
+        let without = |q: &Vector<f64, 2>| Vector([if dead { f64::NAN } else { q[0] }, q[1]]);
+        let seen =
+            [two.update(&arm, &without(&x.q_l), &x.q_m, &u), one.update(&arm, &x.q_l, &without(&x.q_m), &u)];
+        // What is missing is known to the reader; the rest, and all of it afterwards, must be the truth.
+        let known = seen.map(|seen| {
+            let fill = |seen: &Vector<f64, 2>, truth: &Vector<f64, 2>| {
+                Vector::from_fn(|i| if dead && seen[i].is_nan() { truth[i] } else { seen[i] })
+            };
+            Motion {
+                q_l: fill(&seen.q_l, &x.q_l),
+                q_m: fill(&seen.q_m, &x.q_m),
+                v_l: fill(&seen.v_l, &x.v_l),
+                v_m: fill(&seen.v_m, &x.v_m),
+            }
+        });
+        let [a, b] = known.map(|known| distance(&known, &x, 50.0));
+        assert!(a < 5e-5 && b < 1e-3, "{a} and {b} at {k}");
+        assert!(seen.iter().all(|seen| seen.q_l[0].is_nan() == dead));
+    }
+}
+
 /// In single precision as in double, up to rounding: 1e-7 of a rad a step, that the bandwidth forgets within 20 ms, and over the spring's pull on
 /// the motor, κ, for the motor encoder alone.
 #[test]
