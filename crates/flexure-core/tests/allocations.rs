@@ -104,7 +104,9 @@ fn estimators_and_guard() {
             position_bound: one,
             speed_bound: one,
         })?;
-        (difference.start(&x), both.start(&x), motor.start(&x));
+        difference.start(&x);
+        both.start(&x);
+        motor.start(&x);
         let estimates = [
             difference.update(&robot, &x.q_l, &x.q_m, &u),
             both.update(&robot, &x.q_l, &x.q_m, &u),

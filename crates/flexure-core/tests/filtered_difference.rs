@@ -1,5 +1,10 @@
 //! Filtered differences: the response in closed form, exact on constant velocities, the delay of the low pass on constant
 //! accelerations.
+#![expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "times become counts of periods"
+)]
 
 use core::f64::consts::{PI, SQRT_2, TAU};
 
@@ -23,8 +28,11 @@ fn velocities(filter: LowPass<f64>, period: f64, count: u32, q: impl Fn(f64) -> 
         .collect()
 }
 
-/// The filters under test with their low pass G(jΩ) in continuous time, as gain and phase.
-fn filters(cutoff: f64, period: f64) -> [(LowPass<f64>, fn(f64) -> (f64, f64)); 2] {
+/// Gain and phase at Ω/ω_c.
+type Response = fn(f64) -> (f64, f64);
+
+/// The filters under test with their low pass G(jΩ) in continuous time.
+fn filters(cutoff: f64, period: f64) -> [(LowPass<f64>, Response); 2] {
     [
         (LowPass::first_order(cutoff, period).expect("a filter"), |x| {
             ((1.0 + x * x).sqrt().recip(), -x.atan())
@@ -48,13 +56,9 @@ fn response_to_a_sine_is_the_closed_form() {
                 // 400 time constants leave nothing of the start; near half the sampling frequency poles are near −1.
                 let settled = 400.0 / (TAU * cutoff * period) + 1000.0;
                 let v = velocities(filter, period, settled as u32 + 20, |t| (w * t).sin());
-                for k in v.len() - 20..v.len() {
+                for (k, v) in v.iter().enumerate().skip(v.len() - 20) {
                     let expected = gain * (w * k as f64 * period + phase).cos();
-                    assert!(
-                        (v[k] - expected).abs() < 1e-8 * gain,
-                        "{cutoff} Hz at {share}: {} {expected}",
-                        v[k]
-                    );
+                    assert!((v - expected).abs() < 1e-8 * gain, "{cutoff} Hz at {share}: {v} {expected}");
                 }
             }
         }

@@ -10,9 +10,9 @@ use crate::scalar::Float;
 /// Observer on the flexible-joint model with both encoders: prediction over the period, then correction.
 ///
 /// q̂ += (1 − ρ²) (y − q̂), v̂ += (1 − ρ)²/T (y − q̂), ρ = e^{−ωT}, on either side: the gains that put both poles of a
-/// double integrator at ρ. With the springs, dampers and inertial coupling of a robot they keep every pole of the
-/// estimation error within the circle of radius ρ, so that no gain depends on the robot: an undamped mode of frequency ν
-/// gets poles of modulus ρ (up to νT ≈ 2.5), a damped one smaller ones. That is exact for the robot at rest and equal bandwidths.
+/// double integrator at ρ. They need not know the robot: springs and inertial coupling turn poles of modulus ρ without
+/// changing it, up to modes of frequency ν with (νT/2)² = 1/tanh²(ωT/2) − 1, and dampers make them smaller. That is
+/// exact for small velocities and equal bandwidths. docs/estimators.md.
 ///
 /// A constant torque d that the model does not know leaves errors of d / (m ω²) in position and 2 d / (m ω) in velocity.
 #[derive(Clone, Copy, Debug)]

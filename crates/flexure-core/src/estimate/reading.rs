@@ -26,5 +26,5 @@ pub(super) fn where_read<C: Float, const N: usize>(x: &Vector<C, N>, reading: &V
 /// Not a number.
 #[inline]
 pub(super) fn nan<C: Float>() -> C {
-    C::ZERO / C::ZERO
+    C::from_f64(f64::NAN)
 }

@@ -6,7 +6,7 @@ use crate::scalar::{Float, Piecewise};
 
 /// A torque inside the limits, and which of them were active.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Limited<C, const N: usize> {
+pub(super) struct Allowed<C, const N: usize> {
     pub torque: Vector<C, N>,
     pub torque_limited: Vector<bool, N>,
     pub rate_limited: Vector<bool, N>,
@@ -17,11 +17,11 @@ pub(super) struct Limited<C, const N: usize> {
 /// The rate limit moves from `last` towards a torque inside the torque limit, so it can not lead out of that. There is no
 /// memory but `last`: the torque is that of the law as soon as both limits allow it.
 #[inline]
-pub(super) fn limited<C: Float, const N: usize>(
+pub(super) fn allowed<C: Float, const N: usize>(
     settings: &Settings<C, N>,
     last: &Vector<C, N>,
     asked: &Vector<C, N>,
-) -> Limited<C, N> {
+) -> Allowed<C, N> {
     let inside = Vector::<C, N>::from_fn(|i| {
         let limit = settings.torque_limit[i];
         Piecewise::clamp(asked[i], -limit, limit)
@@ -30,7 +30,7 @@ pub(super) fn limited<C: Float, const N: usize>(
         let step = settings.torque_rate_limit[i] * settings.period;
         Piecewise::clamp(inside[i], last[i] - step, last[i] + step)
     });
-    Limited {
+    Allowed {
         torque,
         torque_limited: Vector::from_fn(|i| inside[i] != asked[i]),
         rate_limited: Vector::from_fn(|i| torque[i] != inside[i]),

@@ -1,7 +1,7 @@
 //! One control instant of a guard.
 
 use super::inputs::Faults;
-use super::limits::limited;
+use super::limits::allowed;
 use super::{Age, Phase, Settings, Status};
 use crate::linalg::Vector;
 use crate::model::Motion;
@@ -70,17 +70,17 @@ impl<C: Float, const N: usize> Guard<C, N> {
             Some(torque) if !law_failed => torque,
             _ => self.stopping(x, &faults, holding),
         };
-        let limited = limited(&self.settings, &self.last, &asked);
-        self.last = limited.torque;
+        let allowed = allowed(&self.settings, &self.last, &asked);
+        self.last = allowed.torque;
         let status = Status {
             phase,
-            torque_limited: limited.torque_limited,
-            rate_limited: limited.rate_limited,
+            torque_limited: allowed.torque_limited,
+            rate_limited: allowed.rate_limited,
             link_fault: faults.link,
             motor_fault: faults.motor,
             law_failed,
         };
-        Decision { torque: limited.torque, status }
+        Decision { torque: allowed.torque, status }
     }
 
     /// Counts good instants: one that is not starts the count over.

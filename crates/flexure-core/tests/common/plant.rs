@@ -7,6 +7,9 @@ use flexure_core::robots::PlanarTwoLink;
 
 use super::{motion_rate, planar};
 
+/// Control period in s.
+pub const PERIOD: f64 = 1e-3;
+
 pub type Arm = Fjr<f64, PlanarTwoLink<f64>, 2>;
 
 /// The paper's arm with the drives that its table prints: motor damping over inertia is 9000 1/s.
@@ -80,10 +83,10 @@ pub fn advance<L: Links<f64, N>, const N: usize>(
     })
 }
 
-/// Largest difference of two motions: positions in rad, velocities over `per` [1/s].
+/// Largest difference of two motions: positions in rad, velocities over `per` [1/s]; infinite if one is not a number.
 pub fn distance<const N: usize>(a: &Motion<f64, N>, b: &Motion<f64, N>, per: f64) -> f64 {
     let largest = |a: &Vector<f64, N>, b: &Vector<f64, N>| {
-        (*a - *b).iter().fold(0.0, |m: f64, x| if x.is_nan() { f64::NAN } else { m.max(x.abs()) })
+        (*a - *b).iter().fold(0.0, |m: f64, x| if x.is_nan() { f64::INFINITY } else { m.max(x.abs()) })
     };
     [
         largest(&a.q_l, &b.q_l),
@@ -106,4 +109,26 @@ pub fn gentle() -> Vcbc<f64, Linear<f64, 2>, Linear<f64, 2>, 2> {
         },
         motor: MotorGains { metric: Vector([30.0, 6.0]), shaping, damping: Vector([0.5, 0.1]) },
     }
+}
+
+/// A torque that keeps a robot moving, over one control period [N m].
+pub fn stirring<const N: usize>(size: f64, t: f64) -> Vector<f64, N> {
+    Vector::from_fn(|i| size * (1.0 + 0.5 * i as f64) * ((3.0 + i as f64) * t).cos())
+}
+
+/// What the robot does from `x` on, stirred by torques of the size `torque`: motion and torque per period.
+pub fn course<L: Links<f64, N>, const N: usize>(
+    robot: &Fjr<f64, L, N>,
+    x: &Motion<f64, N>,
+    torque: f64,
+    periods: u32,
+) -> Vec<(Motion<f64, N>, Vector<f64, N>)> {
+    let mut x = *x;
+    (0..periods)
+        .map(|k| {
+            let u = stirring(torque, f64::from(k) * PERIOD);
+            x = advance(robot, &x, &u, &Push::NONE, PERIOD, 20);
+            (x, u)
+        })
+        .collect()
 }
