@@ -10,7 +10,7 @@ use crate::command::{Place, ROBOT};
 fn every_listed_robot_and_scenario_is_good() {
     let place = Place::new();
     let listed = place.run(&["list", "--json"]).done().json();
-    for kind in ["robots", "scenarios", "controllers", "shaping", "references"] {
+    for kind in ["robots", "scenarios", "controllers", "shaping", "references", "imperfections"] {
         assert!(listed[kind].as_object().is_some_and(|members| !members.is_empty()), "{kind}");
         let only = place.run(&["list", kind, "--json"]).done().json();
         assert_eq!(only.as_object().unwrap().len(), 1);

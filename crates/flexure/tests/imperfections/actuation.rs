@@ -66,6 +66,17 @@ fn pieces_follow_each_other() {
     }
 }
 
+/// A delay in a file that is a whole number of control periods is one, whatever floats make of quotients.
+#[test]
+fn whole_delays_are_whole() {
+    for periods in 0..400_u32 {
+        let given = driven(&[delay(0.0, f64::from(periods) / 1000.0)], 0, 420, step);
+        assert!(given.iter().all(|pieces| pieces.iter().count() == 1), "{periods}");
+        let first = given.iter().position(|pieces| pieces.last() != Vector::ZERO);
+        assert_eq!(first, usize::try_from(periods + 10).ok());
+    }
+}
+
 /// Torque from before the first command acts until that arrives, and rates count from it.
 #[test]
 fn the_torque_before_goes_on() {

@@ -7,7 +7,7 @@ use flexure::io::{
     Deadline, Delay, Dropout, DropoutMode, Encoder, Imperfection, Noise, Outage, Sampling, Side, Sides,
 };
 use flexure::registry::IMPERFECTIONS;
-use flexure::sim::imperfection::{Measured, Pieces};
+use flexure::sim::imperfection::{Measured, Pieces, Random};
 
 use super::{PERIOD, mean, motion, positions, readings, torque, torques};
 
@@ -238,4 +238,25 @@ fn each_has_random_numbers_of_its_own() {
             .collect()
     };
     assert_eq!(silent(&[dropout(0.1)]), silent(&[noise(1.0), encoder(0.1, true), dropout(0.1)]));
+}
+
+/// Seed, kind and index all count; and what they say is the same in every version: these are the first numbers of
+/// xoshiro256++ after SplitMix64 from the hash, as an independent program gives them.
+#[test]
+fn streams_are_told_apart_and_stay_as_they_are() {
+    let first = |seed, kind, index| Random::new(seed, kind, index).uniform().to_bits();
+    let streams = [
+        first(0, "noise", 0),
+        first(0, "noise", 1),
+        first(1, "noise", 0),
+        first(0, "dropout", 0),
+        first(256, "noise", 0),
+    ];
+    for (i, stream) in streams.iter().enumerate() {
+        assert!(streams.iter().skip(i + 1).all(|other| other != stream));
+    }
+    let mut random = Random::new(7, "noise", 1);
+    for expected in [0.7403135434750249, 0.9267012025334068, 0.5915823722714179] {
+        assert_eq!(random.uniform().to_bits(), f64::to_bits(expected));
+    }
 }

@@ -138,6 +138,24 @@ fn windows_are_exact() {
     }
 }
 
+/// A time in a file is the control instant that it names, also where products of floats fall short of it.
+#[test]
+fn windows_begin_where_the_file_says() {
+    let period = 0.0007;
+    let mut short = 0;
+    for first in 1..400_u32 {
+        let from = f64::from(7 * first) / 10_000.0;
+        short += u32::from(f64::from(first) * period < from);
+        let outage = Outage::Window { from, until: from + 10.0 };
+        let dropout = Imperfection::Dropout(Dropout { sides: Sides::Both, mode: DropoutMode::Nan, outage });
+        let mut sensors = sensors::<2>(&[dropout], 0);
+        let rest = Motion::at_rest(Vector::ZERO);
+        let begin = (0..401_u64).find(|&k| sensors.sense(&Tick::new(k, period), &rest).age[LINK] > 0);
+        assert_eq!(begin, Some(u64::from(first)));
+    }
+    assert!(short > 0, "no product falls short of a decimal");
+}
+
 /// Who holds before anything came holds nothing.
 #[test]
 fn a_sensor_that_is_dead_from_the_start_reads_nothing() {
