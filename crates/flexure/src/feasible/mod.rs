@@ -53,7 +53,7 @@ pub fn usage(scenario: &Scenario) -> Result<Vec<Usage>, Problems> {
 
 /// What to say of each limit that the reference exceeds.
 pub fn exceeded(scenario: &Scenario, usage: &[Usage]) -> Vec<Problem> {
-    let beyond = usage.iter().filter(|usage| usage.share > 1.0);
+    let beyond = usage.iter().filter(|usage| usage.share > 1.0 || usage.share.is_nan());
     beyond
         .map(|usage| {
             let message = format!("the reference exceeds a limit: {}", described(scenario, usage));

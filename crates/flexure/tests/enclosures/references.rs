@@ -27,7 +27,7 @@ fn check<const N: usize>(scenario: &Scenario) {
                     bounds.derivative(k),
                     x,
                     1e-14 * scale,
-                    1e-12 * scale,
+                    1e-10 * scale,
                     &format!("{name}, order {k} at {t} s"),
                 );
             }
