@@ -170,10 +170,10 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> 
     let context = Context { joints: &joints, robot: robot.as_ref(), times, base };
     let real = real_loop(root, &context, hold, plant.as_ref());
     let own = provenance::assumptions(root, places);
-    if let (Some(field), Some(timed), Some(initial)) = (reference_field, &timed, &initial) {
-        if timed.smooth_start.is_none() {
-            check_start(&field, robot.as_ref(), &timed.reference, initial);
-        }
+    if let (Some(field), Some(timed), Some(initial)) = (reference_field, &timed, &initial)
+        && timed.smooth_start.is_none()
+    {
+        check_start(&field, robot.as_ref(), &timed.reference, initial);
     }
     assumed.extend(own?);
     let ((duration, control_period), real, robot) = (times?, real?, robot?);
