@@ -80,27 +80,27 @@ fn more_is_more() {
     }
 }
 
-/// A spring-like law leaves the motors up to F_S over its stiffness away from where it pulls them; the links follow.
+/// Under a proportional law of 20 N m/rad a damped motor creeps to where friction at rest balances it, or stops before.
 #[test]
 fn friction_leaves_a_law_off_its_target() {
-    let off = [0.0, 0.25, 0.5, 1.0].map(|strength| {
+    let off = [0.25, 0.5, 1.0].map(|strength| {
         let plant = Plant { motor_friction: friction(strength), ..two_link() };
-        let torque =
-            |_: f64, x: &Motion<f64, 2>| Vector::from_fn(|i| 5.0 * (0.5 - x.q_m[i]) - 3.0 * x.v_m[i]);
+        let torque = |_: f64, x: &Motion<f64, 2>| Vector::from_fn(|i| 20.0 * (0.5 - x.q_m[i]));
         let mut stepper = Stepper::new(&plant, 1e-10, STEP);
         let end = stepper.advance(&plant, at_rest(), 0.0, 40.0, &torque, &mut Ledger::default());
         let end = end.expect("bounded");
-        assert_eq!(end.v_m, Vector::ZERO, "{end:?}");
         for i in 0..2 {
+            // A time constant of 5 s: 0.5 e⁻⁸ rad are left to creep.
             let error = (0.5 - end.q_m[i]).abs();
-            assert!(20.0 * error <= plant.motor_friction.stiction[i] + 1e-9, "{error} rad");
+            let band = plant.motor_friction.stiction[i] / 20.0;
+            assert!(error < band + 5e-4, "{error} of {band} rad");
         }
-        (0.5 - end.q_m[1]).abs()
+        0.5 - end.q_m[1]
     });
     assert!(off.is_sorted_by(|a, b| a < b), "{off:?} rad");
 }
 
-/// A motor that is pushed up to speed and left alone: more friction takes more out and leaves it farther behind.
+/// Links that are pushed and left alone: in the same time, more friction takes more out of them.
 #[test]
 fn more_friction_takes_more() {
     let dissipated = [0.0, 0.25, 0.5, 1.0].map(|strength| {
