@@ -59,12 +59,12 @@ mod rough_plant {
         with_robot(&robot, Period { bencher, seconds }).expect("supported");
     }
 
-    #[divan::bench(args = [1e-3, 2e-3])]
+    #[divan::bench(args = [1e-3, 2e-3], sample_count = 2000, sample_size = 1)]
     fn two_link(bencher: Bencher, seconds: f64) {
         period(bencher, "quanser-2dof", seconds);
     }
 
-    #[divan::bench(args = [1e-3, 2e-3])]
+    #[divan::bench(args = [1e-3, 2e-3], sample_count = 2000, sample_size = 1)]
     fn panda(bencher: Bencher, seconds: f64) {
         period(bencher, "panda", seconds);
     }

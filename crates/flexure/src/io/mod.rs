@@ -28,6 +28,7 @@ mod field;
 mod initial;
 mod joints;
 mod links;
+mod model_error;
 mod outputs;
 mod plant;
 mod provenance;
@@ -52,6 +53,7 @@ pub use document::Places;
 pub use initial::Initial;
 pub use joints::Limits;
 pub use links::{Body, DriveDefaults, JointKind, Links, MovingJoint};
+pub use model_error::{ModelError, Payload};
 pub use outputs::{
     prepare, write_certificate, write_certificates, write_experiment, write_report, write_trace,
 };

@@ -10,7 +10,8 @@ pub use controller::{CONTROLLERS, Law, command, law, law_over};
 pub use reference::{AnyReference, REFERENCES};
 pub(crate) use robot::vector;
 pub use robot::{
-    MAX_JOINTS, RobotVisitor, TwinVisitor, supported, with_enclosed_robot, with_robot, with_twins,
+    MAX_JOINTS, PairVisitor, RobotVisitor, TwinVisitor, supported, with_enclosed_robot, with_pair,
+    with_robot, with_twins,
 };
 pub use shaping::{AnyShaping, SHAPING};
 
