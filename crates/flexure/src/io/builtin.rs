@@ -17,7 +17,8 @@ macro_rules! data {
 
 /// Built-in robots: name and text of the file.
 pub const ROBOTS: &[(&str, &str)] = data!("robots":
-    "quanser-2dof" "two-link-plausible" "pendulum-1dof" "panda" "planar-2r" "planar-3r" "tomei-3r" "tomei-3r-5kg");
+    "quanser-2dof" "quanser-2dof-cad" "two-link-plausible" "pendulum-1dof" "panda" "planar-2r" "planar-3r" "tomei-3r"
+    "tomei-3r-5kg");
 
 /// Built-in scenarios: name and text of the file.
 pub const SCENARIOS: &[(&str, &str)] = data!("scenarios":

@@ -27,7 +27,7 @@ pub trait TwinVisitor {
     ) -> Self::Output;
 }
 
-/// Something to do with two robots of the same kind: the one that a controller knows, and the one that is simulated.
+/// Something to do with two robots of the same kind: the one that a law knows and the one that is there.
 pub trait PairVisitor {
     /// What comes of it.
     type Output;
@@ -104,47 +104,62 @@ pub fn with_twins<V: TwinVisitor>(data: &io::Robot, visitor: V) -> Result<V::Out
     })
 }
 
-/// Calls `visitor` with the robots that `model` and `plant` describe; their links must be of the same kind.
+/// Calls `visitor` with the robot that a law knows, `model`, and the one that is there, `plant`.
 ///
 /// # Errors
-/// For a tree with more than [`MAX_JOINTS`] moving joints.
-///
-/// # Panics
-/// If the links are of different kinds: the reader of scenarios refuses such pairs.
+/// For a tree with more than [`MAX_JOINTS`] moving joints, and for robots of different kinds or joint counts.
 pub fn with_pair<V: PairVisitor>(
     model: &io::Robot,
     plant: &io::Robot,
     visitor: V,
 ) -> Result<V::Output, io::Problems> {
+    let point = |x: f64| x;
     macro_rules! tree {
         ($model:expr, $plant:expr, $($n:literal)*) => {
             match $model.len() {
                 $($n => visitor.visit(
-                    robot(model, tree::<_, $n>($model, model.gravity, |x| x), |x| x),
-                    robot(plant, tree::<_, $n>($plant, plant.gravity, |x| x), |x| x),
+                    robot(model, tree::<_, $n>($model, model.gravity, point), point),
+                    robot(plant, tree::<_, $n>($plant, plant.gravity, point), point),
                 ),)*
                 joints => return Err(too_many(model, joints)),
             }
         };
     }
     Ok(match (&model.links, &plant.links) {
-        (io::Links::Tree(ours), io::Links::Tree(theirs)) => joint_counts!(tree, ours, theirs),
+        (io::Links::Tree(known), io::Links::Tree(real)) if known.len() == real.len() => {
+            joint_counts!(tree, known, real)
+        }
         (
             &io::Links::PlanarTwoLink { mass, length, com, inertia },
             &io::Links::PlanarTwoLink { mass: m, length: l, com: c, inertia: i },
         ) => visitor.visit::<_, 2>(
-            robot(model, robots::PlanarTwoLink::new(mass, length[0], com, inertia), |x| x),
-            robot(plant, robots::PlanarTwoLink::new(m, l[0], c, i), |x| x),
+            robot(model, robots::PlanarTwoLink::new(mass, length[0], com, inertia), point),
+            robot(plant, robots::PlanarTwoLink::new(m, l[0], c, i), point),
         ),
         (
             &io::Links::Pendulum { mass, com, inertia },
             &io::Links::Pendulum { mass: m, com: c, inertia: i },
         ) => visitor.visit::<_, 1>(
-            robot(model, pendulum(mass, com, inertia, model.gravity), |x| x),
-            robot(plant, pendulum(m, c, i, plant.gravity), |x| x),
+            robot(model, pendulum(mass, com, inertia, model.gravity), point),
+            robot(plant, pendulum(m, c, i, plant.gravity), point),
         ),
-        _ => unreachable!("links of different kinds"),
+        _ => return Err(no_pair(model, plant)),
     })
+}
+
+fn no_pair(model: &io::Robot, plant: &io::Robot) -> io::Problems {
+    let what = |robot: &io::Robot| {
+        let kind = match robot.links {
+            io::Links::PlanarTwoLink { .. } => "a planar two-link arm",
+            io::Links::Pendulum { .. } => "a pendulum",
+            io::Links::Tree(_) => "a tree",
+        };
+        format!("{} is {kind} with joints: {}", robot.name, robot.joint_count())
+    };
+    let message = format!("a law for one robot cannot move the other: {}; {}", what(model), what(plant));
+    let help =
+        "the robot that is simulated has the kind of links and the joint count of the one that the law knows";
+    plant.places.problem("links", "pair", message, help).into()
 }
 
 /// The robot of `links` with the other numbers of `data` through `number`; `approximate` gives a float near a constant.

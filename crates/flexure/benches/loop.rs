@@ -1,0 +1,71 @@
+//! What the parts of a simulated control loop cost: `cargo bench -p flexure --bench loop`.
+
+use divan::Bencher;
+
+fn main() {
+    divan::main();
+}
+
+/// One control period of a robot with every imperfection of the plant: friction on both sides, hardening, play, hysteresis.
+mod rough_plant {
+    use super::Bencher;
+    use flexure::io;
+    use flexure::registry::{RobotVisitor, with_robot};
+    use flexure::sim::{Friction, Hysteresis, Ledger, Plant, Stepper, Stepping};
+    use flexure_core::linalg::Vector;
+    use flexure_core::model::{Fjr, Links, Motion};
+
+    struct Period<'a, 'b> {
+        bencher: Bencher<'a, 'b>,
+        seconds: f64,
+    }
+
+    impl RobotVisitor for Period<'_, '_> {
+        type Output = ();
+
+        fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) {
+            let friction = |torque: f64| Friction {
+                coulomb: Vector([torque; N]),
+                stiction: Vector([1.5 * torque; N]),
+                stribeck_velocity: Vector([0.05; N]),
+            };
+            let plant = Plant {
+                spring_hardening: robot.stiffness.scaled(10.0),
+                spring_gap: Vector([0.002; N]),
+                hysteresis: Hysteresis {
+                    stiffness: robot.stiffness.scaled(0.5),
+                    yield_torque: Vector([0.1; N]),
+                },
+                link_friction: friction(0.02),
+                motor_friction: friction(0.1),
+                ..Plant::from(robot)
+            };
+            let mut stepper = Stepper::new(&plant, 1e-10, Stepping::<N>::STEP);
+            let (mut x, mut t) = (Motion::at_rest(Vector::ZERO), 0.0);
+            let mut ledger = Ledger::default();
+            self.bencher.bench_local(|| {
+                // Pushed to and fro, so that joints slide, stick and turn.
+                let u_m = Vector::from_fn(|i| 3.0 * (8.0 * t + i as f64).sin() - 0.5 * x.q_m[i]);
+                x = stepper
+                    .advance(&plant, x, t, self.seconds, &|_, _: &_| u_m, &mut ledger)
+                    .expect("bounded");
+                t += self.seconds;
+            });
+        }
+    }
+
+    fn period(bencher: Bencher, robot: &str, seconds: f64) {
+        let robot = io::load_robot(robot).expect("built in");
+        with_robot(&robot, Period { bencher, seconds }).expect("supported");
+    }
+
+    #[divan::bench(args = [1e-3, 2e-3], sample_count = 2000, sample_size = 1)]
+    fn two_link(bencher: Bencher, seconds: f64) {
+        period(bencher, "quanser-2dof", seconds);
+    }
+
+    #[divan::bench(args = [1e-3, 2e-3], sample_count = 2000, sample_size = 1)]
+    fn panda(bencher: Bencher, seconds: f64) {
+        period(bencher, "panda", seconds);
+    }
+}
