@@ -266,12 +266,11 @@ pub(super) const FACTOR: Quantity = Quantity::positive(
     "",
 )
 .plausible(0.01, 100.0, "1 leaves it as it is; is it in percent?");
-pub(super) const TORQUE_FACTOR: Quantity =
-    Quantity::positive("torque of the drive divided by what is asked of it", "").plausible(
-        0.01,
-        100.0,
-        "1 leaves it as it is; is it in percent?",
-    );
+pub(super) const TORQUE_FACTOR: Quantity = Quantity::positive(
+    "torque of the drive divided by what is asked of it",
+    "",
+)
+.plausible(0.01, 100.0, "1 leaves it as it is; is it in percent?");
 pub(super) const PAYLOAD: Quantity =
     Quantity::non_negative("mass of the payload", "kg").plausible(1e-7, 1e5, "is it in grams?");
 pub(super) const PUSH: Quantity = Quantity::any("torque from outside on the link", "N m");

@@ -93,9 +93,11 @@ mod tests {
 
     #[test]
     fn brackets_the_edge_to_a_hundredth() {
-        for (way, at) in
-            [(Way::outward(0.0, 1e-4, 1.0), 0.0123), (Way::inward(1.0, 100.0), 3.7), (Way::inward(1.0, 0.01), 0.41)]
-        {
+        for (way, at) in [
+            (Way::outward(0.0, 1e-4, 1.0), 0.0123),
+            (Way::inward(1.0, 100.0), 3.7),
+            (Way::inward(1.0, 0.01), 0.41),
+        ] {
             let inside = |x: f64| if at > 1.0 || at < 0.02 { x < at } else { x > at };
             let Edge::Between { holds, fails } = edge(way, inside) else { panic!("an edge at {at}") };
             assert!(inside(holds) && !inside(fails));

@@ -84,7 +84,11 @@ pub fn margins(scenario: &Scenario) -> Result<Margins, Problems> {
     ];
     let found: Vec<Result<(Edge, usize), Problems>> = searches
         .par_iter()
-        .map(|(change, way)| if rms.is_some() { way.edge(&|x| try_change(change(x))) } else { Ok((Edge::Nowhere, 0)) })
+        .map(
+            |(change, way)| {
+                if rms.is_some() { way.edge(&|x| try_change(change(x))) } else { Ok((Edge::Nowhere, 0)) }
+            },
+        )
         .collect();
     let mut edges = Vec::new();
     let mut runs = 1;

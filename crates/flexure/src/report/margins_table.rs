@@ -20,7 +20,8 @@ pub fn margins_table(margins: &[Margins]) -> String {
     ];
     let mut table = headed(titles.into_iter());
     for loop_ in margins {
-        let law = loop_.phi.as_ref().map_or(loop_.controller.clone(), |phi| format!("{} {phi}", loop_.controller));
+        let law =
+            loop_.phi.as_ref().map_or(loop_.controller.clone(), |phi| format!("{} {phi}", loop_.controller));
         let milli = |x: Option<f64>, scale: f64| x.map_or(NONE.to_owned(), |x| significant(scale * x, 3));
         table.add_row(vec![
             Cell::new(format!("{}\n{law}", loop_.name)),

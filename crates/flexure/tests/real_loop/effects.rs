@@ -1,7 +1,7 @@
 //! More of an imperfection, more of its effect; and the effects that the issue of real loops is about.
 
-use super::{ideal, simulate, with};
-use flexure::io::{Imperfection, Scenario};
+use super::{ideal, simulate, with, with_these};
+use flexure::io::Imperfection;
 
 /// The imperfections of some text.
 fn these(text: &str) -> Vec<Imperfection> {
@@ -10,10 +10,7 @@ fn these(text: &str) -> Vec<Imperfection> {
 
 /// Root mean square link errors of the plausible arm with each of `texts`, 8 s long.
 fn errors(texts: &[String]) -> Vec<f64> {
-    texts
-        .iter()
-        .map(|text| simulate(&Scenario { imperfections: these(text), ..ideal(8.0) }).summary.rms_e_l)
-        .collect()
+    texts.iter().map(|text| simulate(&with_these(ideal(8.0), these(text))).summary.rms_e_l).collect()
 }
 
 /// Errors grow along `strengths`, and the first is larger than the ideal loop's.
@@ -30,14 +27,22 @@ fn grows(strengths: &[f64], text: impl Fn(f64) -> String) {
 /// Factors of four and more: chance, and errors that happen to cancel, do not reach that far.
 #[test]
 fn errors_grow_with_each_imperfection() {
-    grows(&[1e-4, 1e-3, 1e-2], |std| format!("[[imperfection]]\nkind = \"noise\"\nlink = {std}\nmotor = {std}"));
+    grows(&[1e-4, 1e-3, 1e-2], |std| {
+        format!("[[imperfection]]\nkind = \"noise\"\nlink = {std}\nmotor = {std}")
+    });
     grows(&[2e-3, 2e-2], |count| format!("[[imperfection]]\nkind = \"encoder\"\nresolution = {count}"));
     grows(&[1e-3, 4e-3, 1.6e-2], |delay| format!("[[imperfection]]\nkind = \"delay\"\nactuation = {delay}"));
-    grows(&[0.03, 0.12, 0.48], |torque| format!("[[imperfection]]\nkind = \"friction\"\nside = \"motor\"\ncoulomb = {torque}"));
+    grows(&[0.03, 0.12, 0.48], |torque| {
+        format!("[[imperfection]]\nkind = \"friction\"\nside = \"motor\"\ncoulomb = {torque}")
+    });
     grows(&[0.95, 0.8, 0.6], |factor| format!("[[imperfection]]\nkind = \"torque-gain\"\nfactor = {factor}"));
-    grows(&[0.95, 0.8, 0.6], |factor| format!("[[imperfection]]\nkind = \"model-error\"\nstiffness = {factor}"));
+    grows(&[0.95, 0.8, 0.6], |factor| {
+        format!("[[imperfection]]\nkind = \"model-error\"\nstiffness = {factor}")
+    });
     grows(&[0.02, 0.08, 0.3], |mass| {
-        format!("[[imperfection]]\nkind = \"model-error\"\npayload = {{ mass = {mass}, position = [0.2, 0.0, 0.0] }}")
+        format!(
+            "[[imperfection]]\nkind = \"model-error\"\npayload = {{ mass = {mass}, position = [0.2, 0.0, 0.0] }}"
+        )
     });
     grows(&[0.1, 0.4, 1.6], |torque| {
         format!("[[imperfection]]\nkind = \"push\"\ntorque = [{torque}, 0.0]\nfrom = 3.0\nduration = 0.2")

@@ -9,7 +9,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;
 use rayon::prelude::*;
 
-use super::with;
+use super::{with, with_these};
 
 /// All faults are over by then, in s.
 const CLEAR: f64 = 1.0;
@@ -37,7 +37,11 @@ fn fault(seed: u64) -> Fault {
         let mode = ["nan", "hold"][between(0.0, 2.0) as usize];
         let side = ["link", "motor", "both"][between(0.0, 3.0) as usize];
         let window = format!("from = {from:.3}\nuntil = {until:.3}");
-        writeln!(text, "[[imperfection]]\nkind = \"dropout\"\nmode = \"{mode}\"\nside = \"{side}\"\n{window}").unwrap();
+        writeln!(
+            text,
+            "[[imperfection]]\nkind = \"dropout\"\nmode = \"{mode}\"\nside = \"{side}\"\n{window}"
+        )
+        .unwrap();
         outages.push([from, until]);
     }
     if between(0.0, 1.0) < 0.5 {
@@ -45,12 +49,17 @@ fn fault(seed: u64) -> Fault {
     }
     if between(0.0, 1.0) < 0.5 {
         let part = between(0.8, 1.0);
-        writeln!(text, "[[imperfection]]\nkind = \"saturation\"\nlimit = [{}, {}]", 8.39 * part, 1.67 * part).unwrap();
+        writeln!(text, "[[imperfection]]\nkind = \"saturation\"\nlimit = [{}, {}]", 8.39 * part, 1.67 * part)
+            .unwrap();
     }
     if between(0.0, 1.0) < 0.5 {
         let (a, b) = (between(-2.0, 2.0), between(-0.5, 0.5));
         let (from, duration) = (between(0.0, 0.8), between(0.01, 0.2));
-        writeln!(text, "[[imperfection]]\nkind = \"push\"\ntorque = [{a}, {b}]\nfrom = {from}\nduration = {duration}").unwrap();
+        writeln!(
+            text,
+            "[[imperfection]]\nkind = \"push\"\ntorque = [{a}, {b}]\nfrom = {from}\nduration = {duration}"
+        )
+        .unwrap();
     }
     if between(0.0, 1.0) < 0.3 {
         writeln!(text, "[[imperfection]]\nkind = \"deadline\"\nprobability = {}", between(0.0, 0.2)).unwrap();
@@ -83,9 +92,14 @@ fn loop_with(fault: &Fault, seed: u64) -> Scenario {
     scenario.control_period = PERIOD;
     scenario.reference = flexure::io::Reference::Sines {
         offset: vec![0.0; 2],
-        terms: vec![flexure::io::Term { amplitude: vec![0.4; 2], frequency: vec![0.6; 2], phase: vec![0.0; 2] }],
+        terms: vec![flexure::io::Term {
+            amplitude: vec![0.4; 2],
+            frequency: vec![0.6; 2],
+            phase: vec![0.0; 2],
+        }],
     };
-    Scenario { imperfections: parts.imperfections, guard: parts.guard, seed, ..scenario }
+    (scenario.guard, scenario.seed) = (parts.guard, seed);
+    with_these(scenario, parts.imperfections)
 }
 
 /// Torque that leaves the controller is finite and inside the limits; a dead sensor stops the robot at the first control instant
@@ -110,7 +124,12 @@ fn survives(seed: u64) {
     }
     let last = t.len() - 1;
     assert!(t[last] > CLEAR + 1.0 && stopped[last] == 0.0, "still stopped: {}", context());
-    assert!(run.summary.final_abs_e_l < 0.01, "error {} at the end: {}", run.summary.final_abs_e_l, context());
+    assert!(
+        run.summary.final_abs_e_l < 0.01,
+        "error {} at the end: {}",
+        run.summary.final_abs_e_l,
+        context()
+    );
     let stops = usize::try_from(run.summary.stops).unwrap();
     assert!((stops > 0) == !fault.outages.is_empty(), "{stops} stops: {}", context());
 }

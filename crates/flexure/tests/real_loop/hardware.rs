@@ -17,7 +17,9 @@ fn tracks_within_5_mrad_without_saturating() {
     let Imperfection::Encoder(encoder) = &scenario.imperfections[0] else { panic!("an encoder") };
     let count = std::f64::consts::TAU / 4096.0;
     for side in Side::ALL {
-        assert!(encoder.resolution(side).unwrap().iter().all(|resolution| (resolution - count).abs() < 1e-15));
+        assert!(
+            encoder.resolution(side).unwrap().iter().all(|resolution| (resolution - count).abs() < 1e-15)
+        );
     }
 
     let run = simulate(&scenario);

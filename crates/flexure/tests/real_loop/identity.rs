@@ -2,7 +2,7 @@
 
 use flexure::io::{Estimator, GuardSettings, Imperfection, Scenario, scenario_from_text};
 
-use super::{ideal, same_bits, simulate};
+use super::{ideal, same_bits, simulate, with_these};
 
 /// Every imperfection at zero strength, as a file would have it.
 const NOTHING: &str = r#"
@@ -84,10 +84,10 @@ fn imperfections_of_no_strength_are_none() {
     let perfect = simulate(&ideal(1.0));
     for imperfection in nothing() {
         let kind = imperfection.kind();
-        let with_it = Scenario { imperfections: vec![imperfection], ..ideal(1.0) };
+        let with_it = with_these(ideal(1.0), vec![imperfection]);
         assert!(same_bits(&perfect, &simulate(&with_it)) > 20, "{kind}");
     }
-    let with_all = Scenario { imperfections: nothing(), ..ideal(1.0) };
+    let with_all = with_these(ideal(1.0), nothing());
     assert!(same_bits(&perfect, &simulate(&with_all)) > 20);
 }
 
@@ -101,7 +101,9 @@ fn a_guard_that_has_nothing_to_do_changes_nothing() {
         rejoin_duration: 1.0,
         stop_damping: vec![0.0; 2],
     };
-    let guarded = simulate(&Scenario { guard: Some(guard), ..ideal(1.0) });
+    let mut scenario = ideal(1.0);
+    scenario.guard = Some(guard);
+    let guarded = simulate(&scenario);
     assert!(same_bits(&simulate(&ideal(1.0)), &guarded) > 20);
     assert!(guarded.trace.column("certificate").unwrap().iter().all(|&holds| holds == 1.0));
     assert_eq!(guarded.summary.suspended_fraction, 0.0);
@@ -112,7 +114,9 @@ fn a_guard_that_has_nothing_to_do_changes_nothing() {
 #[test]
 fn an_observer_on_a_perfect_robot_changes_little() {
     let observer = Estimator::Observer { encoders: flexure::io::Encoders::Both, bandwidth: vec![200.0; 2] };
-    let observed = simulate(&Scenario { estimator: Some(observer), ..ideal(6.0) });
+    let mut scenario = ideal(6.0);
+    scenario.estimator = Some(observer);
+    let observed = simulate(&scenario);
     let perfect = simulate(&ideal(6.0));
     assert!(observed.summary.rms_e_l < 1e-4, "{}", observed.summary.rms_e_l);
     assert!(perfect.summary.rms_e_l < observed.summary.rms_e_l);
@@ -123,7 +127,9 @@ fn the_same_seed_makes_the_same_run_and_another_seed_another() {
     let noisy = |seed: u64| {
         let text = "[[imperfection]]\nkind = \"noise\"\nlink = 1e-4\nmotor = 1e-4\n[[imperfection]]\nkind = \"deadline\"\nprobability = 0.1\n";
         let imperfections = super::with("two-link-tanh-smooth", 1.0, text).imperfections;
-        simulate(&Scenario { seed, imperfections, ..ideal(1.0) })
+        let mut scenario = with_these(ideal(1.0), imperfections);
+        scenario.seed = seed;
+        simulate(&scenario)
     };
     same_bits(&noisy(1), &noisy(1));
     assert_ne!(noisy(1).trace.column("q_l1"), noisy(2).trace.column("q_l1"));

@@ -1,8 +1,6 @@
 //! What happens while a limit is hit, and after.
 
-use flexure::io::Scenario;
-
-use super::{ideal, simulate, with};
+use super::{ideal, simulate, with, with_these};
 
 /// A push that the drives cannot answer: the torque stays at its limit, the certificate is suspended in the same step, and when
 /// the push is over the loop goes where a loop without limits goes. Nothing winds up: there is nothing that could.
@@ -11,8 +9,10 @@ fn a_limit_that_was_hit_leaves_nothing_behind() {
     let push = "[[imperfection]]\nkind = \"push\"\ntorque = [0.0, 1.2]\nfrom = 5.0\nduration = 0.5\n";
     let guard = "[guard]\ntorque_limit = [8.39, 1.5]\nstop_damping = 1.0\n";
     let parts = with("two-link-tanh-smooth", 1.0, &format!("{push}{guard}"));
-    let free = Scenario { imperfections: parts.imperfections, ..ideal(12.0) };
-    let guarded = simulate(&Scenario { guard: parts.guard, ..free.clone() });
+    let free = with_these(ideal(12.0), parts.imperfections);
+    let mut guarded = free.clone();
+    guarded.guard = parts.guard;
+    let guarded = simulate(&guarded);
     let free = simulate(&free);
     let (t, certificate) = (guarded.trace.column("t").unwrap(), guarded.trace.column("certificate").unwrap());
     let u = guarded.trace.column("u_command2").unwrap();

@@ -14,10 +14,16 @@ use flexure::run::{Run, run};
 /// A built-in scenario with tables added to its text, `duration` s long.
 pub fn with(name: &str, duration: f64, more: &str) -> Scenario {
     let text = flexure::io::SCENARIOS.iter().find(|(known, _)| *known == name).expect("built in").1;
-    let lines: Vec<String> = text
-        .lines()
-        .map(|line| if line.starts_with("duration = ") { format!("duration = {duration}") } else { line.to_owned() })
-        .collect();
+    let lines: Vec<String> =
+        text.lines()
+            .map(|line| {
+                if line.starts_with("duration = ") {
+                    format!("duration = {duration}")
+                } else {
+                    line.to_owned()
+                }
+            })
+            .collect();
     let text = format!("{}\n{more}\n", lines.join("\n"));
     scenario_from_text(name, &text, Path::new(".")).unwrap_or_else(|problems| panic!("{problems}\n{text}"))
 }
@@ -28,6 +34,12 @@ pub fn ideal(duration: f64) -> Scenario {
     scenario.duration = duration;
     scenario.imperfections.clear();
     scenario.guard = None;
+    scenario
+}
+
+/// `scenario` with these imperfections and no others.
+pub fn with_these(mut scenario: Scenario, imperfections: Vec<flexure::io::Imperfection>) -> Scenario {
+    scenario.imperfections = imperfections;
     scenario
 }
 
