@@ -1,8 +1,8 @@
 //! On the reference every law asks for the torque that keeps the links there, and for nothing else.
 
-use flexure_core::control::ControlLaw;
+use flexure_core::control::{ControlLaw, FeedforwardPd, Pd, TorqueFeedback};
 use flexure_core::linalg::Vector;
-use flexure_core::model::{Fjr, Links};
+use flexure_core::model::{Fjr, Links, Motion};
 use flexure_core::scalar::Jet;
 
 mod common;
@@ -82,4 +82,41 @@ fn rigid_laws_miss_by_the_compliance() {
     let r = &mut Numbers(4);
     misses_by_the_compliance(&laws::rigid::<5>(r), r);
     misses_by_the_compliance(&laws::singular_perturbation::<5>(r), r);
+}
+
+/// Where the reference rests, the nominal torque is gravity: the law is Tomei's, off the reference too.
+#[test]
+fn feed_forward_of_rest_is_gravity() {
+    let r = &mut Numbers(6);
+    for _ in 0..10 {
+        let (robot, motor) = (flexible(branched::<5>(2), r), laws::motor(r));
+        let (x, q_ld) = (r.motion(1.0), resting(&r.vector(1.0)));
+        let pd = Pd { motor }.torque(&robot, &x, &q_ld);
+        close(&FeedforwardPd { motor }.torque(&robot, &x, &q_ld), &pd, ROUNDING);
+    }
+}
+
+/// On moving references the feedback of a regulator is about motors that move with the goal: there gains do not matter.
+#[test]
+fn regulators_move_with_the_goal() {
+    let r = &mut Numbers(5);
+    for _ in 0..10 {
+        let robot = flexible(branched::<5>(2), r);
+        let q_ld = r.series::<5, 5>(1.0);
+        let q = q_ld.map(|q| q.truncate::<2>());
+        let motors = q + robot.stiffness.map(f64::recip).diag_mul(&robot.links.gravity_torque(&q));
+        let ([q_l, v_l], [q_m, v_m]) = (q.derivatives(), motors.derivatives());
+        let x = Motion { q_l, q_m, v_l, v_m };
+        let mut twice = |law: &mut dyn FnMut(&mut Numbers) -> Vector<f64, 5>| {
+            let (a, b) = (law(r), law(r));
+            close(&a, &b, ROUNDING);
+        };
+        twice(&mut |r| laws::pd(r).torque(&robot, &x, &q_ld));
+        twice(&mut |r| laws::pd_online_gravity(r).torque(&robot, &x, &q_ld));
+        twice(&mut |r| laws::gravity_cancellation(r).torque(&robot, &x, &q_ld));
+        twice(&mut |r| {
+            let inertia = Vector([0.05; 5]);
+            TorqueFeedback { inertia, ..laws::torque_feedback(r) }.torque(&robot, &x, &q_ld)
+        });
+    }
 }

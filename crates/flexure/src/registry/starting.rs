@@ -8,8 +8,8 @@ use crate::overview::overview;
 impl Controller {
     /// The law of this kind with gains made from stiffness, motor inertia and link inertia at q = 0 of each joint: sensible
     /// on any robot, and where tuning starts. All laws are to make errors decay at the same
-    /// [rate](Drive::bandwidth); [`BASELINES`] says for each gain how. For `vcbc` with φ linear: Π = J ω², Λ = ω,
-    /// K_d = J ω with J the inertia of that side.
+    /// [rate](Drive::bandwidth); [`BASELINES`] says for each gain how. For `vcbc` with φ linear: Π_l = M_ii ω², Π_m = K,
+    /// Λ = ω, K_d = J ω with J the inertia of that side.
     ///
     /// # Errors
     /// For an unknown kind, and if the robot has more joints than this program was built for.
@@ -24,14 +24,16 @@ impl Controller {
             .collect();
         let of = |start: &dyn Fn(&Drive) -> f64| drives.iter().map(start).collect::<Vec<_>>();
         if kind == "vcbc" {
-            let side = |inertia: fn(&Drive) -> f64| SideGains {
-                metric: of(&|drive| inertia(drive) * drive.bandwidth().powi(2)),
+            let side = |inertia: fn(&Drive) -> f64, metric: &dyn Fn(&Drive) -> f64| SideGains {
+                metric: of(metric),
                 shaping: of(&Drive::bandwidth),
                 damping: of(&|drive| inertia(drive) * drive.bandwidth()),
                 kappa: None,
                 metric_hardening: None,
             };
-            let (link, motor) = (side(|drive| drive.link_inertia), side(|drive| drive.motor_inertia));
+            let link =
+                side(|drive| drive.link_inertia, &|drive| drive.link_inertia * drive.bandwidth().powi(2));
+            let motor = side(|drive| drive.motor_inertia, &|drive| drive.stiffness);
             return Ok(Self::Vcbc(VcbcGains { phi: Phi::Linear, link, motor }));
         }
         let Some(shape) = BASELINES.iter().find(|shape| shape.kind == kind) else {
