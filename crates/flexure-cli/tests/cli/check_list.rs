@@ -60,10 +60,10 @@ fn what_a_reference_uses_of_the_limits_is_told() {
     assert!(fast.stdout.contains("torque_limit") && fast.stdout.contains("1.64"), "{}", fast.stdout);
     let scaled =
         |key: &str| text.replace("[controller]", &format!("[reference.time_scaling]\n{key}\n[controller]"));
-    place.write("slow.toml", &scaled("margin = 0.8"));
+    place.write("slow.toml", scaled("margin = 0.8"));
     let slow = place.run(&["check", "slow.toml"]).done();
     assert!(slow.stdout.contains("at 0.346"), "{}", slow.stdout);
-    place.write("never.toml", &scaled("margin = 0.8").replace("q_m = [0.0, 0.0]", "q_m = [0.0, 1.0]"));
+    place.write("never.toml", scaled("margin = 0.8").replace("q_m = [0.0, 0.0]", "q_m = [0.0, 1.0]"));
     for command in ["check", "run"] {
         place.run(&[command, "never.toml"]).refused(&["no speed keeps the reference within 0.8", "would do"]);
     }
