@@ -9,7 +9,7 @@ use crate::scalar::Float;
 pub struct Settings<C, const N: usize> {
     /// Control period in s.
     pub period: C,
-    /// Largest motor torque [N m].
+    /// Largest motor torque [N m]; infinite for none.
     pub torque_limit: Vector<C, N>,
     /// Fastest change of the motor torque [N m/s]; infinite for none.
     pub torque_rate_limit: Vector<C, N>,
@@ -26,12 +26,12 @@ pub struct Settings<C, const N: usize> {
 }
 
 impl<C: Float, const N: usize> Settings<C, N> {
-    /// Whether a guard can keep to them: nothing NaN or negative, period and torque limits finite and positive,
+    /// Whether a guard can keep to them: nothing NaN or negative, the period finite and positive, limits positive,
     /// damping finite.
     pub fn are_sound(&self) -> bool {
         let above_zero = |x: C| x > C::ZERO;
         positive(self.period)
-            && self.torque_limit.iter().all(positive)
+            && self.torque_limit.iter().all(above_zero)
             && self.torque_rate_limit.iter().all(above_zero)
             && self.stop_damping.iter().all(|d| d.is_finite() && d >= C::ZERO)
             && self.rejoin_after > 0

@@ -5,7 +5,7 @@ use super::limits::allowed;
 use super::{Age, Phase, Settings, Status};
 use crate::linalg::Vector;
 use crate::model::Motion;
-use crate::scalar::Float;
+use crate::scalar::{Float, Piecewise};
 
 /// What leaves the controller at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,6 +36,16 @@ impl<C: Float, const N: usize> Guard<C, N> {
     /// Following, at zero torque. `None` for settings that are not [sound](Settings::are_sound).
     pub fn new(settings: Settings<C, N>) -> Option<Self> {
         settings.are_sound().then_some(Self { settings, last: Vector::ZERO, posture: None, awaited: 0 })
+    }
+
+    /// As if `torque` [N m] were what left it last: the rate limit counts from there. What is not finite counts as zero, what is
+    /// beyond the torque limit as the limit.
+    #[must_use]
+    pub fn applying(mut self, torque: &Vector<C, N>) -> Self {
+        let limit = &self.settings.torque_limit;
+        let finite = |x: C| if x.is_finite() { x } else { C::ZERO };
+        self.last = Vector::from_fn(|i| Piecewise::clamp(finite(torque[i]), -limit[i], limit[i]));
+        self
     }
 
     /// What it allows.

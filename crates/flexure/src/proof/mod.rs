@@ -150,6 +150,15 @@ fn beyond_the_model(scenario: &Scenario) -> Vec<String> {
     for option in scenario.plant.options() {
         notes.push(format!("the model of the law: plant.{option} of this scenario is left out"));
     }
+    for imperfection in &scenario.imperfections {
+        notes.push(format!("the ideal loop: {} of this scenario is left out", imperfection.kind()));
+    }
+    if scenario.estimator.is_some() {
+        notes.push("true states: the estimator of this scenario is left out".to_owned());
+    }
+    if scenario.guard.is_some() {
+        notes.push("the torque of the law: while the guard of this scenario limits or stops, nothing is said".to_owned());
+    }
     let robot = &scenario.robot;
     for (i, joint) in robot.joints.iter().enumerate() {
         if joint.kind == io::JointKind::Prismatic {

@@ -158,8 +158,8 @@ fn guard<const N: usize>(settings: &io::GuardSettings, period: f64, applied: Vec
         position_bound: unbounded,
         speed_bound: unbounded,
     });
-    let _ = applied;
-    Guarded { guard: guard.expect("the reader takes sound settings only"), rejoin: settings.rejoin_duration }
+    let guard = guard.expect("the reader takes sound settings only").applying(&applied);
+    Guarded { guard, rejoin: settings.rejoin_duration }
 }
 
 /// The smallest of the torque limits that are known, per joint [N m]: the robot's, the guard's, the drive's.
