@@ -69,3 +69,19 @@ mod rough_plant {
         period(bencher, "panda", seconds);
     }
 }
+
+/// Whole runs of built-in scenarios, figures only; items are control periods.
+mod whole_loop {
+    use super::Bencher;
+    use divan::counter::ItemsCount;
+    use flexure::io::load_scenario;
+    use flexure::run::measure;
+
+    #[divan::bench(args = ["two-link-everything", "two-link-hardware", "two-link-tanh-smooth"], sample_count = 10, sample_size = 1)]
+    fn periods(bencher: Bencher, name: &str) {
+        let scenario = load_scenario(name).expect("built in");
+        let periods = (scenario.duration / scenario.control_period).round();
+        let count = ItemsCount::new(periods as usize);
+        bencher.counter(count).bench_local(|| measure(&scenario).expect("two joints"));
+    }
+}

@@ -157,7 +157,10 @@ fn beyond_the_model(scenario: &Scenario) -> Vec<String> {
         notes.push("true states: the estimator of this scenario is left out".to_owned());
     }
     if scenario.guard.is_some() {
-        notes.push("the torque of the law: while the guard of this scenario limits or stops, nothing is said".to_owned());
+        notes.push(
+            "the torque of the law: while the guard of this scenario limits or stops, nothing is said"
+                .to_owned(),
+        );
     }
     let robot = &scenario.robot;
     for (i, joint) in robot.joints.iter().enumerate() {

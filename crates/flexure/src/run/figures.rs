@@ -52,7 +52,7 @@ impl<const N: usize> Figures<N> {
 
     /// Takes in an instant; `rate` is the contraction rate there [1/s], NaN for none.
     pub(super) fn record(&mut self, instant: &Instant<'_, N>, rate: f64) {
-        let (action, u_m) = (instant.action, instant.action.u_m);
+        let (action, u_m) = (instant.action, instant.action.applied.last());
         let e_l = instant.motion.q_l - action.reference.map(|jet| jet.coefficient(0));
         let (error, torque) = (largest(&e_l.map(f64::abs)), largest(&u_m.map(f64::abs)));
         self.instants += 1;
@@ -61,7 +61,7 @@ impl<const N: usize> Figures<N> {
         self.settled_since = if error < SETTLED { self.settled_since.or(Some(instant.t)) } else { None };
         self.max_abs_u_m = self.max_abs_u_m.max(torque);
         self.rate = self.rate.min(rate);
-        let limited = (0..N).any(|k| u_m[k].abs() >= self.torque_limit[k]);
+        let limited = (0..N).any(|k| action.u_m[k].abs() >= self.torque_limit[k]);
         self.at_limit += u32::from(limited);
         let held = action.status.is_none_or(|status| status.certificate() == Certificate::Holds);
         self.suspended += u32::from(limited || !held);
