@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use flexure::compare::{Leaderboard, Task, check_budget, compare as compared, entrants, tasks};
-use flexure::io::prepare;
+use flexure::compare::{Leaderboard, check_budget, compare as compared, entrants, tasks};
+use flexure::io::{prepare, write_leaderboard};
 use flexure::report::leaderboard_table;
 use serde::Serialize;
 
@@ -31,7 +31,7 @@ pub fn compare(options: &Compare, json: bool) -> Result<(), Failure> {
         let progress = Progress::new("comparing", tasks.len() * entrants.len());
         compared(&tasks, &entrants, options.budget, options.seed, &|pair| progress.set(pair, 1.0))?
     };
-    let files: Vec<PathBuf> = Vec::new();
+    let files = write_leaderboard(out, &leaderboard, &tasks)?;
     if json {
         print::json(&Outcome { leaderboard: &leaderboard, files })?;
     } else {
@@ -40,11 +40,11 @@ pub fn compare(options: &Compare, json: bool) -> Result<(), Failure> {
             print::line(&format!("wrote {}", file.display()))?;
         }
     }
-    hopeless(&leaderboard, &tasks)
+    hopeless(&leaderboard)
 }
 
 /// The answer is no if every law diverges on a task.
-fn hopeless(leaderboard: &Leaderboard, _tasks: &[Task]) -> Result<(), Failure> {
+fn hopeless(leaderboard: &Leaderboard) -> Result<(), Failure> {
     let names: Vec<&str> = leaderboard.hopeless().map(|task| task.scenario.as_str()).collect();
     if names.is_empty() {
         return Ok(());

@@ -29,6 +29,8 @@ pub struct TaskScores {
     pub task: String,
     /// Name of its scenario.
     pub scenario: String,
+    /// Robot, control period and what stands between this loop and the ideal one.
+    pub conditions: String,
     /// Root mean square of the motor torque that the reference takes by the model that the laws know, the largest over
     /// the joints [N m].
     pub needed_torque: f64,
@@ -80,7 +82,8 @@ impl TaskScores {
     /// Of a task: fills in the ranks.
     pub fn new(task: &Task, scores: Vec<Score>) -> Self {
         let (name, scenario) = (task.name().to_owned(), task.scenario.name.clone());
-        Self::ranked(Self { task: name, scenario, needed_torque: task.needed_torque, scores })
+        let conditions = task.conditions();
+        Self::ranked(Self { task: name, scenario, conditions, needed_torque: task.needed_torque, scores })
     }
 
     /// The same with the ranks filled in.

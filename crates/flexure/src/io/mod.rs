@@ -62,7 +62,8 @@ pub use initial::Initial;
 pub use joints::Limits;
 pub use links::{Body, DriveDefaults, JointKind, Links, MovingJoint};
 pub use outputs::{
-    prepare, write_certificate, write_certificates, write_experiment, write_report, write_trace,
+    prepare, write_certificate, write_certificates, write_experiment, write_leaderboard, write_report,
+    write_trace,
 };
 pub use plant::Plant;
 pub use provenance::Assumption;
