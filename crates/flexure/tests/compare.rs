@@ -1,7 +1,5 @@
 //! Control laws on the same bench: ranks, what a comparison depends on, what becomes of laws that diverge.
 
-use std::time::Duration;
-
 use flexure::compare::{
     Entrant, Leaderboard, Score, TIE, Task, TaskScores, check_budget, compare, entrants, ranks, tasks,
 };
@@ -190,7 +188,7 @@ fn laws_that_diverge_come_last() {
     scenario.duration = 1.5;
     for imperfection in &mut scenario.imperfections {
         if let flexure::io::Imperfection::Delay(delay) = imperfection {
-            delay.computation = LATE.as_secs_f64();
+            delay.computation = 0.05;
         }
     }
     let tasks = [Task::new(&scenario).expect("a good task")];
@@ -204,8 +202,6 @@ fn laws_that_diverge_come_last() {
     assert!(json["tasks"][0]["scores"][0]["rms_error"].is_null());
     assert!(leaderboard_table(&board).contains('—') && effort_figure(&board).contains("diverged:"));
 }
-
-const LATE: Duration = Duration::from_millis(50);
 
 /// Numbers that there are not leave no trace in figures.
 #[test]
