@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use flexure::compare::BUDGET;
 
 /// Model, design, simulate and compare controllers for robots with elastic joints.
 #[derive(Debug, Parser)]
@@ -36,6 +37,8 @@ pub enum Command {
         #[command(flatten)]
         output: Output,
     },
+    /// Compare control laws, each with gains from the same search: table, figures and compare.html.
+    Compare(Compare),
     /// Evaluate the control law at given states.
     Eval {
         /// Scenario file, or the name of a built-in scenario.
@@ -127,6 +130,24 @@ pub struct Certify {
     /// Certificate file; default out/NAME.certificate.json.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct Compare {
+    /// Scenario files, or names of built-in scenarios; the suite of tasks if left out.
+    #[arg(value_name = "SCENARIO")]
+    pub scenarios: Vec<String>,
+    /// Laws: names of `flexure list controllers`, vcbc:tanh, vcbc:coupled-tanh; the first list and vcbc:tanh if left out.
+    #[arg(long, value_name = "LAW", value_delimiter = ',')]
+    pub controllers: Vec<String>,
+    /// Runs that the search for gains may simulate, for each law and task.
+    #[arg(long, value_name = "RUNS", default_value_t = BUDGET)]
+    pub budget: usize,
+    /// Seed of the search.
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    #[command(flatten)]
+    pub output: Output,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

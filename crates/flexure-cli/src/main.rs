@@ -18,6 +18,7 @@ fn main() -> ExitCode {
     let done = match cli.command {
         Command::Reproduce(output) => commands::reproduce(&output.out, json),
         Command::Run { scenario, output } => commands::run(&scenario, &output.out, json),
+        Command::Compare(options) => commands::compare(&options, json),
         Command::Eval { scenario, states } => commands::eval(&scenario, &states, json),
         Command::Model { robot, states } => commands::model(&robot, &states, json),
         Command::Certify(options) => commands::certify(&options, json),

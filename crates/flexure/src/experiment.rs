@@ -134,7 +134,7 @@ pub fn report(experiments: &[Experiment], certificates: &[Certified]) -> Report 
         runs: experiments.iter().map(run_report).collect(),
         comparison_svg: Some(comparison(&traces)),
         certificates: certificates.iter().map(certificate_report).collect(),
-        assumptions: assumptions(experiments),
+        assumptions: assumptions(experiments.iter().map(|experiment| &experiment.scenario)),
         provenance: vec![
             format!("flexure {}", env!("CARGO_PKG_VERSION")),
             "No random numbers: the same build writes the same page, byte for byte, on any number of threads."
@@ -218,10 +218,10 @@ fn unit(key: &str) -> &'static str {
 }
 
 /// Every assumption of every file, once; a scenario's include its robot's.
-fn assumptions(experiments: &[Experiment]) -> Vec<Assumption> {
+pub fn assumptions<'a>(scenarios: impl Iterator<Item = &'a Scenario>) -> Vec<Assumption> {
     let mut all: Vec<Assumption> = Vec::new();
-    for experiment in experiments {
-        for assumed in &experiment.scenario.assumptions {
+    for scenario in scenarios {
+        for assumed in &scenario.assumptions {
             let seen = all.iter().any(|a| a.file == assumed.file && a.key == assumed.key);
             if !seen {
                 all.push(Assumption {

@@ -4,6 +4,7 @@ pub use flexure_core as core;
 
 pub mod along;
 pub mod certify;
+pub mod compare;
 pub mod confirmation;
 mod eigenvalues;
 pub mod evaluate;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use flexure::io::{ROBOTS, SCENARIOS};
+use flexure::io::{ROBOTS, SCENARIOS, TASKS};
 use flexure::registry::{CONTROLLERS, Entry, IMPERFECTIONS, REFERENCES, SHAPING};
 
 use super::print;
@@ -12,7 +12,7 @@ use crate::failure::Failure;
 pub fn list(kind: Option<Kind>, json: bool) -> Result<(), Failure> {
     let sections: Vec<(&str, Vec<(&str, String)>)> = [
         (Kind::Robots, "robots", files(ROBOTS)),
-        (Kind::Scenarios, "scenarios", files(SCENARIOS)),
+        (Kind::Scenarios, "scenarios", files(&[SCENARIOS, TASKS].concat())),
         (Kind::Controllers, "controllers", entries(CONTROLLERS)),
         (Kind::Shaping, "shaping", entries(SHAPING)),
         (Kind::References, "references", entries(REFERENCES)),

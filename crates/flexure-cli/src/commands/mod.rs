@@ -2,6 +2,7 @@
 
 mod certify;
 mod check;
+mod compare;
 mod eval;
 mod import;
 mod list;
@@ -14,6 +15,7 @@ mod verify;
 
 pub use certify::certify;
 pub use check::check;
+pub use compare::compare;
 pub use eval::eval;
 pub use import::import;
 pub use list::list;

@@ -4,6 +4,7 @@ mod bad_input;
 mod certify;
 mod check_list;
 mod command;
+mod compare;
 mod divergence;
 mod eval_model;
 mod hostile;

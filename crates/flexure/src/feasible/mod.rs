@@ -7,6 +7,7 @@
 //! reference needs more than the reference does.
 
 mod bounds;
+mod effort;
 mod peaks;
 mod search;
 mod track;
@@ -14,6 +15,7 @@ mod track;
 use serde::Serialize;
 
 use self::bounds::bounds;
+pub use self::effort::effort;
 use self::peaks::{Course, peaks};
 pub use self::search::speed;
 use self::track::with_track;

@@ -20,7 +20,7 @@ pub type Demands<'a> = dyn Fn(f64) -> Demand + 'a;
 
 /// What following the reference takes at some time, an entry per joint.
 pub struct Demand {
-    torque: Vec<f64>,
+    pub(super) torque: Vec<f64>,
     torque_rate: Vec<f64>,
     velocity: Vec<f64>,
     deflection: Vec<f64>,

@@ -27,6 +27,11 @@ pub const SCENARIOS: &[(&str, &str)] = data!("scenarios":
     "two-link-hardware" "two-link-everything" "two-link-tanh-10khz"
     "pendulum-tanh" "panda-tanh-smooth" "planar-2r-tanh" "planar-3r-tanh" "tomei-3r-tanh" "tomei-3r-tanh-coupled" "tomei-3r-5kg-tanh");
 
+/// Built-in scenarios that control laws are compared on: name and text of the file.
+pub const TASKS: &[(&str, &str)] = data!("scenarios":
+    "task-ideal-tracking" "task-hardware" "task-payload" "task-soft" "task-stiff"
+    "task-delay-1ms" "task-delay-2ms" "task-delay-4ms" "task-encoder" "task-push" "task-friction" "task-panda");
+
 /// Files that built-in robots are made from: name and text.
 const FILES: &[(&str, &str)] = &[("panda.urdf", include_str!("../../../../robots/panda.urdf"))];
 
@@ -48,7 +53,8 @@ pub fn load_robot(path_or_name: &str) -> Result<Robot, Problems> {
 /// With everything that is wrong, in the robot's file as well.
 pub fn load_scenario(path_or_name: &str) -> Result<Scenario, Problems> {
     if is_name(path_or_name) {
-        let text = find(path_or_name, SCENARIOS, "scenario")?;
+        let known = [SCENARIOS, TASKS].concat();
+        let text = find(path_or_name, &known, "scenario")?;
         return scenario::read(&Source::new(path_or_name, text), &Base::BuiltIn);
     }
     let path = Path::new(path_or_name);
@@ -83,7 +89,7 @@ fn find(name: &str, registry: &[(&str, &'static str)], what: &str) -> Result<&'s
 
 #[cfg(test)]
 mod tests {
-    use super::{ROBOTS, SCENARIOS, load_robot, load_scenario};
+    use super::{ROBOTS, SCENARIOS, TASKS, load_robot, load_scenario};
 
     #[test]
     fn every_member_loads() {
@@ -91,7 +97,7 @@ mod tests {
             let robot = load_robot(name).unwrap_or_else(|problems| panic!("{problems}"));
             assert_eq!(robot.name, *name);
         }
-        for (name, _) in SCENARIOS {
+        for (name, _) in SCENARIOS.iter().chain(TASKS) {
             let scenario = load_scenario(name).unwrap_or_else(|problems| panic!("{problems}"));
             assert_eq!(scenario.name, *name);
         }

@@ -42,13 +42,13 @@ mod scenario;
 mod site;
 mod source;
 mod states;
-mod suggest;
+pub(crate) mod suggest;
 mod table;
 mod urdf;
 
 pub use any::{Checked, check};
 pub use atomic::{WriteError, write_atomic};
-pub use builtin::{ROBOTS, SCENARIOS, load_robot, load_scenario};
+pub use builtin::{ROBOTS, SCENARIOS, TASKS, load_robot, load_scenario};
 pub use controller::{BASELINES, Baseline, Controller, Drive, Gain, Phi, Shape, SideGains, VcbcGains};
 pub use diagnostic::{Problem, Problems};
 pub use document::Places;
@@ -62,7 +62,8 @@ pub use initial::Initial;
 pub use joints::Limits;
 pub use links::{Body, DriveDefaults, JointKind, Links, MovingJoint};
 pub use outputs::{
-    prepare, write_certificate, write_certificates, write_experiment, write_report, write_trace,
+    prepare, write_certificate, write_certificates, write_experiment, write_leaderboard, write_report,
+    write_trace,
 };
 pub use plant::Plant;
 pub use provenance::Assumption;

@@ -10,7 +10,7 @@ const LONGEST_NAME: usize = 60;
 const MOST_COMPARED: usize = 128;
 
 /// `did you mean 'x'? known: x, y, z`, as far as it applies.
-pub(super) fn hint<'a>(given: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
+pub(crate) fn hint<'a>(given: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
     let mut list = String::new();
     for name in known.clone() {
         if list.len() > LONGEST_LIST {
@@ -44,7 +44,7 @@ fn nearest<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a 
 }
 
 /// User text as it may stand in a message: in quotes, one line, of bounded length.
-pub(super) fn quoted(text: &str) -> String {
+pub(crate) fn quoted(text: &str) -> String {
     let mut shown: String = text.chars().take(60).flat_map(char::escape_debug).collect();
     if text.chars().nth(60).is_some() {
         shown.push('…');

@@ -198,7 +198,7 @@ fn figure(number: usize, run: &RunReport) -> Markup {
     }
 }
 
-fn assumptions(assumptions: &[Assumption]) -> Markup {
+pub(super) fn assumptions(assumptions: &[Assumption]) -> Markup {
     let mut rows: Vec<(&Assumption, Vec<&str>)> = Vec::new();
     for assumption in assumptions {
         let same = |other: &Assumption| {

@@ -1,0 +1,56 @@
+//! `flexure compare`: laws on the same bench.
+
+use std::path::PathBuf;
+
+use flexure::compare::{Leaderboard, check_budget, compare as compared, entrants, tasks};
+use flexure::io::{prepare, write_leaderboard};
+use flexure::report::leaderboard_table;
+use serde::Serialize;
+
+use super::print;
+use crate::args::Compare;
+use crate::failure::{Failure, say};
+use crate::progress::Progress;
+
+/// What was found and where the files are.
+#[derive(Serialize)]
+struct Outcome<'a> {
+    #[serde(flatten)]
+    leaderboard: &'a Leaderboard,
+    files: Vec<PathBuf>,
+}
+
+pub fn compare(options: &Compare, json: bool) -> Result<(), Failure> {
+    check_budget(options.budget)?;
+    let entrants = entrants(&options.controllers)?;
+    let tasks = tasks(&options.scenarios)?;
+    say(tasks.iter().flat_map(|task| &task.scenario.warnings));
+    let out = &options.output.out;
+    prepare(out)?;
+    let leaderboard = {
+        let progress = Progress::new("comparing", tasks.len() * entrants.len());
+        compared(&tasks, &entrants, options.budget, options.seed, &|pair| progress.set(pair, 1.0))?
+    };
+    let files = write_leaderboard(out, &leaderboard, &tasks)?;
+    if json {
+        print::json(&Outcome { leaderboard: &leaderboard, files })?;
+    } else {
+        print::line(&leaderboard_table(&leaderboard))?;
+        for file in &files {
+            print::line(&format!("wrote {}", file.display()))?;
+        }
+    }
+    hopeless(&leaderboard)
+}
+
+/// The answer is no if every law diverges on a task.
+fn hopeless(leaderboard: &Leaderboard) -> Result<(), Failure> {
+    let names: Vec<&str> = leaderboard.hopeless().map(|task| task.scenario.as_str()).collect();
+    if names.is_empty() {
+        return Ok(());
+    }
+    let message = format!("every law diverges on {}", names.join(", "));
+    let hint =
+        "raise --budget, add --controllers, or make the task easier: a shorter control_period, less delay";
+    Err(Failure::no("diverged", message, hint))
+}

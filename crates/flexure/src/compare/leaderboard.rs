@@ -1,0 +1,129 @@
+//! Everything that a comparison found.
+
+use serde::Serialize;
+
+use super::ranking::{Standing, TIE, ranks, standings};
+use super::score::Score;
+use super::task::Task;
+
+/// What v-CBC is called, alone or before its shaping function.
+const VCBC: &str = "vcbc";
+
+/// Laws on tasks: the contract of `compare --json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Leaderboard {
+    /// Runs that each law might simulate on each task.
+    pub budget: usize,
+    /// Seed of every search.
+    pub seed: u64,
+    /// The laws by mean rank, the best first.
+    pub ranking: Vec<Standing>,
+    /// The tasks, in the order that they were given in.
+    pub tasks: Vec<TaskScores>,
+}
+
+/// A task and how every law did on it.
+#[derive(Clone, Debug, Serialize)]
+pub struct TaskScores {
+    /// Name of the task.
+    pub task: String,
+    /// Name of its scenario.
+    pub scenario: String,
+    /// Robot, control period and what stands between this loop and the ideal one.
+    pub conditions: String,
+    /// Root mean square of the motor torque that the reference takes by the model that the laws know, the largest over
+    /// the joints [N m].
+    pub needed_torque: f64,
+    /// The laws, in the same order on every task.
+    pub scores: Vec<Score>,
+}
+
+/// A task on which a law that is no v-CBC was better than every v-CBC that took part.
+#[derive(Clone, Copy, Debug)]
+pub struct Loss<'a> {
+    /// The task.
+    pub task: &'a TaskScores,
+    /// The best law.
+    pub winner: &'a Score,
+    /// The best v-CBC; none if no v-CBC finished.
+    pub vcbc: Option<&'a Score>,
+    /// Laws that are no v-CBC and better than the best one.
+    pub better: usize,
+}
+
+impl Leaderboard {
+    /// Ranks the laws, which are the same in the same order on every task.
+    pub fn new(budget: usize, seed: u64, tasks: Vec<TaskScores>) -> Self {
+        Self { budget, seed, ranking: standings(&tasks), tasks }
+    }
+
+    /// The laws in the order that they were given in.
+    pub fn laws(&self) -> impl Iterator<Item = &str> {
+        self.tasks.iter().take(1).flat_map(|task| task.scores.iter().map(|score| score.law.as_str()))
+    }
+
+    /// Tasks on which no law ran to the end.
+    pub fn hopeless(&self) -> impl Iterator<Item = &TaskScores> {
+        self.tasks.iter().filter(|task| !task.scores.iter().any(Score::finished))
+    }
+
+    /// The tasks that v-CBC took part in and was not the best on, ties aside.
+    pub fn losses(&self) -> Vec<Loss<'_>> {
+        self.tasks.iter().filter_map(TaskScores::loss).collect()
+    }
+
+    /// Whether v-CBC took part.
+    pub fn has_vcbc(&self) -> bool {
+        self.laws().any(is_vcbc)
+    }
+}
+
+impl TaskScores {
+    /// Of a task: fills in the ranks.
+    pub fn new(task: &Task, scores: Vec<Score>) -> Self {
+        let (name, scenario) = (task.name().to_owned(), task.scenario.name.clone());
+        let conditions = task.conditions();
+        Self::ranked(Self { task: name, scenario, conditions, needed_torque: task.needed_torque, scores })
+    }
+
+    /// The same with the ranks filled in.
+    pub fn ranked(mut self) -> Self {
+        let errors: Vec<f64> = self.scores.iter().map(|score| score.penalised_error).collect();
+        self.scores.iter_mut().zip(ranks(&errors)).for_each(|(score, rank)| score.rank = rank);
+        self
+    }
+
+    /// The smallest penalised error in rad; infinite if no law finished.
+    pub fn smallest(&self) -> f64 {
+        self.scores.iter().map(|score| score.penalised_error).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether a law of this task is the best on it, or ties with the best.
+    pub fn is_best(&self, score: &Score) -> bool {
+        score.penalised_error <= TIE * self.smallest()
+    }
+
+    fn loss(&self) -> Option<Loss<'_>> {
+        let finished = || self.scores.iter().filter(|score| score.finished());
+        let by_error = |a: &&Score, b: &&Score| a.penalised_error.total_cmp(&b.penalised_error);
+        let winner = finished().min_by(by_error)?;
+        let vcbc = finished().filter(|score| is_vcbc(&score.law)).min_by(by_error);
+        let took_part = self.scores.iter().any(|score| is_vcbc(&score.law));
+        let lost = took_part && vcbc.is_none_or(|vcbc| !self.is_best(vcbc));
+        let own = vcbc.map_or(f64::INFINITY, |vcbc| vcbc.penalised_error);
+        let better = finished().filter(|score| score.penalised_error * TIE < own).count();
+        lost.then_some(Loss { task: self, winner, vcbc, better })
+    }
+}
+
+impl Loss<'_> {
+    /// How many times smaller the winner's penalised error is; infinite if no v-CBC finished.
+    pub fn factor(&self) -> f64 {
+        self.vcbc.map_or(f64::INFINITY, |vcbc| vcbc.penalised_error / self.winner.penalised_error)
+    }
+}
+
+/// Whether a law of this name is v-CBC.
+pub fn is_vcbc(law: &str) -> bool {
+    law.split(':').next() == Some(VCBC)
+}

@@ -1,0 +1,71 @@
+//! What laws are compared on.
+
+use crate::feasible::{effort, pinned};
+use crate::io::{Imperfection, Problem, Problems, Scenario, TASKS, load_scenario};
+use crate::report::number::duration;
+
+/// Names of built-in tasks begin with it; left out where only tasks are named.
+const PREFIX: &str = "task-";
+
+/// A scenario whose controller is replaced by each law in turn.
+#[derive(Clone, Debug)]
+pub struct Task {
+    /// The scenario, its reference at the speed that was found for it.
+    pub scenario: Scenario,
+    /// Root mean square of the motor torque that the reference takes, by the model that the laws know [N m].
+    pub needed_torque: f64,
+}
+
+impl Task {
+    /// Of a scenario.
+    ///
+    /// # Errors
+    /// If its robot has too many joints, or its reference is no path or keeps no limits at any speed.
+    pub fn new(scenario: &Scenario) -> Result<Self, Problems> {
+        let scenario = pinned(scenario)?;
+        let needed_torque = effort(&scenario)?;
+        Ok(Self { scenario, needed_torque })
+    }
+
+    /// Its name in tables and figures.
+    pub fn name(&self) -> &str {
+        self.scenario.name.strip_prefix(PREFIX).unwrap_or(&self.scenario.name)
+    }
+
+    /// Robot, control period and what is not ideal, in words.
+    pub fn conditions(&self) -> String {
+        let Scenario { robot, control_period, imperfections, estimator, guard, .. } = &self.scenario;
+        let mut kinds: Vec<&str> = imperfections.iter().map(Imperfection::kind).collect();
+        kinds.dedup();
+        let estimator = estimator.is_some().then_some("observer");
+        let guard = guard.is_some().then_some("guard");
+        let unknown = self.scenario.plant.options();
+        let extras = unknown.into_iter().chain(kinds).chain(estimator).chain(guard).collect::<Vec<_>>();
+        let extras = if extras.is_empty() { "nothing else".to_owned() } else { extras.join(", ") };
+        format!(
+            "{}, {:.3} s, torque held for {}; {extras}",
+            robot.name,
+            self.scenario.duration,
+            duration(*control_period)
+        )
+    }
+}
+
+/// Tasks from scenario files or names of built-in scenarios; without any, [the suite](TASKS).
+///
+/// # Errors
+/// With everything that is wrong with one of them, and for a scenario that is named twice.
+pub fn tasks(scenarios: &[String]) -> Result<Vec<Task>, Problems> {
+    let suite = TASKS.iter().map(|(name, _)| (*name).to_owned()).collect::<Vec<_>>();
+    let mut tasks: Vec<Task> = Vec::new();
+    for path in if scenarios.is_empty() { &suite } else { scenarios } {
+        let scenario = load_scenario(path)?;
+        if tasks.iter().any(|task| task.scenario.name == scenario.name) {
+            let message = format!("two scenarios are called {}", scenario.name);
+            let hint = "name each scenario once; a file's name without its ending tells them apart";
+            return Err(Problem::new("twice", message, hint).into());
+        }
+        tasks.push(Task::new(&scenario)?);
+    }
+    Ok(tasks)
+}

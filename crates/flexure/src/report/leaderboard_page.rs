@@ -1,0 +1,230 @@
+//! The page of a comparison of laws.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
+
+use super::effort::{chatter_figure, effort_figure};
+use super::html::{Assumption, assumptions};
+use super::number::{NONE, engineering, short, significant};
+use crate::compare::{Leaderboard, Loss, Score, TaskScores, is_vcbc};
+
+const TITLE: &str = "Control laws of flexible-joint robots on the same bench";
+
+/// The page: ranking, where v-CBC loses, errors, figures, gains and what was assumed. The same comparison gives the same
+/// page, byte for byte.
+pub fn leaderboard_page(board: &Leaderboard, assumed: &[Assumption]) -> String {
+    markup! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (TITLE) }
+                style { (PreEscaped(include_str!("report.css"))) }
+            }
+            body { main {
+                header { h1 { (TITLE) } (introduction(board)) }
+                (contents(board))
+                section id="ranking" { h2 { "Ranking" } (ranking(board)) }
+                @if board.has_vcbc() {
+                    section id="losses" { h2 { "Where v-CBC is not the best" } (losses(board)) }
+                }
+                section id="errors" { h2 { "Errors" } (errors(board)) }
+                section id="figures" { h2 { "What an error costs" } (figures(board)) }
+                section id="gains" { h2 { "Gains that were found" } (gains(board)) }
+                section id="assumptions" { h2 { "Assumptions" } (assumptions(assumed)) }
+                footer { h2 { "How this page was made" } (provenance(board)) }
+            } }
+        }
+    }
+    .into_string()
+}
+
+fn introduction(board: &Leaderboard) -> Markup {
+    markup! {
+        p {
+            (counted(board.laws().count(), "law")) " on " (counted(board.tasks.len(), "task"))
+            ". Each law starts each task from gains made by one rule from stiffness and inertias, and may simulate "
+            (counted(board.budget, "run")) " to find better ones. What the search makes small, and what ranks, is the "
+            em { "penalised error" } ": the root mean square error of the links times √(1 + (c / 0.05)²), with c the change of \
+            the torque from one control instant to the next as a part of the torque. Chattering is no way to win."
+        }
+    }
+}
+
+fn contents(board: &Leaderboard) -> Markup {
+    markup! {
+        nav aria-label="Contents" {
+            a href="#ranking" { "Ranking" }
+            @if board.has_vcbc() { a href="#losses" { "Where v-CBC is not the best" } }
+            a href="#errors" { "Errors" }
+            a href="#figures" { "Figures" }
+            a href="#gains" { "Gains" }
+            a href="#assumptions" { "Assumptions" }
+        }
+    }
+}
+
+fn ranking(board: &Leaderboard) -> Markup {
+    markup! {
+        div.scroll { table.numbers {
+            thead { tr {
+                th { "law" } th { "place" } th { "mean rank" } th { "best on" br; span.unit { "tasks" } }
+                th { "median factor" br; span.unit { "to the best" } } th { "diverged on" br; span.unit { "tasks" } }
+            } }
+            tbody { @for standing in &board.ranking { tr {
+                th scope="row" { (name(&standing.law)) }
+                td { (standing.place) } td { (short(standing.mean_rank, 3)) } td { (standing.wins) }
+                td { (finite(standing.median_factor)) } td { (standing.unfinished) }
+            } } }
+        } }
+        p.note {
+            "Mean rank: over the tasks, 1 for the smallest penalised error; errors within 1 % of each other tie and share the \
+             mean of their ranks, and so do laws that diverge, at the end. Median factor: a law's penalised error over the best \
+             law's; — if the law diverges on half of the tasks."
+        }
+    }
+}
+
+fn losses(board: &Leaderboard) -> Markup {
+    let losses = board.losses();
+    markup! {
+        @if losses.is_empty() {
+            p { "Nowhere: on every task a v-CBC has the smallest penalised error, or ties with it." }
+        } @else {
+            div.scroll { table {
+                thead { tr {
+                    th { "task" } th { "best law" } th { "best v-CBC" } th { "factor" } th { "laws ahead" }
+                } }
+                tbody { @for loss in &losses { tr {
+                    th scope="row" { (loss.task.task) }
+                    td { (named_error(loss.winner)) }
+                    td { @match loss.vcbc { Some(vcbc) => (named_error(vcbc)), None => "every v-CBC diverges" } }
+                    td { (finite(loss.factor())) }
+                    td { (ahead(loss)) }
+                } } }
+            } }
+            p.note {
+                "Factor: the penalised error of the best v-CBC that took part over that of the best law. Root mean square errors \
+                 beside the names; ~ marks torques that chatter. On the other tasks v-CBC is the best or ties with the best."
+            }
+        }
+    }
+}
+
+fn ahead(loss: &Loss<'_>) -> String {
+    format!("{} of {}", loss.better, loss.task.scores.iter().filter(|score| !is_vcbc(&score.law)).count())
+}
+
+fn named_error(score: &Score) -> String {
+    let chatters = if score.chatters() { " ~" } else { "" };
+    format!("{}, {} mrad{chatters}", score.law, significant(1e3 * score.rms_error, 3))
+}
+
+fn errors(board: &Leaderboard) -> Markup {
+    markup! {
+        div.scroll { table.numbers {
+            thead { tr {
+                th { "rms error" br; span.unit { "[mrad]" } }
+                @for task in &board.tasks { th { (task.task.replace('-', " ")) } }
+            } }
+            tbody { @for standing in &board.ranking { tr {
+                th scope="row" { (name(&standing.law)) }
+                @for task in &board.tasks { (cell(task, &standing.law)) }
+            } } }
+        } }
+        p.note {
+            strong { "Bold" } ": best of the task by the penalised error, or tied with it. ~: the torque chatters, the penalised \
+            error is more than √2 times what stands here. —: the loop diverged."
+        }
+        div.scroll { table {
+            thead { tr { th { "task" } th { "conditions" } th { "rms torque" br; span.unit { "of the reference [N m]" } } } }
+            tbody { @for task in &board.tasks { tr {
+                th scope="row" { (task.task) } td { (task.conditions) } td { (engineering(task.needed_torque)) }
+            } } }
+        } }
+        @for (task, score) in failures(board) {
+            p { (score.law) " could not be run on " (task.task) ": " (score.failure.as_deref().unwrap_or_default()) }
+        }
+    }
+}
+
+fn cell(task: &TaskScores, law: &str) -> Markup {
+    let score = task.scores.iter().find(|score| score.law == law);
+    markup! {
+        td {
+            @match score.filter(|score| score.finished()) {
+                None => (NONE),
+                Some(score) => {
+                    @let error = significant(1e3 * score.rms_error, 3);
+                    @if task.is_best(score) { strong { (error) } } @else { (error) }
+                    @if score.chatters() { "\u{202f}~" }
+                }
+            }
+        }
+    }
+}
+
+fn failures(board: &Leaderboard) -> impl Iterator<Item = (&TaskScores, &Score)> {
+    let scores = board.tasks.iter().flat_map(|task| task.scores.iter().map(move |score| (task, score)));
+    scores.filter(|(_, score)| score.failure.is_some())
+}
+
+fn figures(board: &Leaderboard) -> Markup {
+    markup! {
+        figure {
+            div.card { (PreEscaped(effort_figure(board))) }
+            figcaption { "Dark rims: v-CBC. Marks that lie on each other are drawn smaller and smaller. Every panel has its own axes." }
+        }
+        figure {
+            div.card { (PreEscaped(chatter_figure(board))) }
+            figcaption { "The same errors over what noise, delay and gains make of the torque." }
+        }
+    }
+}
+
+fn gains(board: &Leaderboard) -> Markup {
+    markup! {
+        p { "One number per joint, in the units of scenario files. Start and end: penalised error with the gains that the \
+             search began with, and with these." }
+        @for task in &board.tasks {
+            details { summary { (task.task) }
+                div.scroll { table {
+                    thead { tr { th { "law" } th { "start" br; span.unit { "[mrad]" } } th { "end" br; span.unit { "[mrad]" } }
+                        th { "runs" } th { "gains" } } }
+                    tbody { @for score in &task.scores { tr {
+                        th scope="row" { (name(&score.law)) }
+                        td { (finite(1e3 * score.penalised_error_at_start)) } td { (finite(1e3 * score.penalised_error)) }
+                        td { (score.evaluations) }
+                        td { @for gain in &score.gains { code { (gain.key) } " " (values(&gain.values)) "; " } }
+                    } } }
+                } }
+            }
+        }
+    }
+}
+
+fn values(values: &[f64]) -> String {
+    values.iter().map(|value| short(*value, 3)).collect::<Vec<_>>().join(", ")
+}
+
+fn provenance(board: &Leaderboard) -> Markup {
+    markup! { ul {
+        li { "flexure " (env!("CARGO_PKG_VERSION")) }
+        li { "Budget " (board.budget) " runs for each law and task, seed " (board.seed) " for every search. The same build writes \
+              the same page, byte for byte, on any number of threads." }
+        li { "Protocol and what it leaves out: docs/comparison.md." }
+    } }
+}
+
+/// v-CBC stands out.
+fn name(law: &str) -> Markup {
+    markup! { @if is_vcbc(law) { em { (law) } } @else { (law) } }
+}
+
+fn finite(value: f64) -> String {
+    if value.is_finite() { significant(value, 3) } else { NONE.to_owned() }
+}
+
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}

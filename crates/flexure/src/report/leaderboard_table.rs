@@ -1,0 +1,65 @@
+//! A comparison of laws on a terminal.
+
+use comfy_table::{Cell, Row};
+
+use super::number::{NONE, short, significant};
+use super::table::{headed, right};
+use crate::compare::{Leaderboard, Score, Standing, TaskScores};
+
+/// Tasks side by side.
+const MOST_TASKS: usize = 7;
+
+/// Errors of every law on every task, then the ranking: at most 100 columns wide, without colours.
+pub fn leaderboard_table(board: &Leaderboard) -> String {
+    let blocks = board.tasks.len().div_ceil(MOST_TASKS).max(1);
+    let matrices = board.tasks.chunks(board.tasks.len().div_ceil(blocks).max(1));
+    let mut text = String::from("root mean square error of the links [mrad]\n");
+    for tasks in matrices {
+        text.push_str(&matrix(board, tasks));
+        text.push('\n');
+    }
+    text.push_str("* best of the task, ~ torque chatters (counts against the law), — diverged\n\n");
+    text.push_str(&ranking(&board.ranking));
+    text
+}
+
+fn matrix(board: &Leaderboard, tasks: &[TaskScores]) -> String {
+    let titles = tasks.iter().map(|task| task.task.replacen('-', "\n", 1)).collect::<Vec<_>>();
+    let mut table = headed(["law"].into_iter().chain(titles.iter().map(String::as_str)));
+    for standing in &board.ranking {
+        let cells = tasks.iter().map(|task| {
+            let score = task.scores.iter().find(|score| score.law == standing.law);
+            right(score.map_or(NONE.to_owned(), |score| error(task, score)))
+        });
+        table.add_row(Row::from(std::iter::once(Cell::new(&standing.law)).chain(cells).collect::<Vec<_>>()));
+    }
+    table.to_string()
+}
+
+/// An error in mrad with its marks.
+fn error(task: &TaskScores, score: &Score) -> String {
+    if !score.finished() {
+        return NONE.to_owned();
+    }
+    let best = if task.is_best(score) { "*" } else { "" };
+    let chatters = if score.chatters() { "~" } else { "" };
+    format!("{}{chatters}{best}", significant(1e3 * score.rms_error, 3))
+}
+
+fn ranking(ranking: &[Standing]) -> String {
+    let titles =
+        ["place", "law", "mean\nrank", "best on\ntasks", "median factor\nto the best", "diverged\non tasks"];
+    let mut table = headed(titles.into_iter());
+    for standing in ranking {
+        let factor = Some(standing.median_factor).filter(|factor| factor.is_finite());
+        let numbers = [
+            short(standing.mean_rank, 3),
+            standing.wins.to_string(),
+            factor.map_or(NONE.to_owned(), |factor| significant(factor, 3)),
+            standing.unfinished.to_string(),
+        ];
+        let first = [right(standing.place.to_string()), Cell::new(&standing.law)];
+        table.add_row(Row::from(first.into_iter().chain(numbers.map(right)).collect::<Vec<_>>()));
+    }
+    table.to_string()
+}

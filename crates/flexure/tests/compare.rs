@@ -1,0 +1,221 @@
+//! Control laws on the same bench: ranks, what a comparison depends on, what becomes of laws that diverge.
+
+use flexure::compare::{
+    Entrant, Leaderboard, Score, TIE, Task, TaskScores, check_budget, compare, entrants, ranks, tasks,
+};
+use flexure::io::{TASKS, load_scenario};
+use flexure::report::{chatter_figure, effort_figure, leaderboard_page, leaderboard_table};
+
+fn named(names: &[&str]) -> Vec<Entrant> {
+    entrants(&names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>()).expect("known laws")
+}
+
+/// The first second of some built-in scenarios.
+fn short(names: &[&str]) -> Vec<Task> {
+    let cut = |name: &&str| {
+        let mut scenario = load_scenario(name).expect("built in");
+        scenario.duration = 1.0;
+        Task::new(&scenario).expect("a good task")
+    };
+    names.iter().map(cut).collect()
+}
+
+/// A score that was never measured.
+fn score(law: &str, error: f64) -> Score {
+    let mut score = Score::failed(law, "");
+    score.failure = None;
+    score.diverged_at = error.is_nan().then_some(0.5);
+    (score.penalised_error, score.rms_error, score.rms_torque, score.chatter) = (error, error, 1.0, 0.01);
+    score
+}
+
+/// A task with made-up errors of the laws `vcbc`, `pd` and `cascade`.
+fn made_up(name: &str, errors: [f64; 3]) -> TaskScores {
+    TaskScores {
+        task: name.to_owned(),
+        scenario: name.to_owned(),
+        conditions: String::new(),
+        needed_torque: 1.0,
+        scores: ["vcbc", "pd", "cascade"].into_iter().zip(errors).map(|(law, e)| score(law, e)).collect(),
+    }
+    .ranked()
+}
+
+#[test]
+fn ranks_order_errors_and_share_ties() {
+    assert_eq!(ranks(&[3.0, 1.0, 2.0]), [3.0, 1.0, 2.0]);
+    // The first two are within 1 %, and so are none of the others.
+    assert_eq!(ranks(&[1.0, 1.009, 1.011, 5.0]), [1.5, 1.5, 3.0, 4.0]);
+    // A chain of ties ends where it leaves the first of its group.
+    assert_eq!(ranks(&[1.0, 1.008, 1.016]), [1.5, 1.5, 3.0]);
+    // What has no number shares the last ranks.
+    assert_eq!(ranks(&[f64::NAN, 0.1, f64::NAN, f64::INFINITY]), [3.0, 1.0, 3.0, 3.0]);
+    assert_eq!(ranks(&[]), [0.0; 0]);
+}
+
+/// Whatever the errors, ranks add up to n (n + 1) / 2.
+#[test]
+fn ranks_keep_their_sum() {
+    for k in 0..50 {
+        let errors: Vec<f64> = (0..9).map(|i| (f64::from(k * i) * 1.7).sin().abs().powi(k)).collect();
+        let sum: f64 = ranks(&errors).iter().sum();
+        assert!((sum - 45.0).abs() < 1e-12, "{errors:?}");
+    }
+}
+
+#[test]
+fn standings_are_means_of_ranks() {
+    let tasks = vec![
+        made_up("a", [1.0, 2.0, 4.0]),
+        made_up("b", [4.0, 2.0, 1.0]),
+        made_up("c", [f64::NAN, 2.0, 3.0]),
+        made_up("d", [f64::NAN, 1.0, 1.005]),
+    ];
+    let board = Leaderboard::new(1, 0, tasks);
+    let standing = |law: &str| board.ranking.iter().find(|standing| standing.law == law).expect("took part");
+    let [pd, cascade, vcbc] = ["pd", "cascade", "vcbc"].map(standing);
+    assert_eq!([pd.mean_rank, cascade.mean_rank, vcbc.mean_rank], [1.625, 1.875, 2.5]);
+    assert_eq!([pd.place, cascade.place, vcbc.place], [1, 2, 3]);
+    assert_eq!([pd.wins, cascade.wins, vcbc.wins], [2, 2, 1]);
+    assert_eq!([pd.unfinished, cascade.unfinished, vcbc.unfinished], [0, 0, 2]);
+    // Factors of pd: 2, 2, 1, 1. Those of v-CBC: 1, 4, and twice infinite.
+    assert_eq!([pd.median_factor, vcbc.median_factor], [1.5, f64::INFINITY]);
+    assert_eq!(board.ranking.iter().map(|s| s.law.as_str()).collect::<Vec<_>>(), ["pd", "cascade", "vcbc"]);
+    let losses: Vec<_> =
+        board.losses().iter().map(|l| (l.task.task.as_str(), l.factor(), l.better)).collect();
+    assert_eq!(losses, [("b", 4.0, 2), ("c", f64::INFINITY, 2), ("d", f64::INFINITY, 2)]);
+    assert_eq!(board.hopeless().count(), 0);
+}
+
+#[test]
+fn equal_mean_ranks_share_a_place() {
+    let board = Leaderboard::new(1, 0, vec![made_up("a", [1.0, 2.0, 4.0]), made_up("b", [2.0, 1.0, 4.0])]);
+    assert_eq!(board.ranking.iter().map(|standing| standing.place).collect::<Vec<_>>(), [1, 1, 3]);
+    let lost = Leaderboard::new(1, 0, vec![made_up("a", [f64::NAN; 3])]);
+    assert_eq!(lost.hopeless().count(), 1);
+    assert!(lost.losses().is_empty(), "nobody won");
+}
+
+/// Names are what makes a law; v-CBC with φ linear has two.
+#[test]
+fn laws_are_named_once() {
+    assert_eq!(entrants(&[]).expect("all laws").len(), flexure::registry::CONTROLLERS.len() + 1);
+    for entrant in entrants(&[]).expect("all laws") {
+        assert_eq!(Entrant::named(&entrant.name()).expect("its own name"), entrant);
+    }
+    let refused = |names: &[&str]| {
+        let names: Vec<_> = names.iter().map(|name| (*name).to_owned()).collect();
+        let problem = entrants(&names).expect_err("refused");
+        format!("{problem}: {}", problem.hint())
+    };
+    assert!(refused(&["pd", "vcbc:than"]).contains("did you mean 'vcbc:tanh'?"));
+    assert!(refused(&["pd", "vcbc", "pd"]).contains("pd takes part twice"));
+    assert!(check_budget(0).is_err() && check_budget(1).is_ok());
+    let twice = tasks(&["two-link-tanh".to_owned(), "two-link-tanh".to_owned()]).expect_err("refused");
+    assert!(twice.to_string().contains("two scenarios are called two-link-tanh"));
+}
+
+/// Every task of the suite loads, and says what is assumed about it; no two differ in their name alone.
+#[test]
+fn the_suite_has_tasks_of_every_sort() {
+    let suite = tasks(&[]).expect("built in");
+    assert_eq!(suite.len(), TASKS.len());
+    assert!(suite.len() >= 9);
+    let kinds: Vec<_> =
+        suite.iter().flat_map(|task| &task.scenario.imperfections).map(|i| i.kind()).collect();
+    for kind in ["encoder", "velocity-filter", "saturation", "model-error", "delay", "push", "friction"] {
+        assert!(kinds.contains(&kind), "{kind}");
+    }
+    for task in &suite {
+        assert!(task.scenario.assumptions.iter().any(|a| a.file == task.scenario.name), "{}", task.name());
+        assert!(
+            task.needed_torque > 0.0 && task.needed_torque < 200.0,
+            "{}: {}",
+            task.name(),
+            task.needed_torque
+        );
+        let usage = flexure::feasible::usage(&task.scenario).expect("a path");
+        assert!(usage.iter().all(|usage| usage.share < 1.0), "{}: {usage:?}", task.name());
+    }
+}
+
+/// In a pool of `threads` threads.
+fn compared(threads: usize, tasks: &[Task], laws: &[Entrant], budget: usize) -> Leaderboard {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+    pool.install(|| compare(tasks, laws, budget, 5, &|_| ()).expect("good tasks"))
+}
+
+/// The whole contract of `--json`, and with it every number, is the same to the bit on one thread and on two, whatever
+/// finishes first; and nothing depends on what else is compared.
+#[test]
+fn results_depend_on_task_law_budget_and_seed_alone() {
+    let tasks = short(&["two-link-tanh-smooth", "task-delay-1ms"]);
+    let laws = named(&["vcbc", "pd", "feedforward-pd"]);
+    let board = compared(1, &tasks, &laws, 6);
+    let text = |board: &Leaderboard| serde_json::to_string(board).expect("JSON");
+    assert_eq!(text(&board), text(&compared(2, &tasks, &laws, 6)));
+    let alone = compared(1, &tasks[1..], &laws[1..2], 6);
+    let (a, b) = (&alone.tasks[0].scores[0], &board.tasks[1].scores[1]);
+    assert_eq!((a.penalised_error.to_bits(), &a.gains), (b.penalised_error.to_bits(), &b.gains));
+
+    let page = |board: &Leaderboard| leaderboard_page(board, &[]);
+    assert_eq!(page(&board), page(&compared(2, &tasks, &laws, 6)));
+    assert!(leaderboard_table(&board).lines().all(|line| line.chars().count() <= 100));
+}
+
+/// The budget is kept, the search never makes a law worse, and what ranks is the error it reports.
+#[test]
+fn scores_are_what_they_say() {
+    let tasks = short(&["two-link-tanh-smooth"]);
+    let board = compare(&tasks, &named(&["pd", "vcbc", "vcbc:tanh"]), 8, 1, &|_| ()).expect("good tasks");
+    for score in &board.tasks[0].scores {
+        assert!(score.evaluations <= 8, "{score:?}");
+        assert!(score.penalised_error <= score.penalised_error_at_start, "{score:?}");
+        let penalty = (1.0 + (score.chatter / 0.05).powi(2)).sqrt();
+        // Two ways to the same number: logarithm and exponential cost a few roundings of an exponent of about 20.
+        assert!((score.penalised_error / (score.rms_error * penalty) - 1.0).abs() < 1e-12, "{score:?}");
+        assert!(score.max_error >= score.rms_error && !score.gains.is_empty());
+        assert_eq!(score.chatters(), score.chatter > 0.05);
+    }
+    let best = board.tasks[0].scores.iter().min_by(|a, b| a.penalised_error.total_cmp(&b.penalised_error));
+    assert!(best.is_some_and(|best| board.tasks[0].is_best(best) && best.rank < 2.0 + TIE));
+}
+
+/// Torque that acts 50 ms late throws fast laws off; one that only damps the motors stays.
+#[test]
+fn laws_that_diverge_come_last() {
+    let mut scenario = load_scenario("task-delay-4ms").expect("built in");
+    scenario.duration = 1.5;
+    for imperfection in &mut scenario.imperfections {
+        if let flexure::io::Imperfection::Delay(delay) = imperfection {
+            delay.computation = 0.05;
+        }
+    }
+    let tasks = [Task::new(&scenario).expect("a good task")];
+    let board = compare(&tasks, &named(&["backstepping", "pd"]), 1, 0, &|_| ()).expect("a good task");
+    let [backstepping, pd] = &board.tasks[0].scores[..] else { panic!("{board:?}") };
+    assert!(!backstepping.finished() && pd.finished(), "{board:?}");
+    assert!(backstepping.rms_error.is_nan() && backstepping.diverged_at.is_some_and(|t| t < 1.5));
+    assert_eq!([backstepping.rank, pd.rank], [2.0, 1.0]);
+    assert_eq!(board.ranking[1].law, "backstepping");
+    let json = serde_json::to_value(&board).expect("JSON");
+    assert!(json["tasks"][0]["scores"][0]["rms_error"].is_null());
+    assert!(leaderboard_table(&board).contains('—') && effort_figure(&board).contains("diverged:"));
+}
+
+/// Numbers that there are not leave no trace in figures.
+#[test]
+fn figures_are_drawings_with_finite_numbers() {
+    let tasks =
+        vec![made_up("a", [1e-3, f64::NAN, 2e-3]), made_up("b", [f64::NAN; 3]), made_up("c", [1e-3; 3])];
+    let board = Leaderboard::new(1, 0, tasks);
+    for svg in [effort_figure(&board), chatter_figure(&board)] {
+        let document = roxmltree::Document::parse(&svg).expect("well-formed");
+        assert!(document.descendants().filter(|node| node.has_tag_name("circle")).count() >= 5);
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+        for law in board.laws() {
+            assert!(document.descendants().any(|node| node.text() == Some(law)), "{law} in the legend");
+        }
+        assert!(flexure::report::png(&svg).is_ok());
+    }
+}
