@@ -79,6 +79,20 @@ fn a_block_slows_down_evenly_and_stops() {
     }
 }
 
+/// What friction can stop within a step is at rest at its end, not nearly so.
+#[test]
+fn rest_is_exact() {
+    for side in Side::BOTH {
+        let plant = side.block(0.1, Friction::coulomb(Vector([0.5])));
+        for k in 1..100 {
+            let x = side.moving(1.1e-5 * f64::from(k));
+            // v + h (−v/h) would not be zero for a quarter of these.
+            let (_, v) = side.position_and_speed(&Ride::new(&plant, x, 7e-4).on(7e-4, [0.0]).x);
+            assert!(v == 0.0, "{side:?}: {v} rad/s");
+        }
+    }
+}
+
 #[test]
 fn friction_holds_below_stiction_and_less_once_it_slides() {
     let (inertia, friction) = (
