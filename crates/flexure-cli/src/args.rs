@@ -78,10 +78,7 @@ pub enum Command {
         certificate: PathBuf,
     },
     /// Measure how much delay, gain error, stiffness error and noise a loop bears, by bisection in simulation.
-    Margins {
-        /// Scenario file, or the name of a built-in scenario.
-        scenario: String,
-    },
+    Margins(Margins),
     /// List what is registered.
     List {
         /// What to list; everything if left out.
@@ -148,6 +145,21 @@ pub struct Compare {
     pub seed: u64,
     #[command(flatten)]
     pub output: Output,
+}
+
+#[derive(Debug, Args)]
+pub struct Margins {
+    /// Scenario file, or the name of a built-in scenario.
+    pub scenario: String,
+    /// Laws to measure instead of the scenario's, with gains from the search of `compare`.
+    #[arg(long, value_name = "LAW", value_delimiter = ',')]
+    pub controllers: Vec<String>,
+    /// With --controllers: runs that the search for gains may simulate, for each law.
+    #[arg(long, value_name = "RUNS", default_value_t = BUDGET, requires = "controllers")]
+    pub budget: usize,
+    /// With --controllers: seed of the search.
+    #[arg(long, default_value_t = 0, requires = "controllers")]
+    pub seed: u64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

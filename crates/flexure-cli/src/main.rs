@@ -25,7 +25,7 @@ fn main() -> ExitCode {
         Command::Check { files } => commands::check(&files, json),
         Command::Import { urdf, lock } => commands::import(&urdf, &lock, json),
         Command::Verify { certificate } => commands::verify(&certificate, json),
-        Command::Margins { scenario } => commands::margins(&scenario, json),
+        Command::Margins(options) => commands::margins(&options, json),
         Command::List { kind } => commands::list(kind, json),
     };
     match done {

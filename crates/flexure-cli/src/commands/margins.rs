@@ -1,25 +1,57 @@
 //! `flexure margins`: how much a loop bears.
 
-use flexure::io::load_scenario;
-use flexure::margins::margins;
+use flexure::compare::{Entrant, check_budget, entrants};
+use flexure::io::{Problems, Scenario, load_scenario};
+use flexure::margins::{Margins as Found, margins as measured};
 use flexure::report::margins_table;
+use flexure::tune::tune;
+use serde::Serialize;
 
 use super::print;
+use crate::args::Margins;
 use crate::failure::{Failure, say};
 
-pub fn measure(scenario: &str, json: bool) -> Result<(), Failure> {
-    let scenario = load_scenario(scenario)?;
+/// The loops that were measured.
+#[derive(Serialize)]
+struct Outcome {
+    loops: Vec<Found>,
+}
+
+pub fn margins(options: &Margins, json: bool) -> Result<(), Failure> {
+    check_budget(options.budget)?;
+    let chosen = if options.controllers.is_empty() { Vec::new() } else { entrants(&options.controllers)? };
+    let scenario = load_scenario(&options.scenario)?;
     say(&scenario.warnings);
-    let found = margins(&scenario)?;
-    if json {
-        print::json(&found)?;
+    let loops = if chosen.is_empty() {
+        vec![measured(&scenario)?]
     } else {
-        print::line(&margins_table(std::slice::from_ref(&found)))?;
-        print::line(&format!(
-            "holds: the loop does not diverge and its rms error is at most {:.3} mrad; {} runs",
-            1e3 * found.allowed_rms_e_l,
-            found.runs
-        ))?;
+        let tuned = |entrant: &Entrant| measured(&tuned(&scenario, *entrant, options)?);
+        chosen.iter().map(tuned).collect::<Result<_, Problems>>()?
+    };
+    if json {
+        print::json(&Outcome { loops: loops.clone() })?;
+    } else {
+        print::line(&margins_table(&loops))?;
+        for found in &loops {
+            print::line(&format!(
+                "{} holds: it does not diverge, and its rms error is at most {:.3} mrad; {} runs",
+                found.law(),
+                1e3 * found.allowed_rms_e_l,
+                found.runs
+            ))?;
+        }
     }
-    found.objection(&scenario).map_or(Ok(()), |problem| Err(Failure::No(vec![problem.into()])))
+    let objections: Vec<_> = loops.iter().filter_map(|found| found.objection(&scenario)).collect();
+    if objections.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::No(objections.into_iter().map(Into::into).collect()))
+}
+
+/// The scenario under another law, with the gains that the search finds.
+fn tuned(scenario: &Scenario, entrant: Entrant, options: &Margins) -> Result<Scenario, Problems> {
+    let mut scenario = scenario.clone();
+    scenario.controller = entrant.controller(&scenario.robot)?;
+    scenario.controller = tune(&scenario, options.budget, options.seed)?.controller;
+    Ok(scenario)
 }

@@ -19,7 +19,7 @@ pub use compare::compare;
 pub use eval::eval;
 pub use import::import;
 pub use list::list;
-pub use margins::measure as margins;
+pub use margins::margins;
 pub use model::model;
 pub use reproduce::reproduce;
 pub use run::run;

@@ -123,6 +123,11 @@ pub fn margins(scenario: &Scenario) -> Result<Margins, Problems> {
 }
 
 impl Margins {
+    /// The law in words.
+    pub fn law(&self) -> String {
+        self.phi.as_ref().map_or_else(|| self.controller.clone(), |phi| format!("{} {phi}", self.controller))
+    }
+
     /// Says that the loop does not even hold as it is, if so.
     pub fn objection(&self, scenario: &Scenario) -> Option<Problem> {
         self.rms_e_l.is_none().then(|| {

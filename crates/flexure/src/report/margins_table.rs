@@ -20,11 +20,9 @@ pub fn margins_table(margins: &[Margins]) -> String {
     ];
     let mut table = headed(titles.into_iter());
     for loop_ in margins {
-        let law =
-            loop_.phi.as_ref().map_or(loop_.controller.clone(), |phi| format!("{} {phi}", loop_.controller));
         let milli = |x: Option<f64>, scale: f64| x.map_or(NONE.to_owned(), |x| significant(scale * x, 3));
         table.add_row(vec![
-            Cell::new(format!("{}\n{law}", loop_.name)),
+            Cell::new(format!("{}\n{}", loop_.name, loop_.law())),
             right(milli(loop_.rms_e_l, 1e3)),
             right(upper(&loop_.delay, 1e3)),
             right(range(&loop_.gain_low, &loop_.gain_high)),
