@@ -8,6 +8,7 @@ mod compare;
 mod divergence;
 mod eval_model;
 mod hostile;
+mod margins;
 mod pipes;
 mod reproduce;
 mod run;

@@ -1,0 +1,51 @@
+//! `flexure margins`.
+
+use crate::command::{Place, SCENARIO, altered};
+
+const SMOOTH: &str = "[reference.smooth_start]\nduration = 0.5\n[controller]";
+
+/// Half a second of the paper's arm, joined smoothly.
+fn short() -> String {
+    altered(SCENARIO, &[("duration = 10.0", "duration = 0.5"), ("[controller]", SMOOTH)])
+}
+
+#[test]
+fn margins_are_brackets_around_where_the_loop_stops_holding() {
+    let place = Place::new();
+    place.write("short.toml", short());
+    let json = place.run(&["margins", "short.toml", "--json"]).done().json();
+    let found = &json["loops"][0];
+    // A millisecond of delay more is too much for the paper's gains at 1 kHz.
+    let [holds, fails] = ["holds", "fails"].map(|key| found["delay"][key].as_f64().unwrap());
+    assert!(holds < fails && fails <= 1e-3 && fails - holds <= 0.01 * fails, "{found}");
+    for (low, high) in [("gain_low", "gain_high"), ("stiffness_low", "stiffness_high")] {
+        assert!(found[low]["holds"].as_f64().unwrap() < 1.0, "{found}");
+        assert!(found[high]["holds"].as_f64().unwrap() > 1.0, "{found}");
+    }
+    assert!(found["noise"]["holds"].as_f64().unwrap() > 0.0);
+    assert!(found["noise_to_torque"].as_f64().unwrap() > 0.0);
+    let table = place.run(&["margins", "short.toml"]).done().stdout;
+    assert!(table.contains("vcbc tanh") && table.lines().all(|line| line.chars().count() <= 110), "{table}");
+}
+
+#[test]
+fn a_loop_that_diverges_has_no_margins() {
+    let place = Place::new();
+    let slow = short().replace("control_period = 0.001", "control_period = 0.004");
+    place.write("slow.toml", slow.replace("duration = 0.5\n[controller]", "duration = 0.2\n[controller]"));
+    let outcome = place.run(&["margins", "slow.toml"]);
+    assert_eq!(outcome.code, Some(1), "{outcome:?}");
+    outcome.said(&["slow.toml", "diverges as it is", "lower the gains"]);
+}
+
+#[test]
+fn questions_that_cannot_be_meant_are_refused() {
+    let place = Place::new();
+    place.write("short.toml", short());
+    let hold = "control_period = 0.001\nhold = \"continuous\"";
+    place.write("ideal.toml", short().replace("control_period = 0.001", hold));
+    place.run(&["margins", "ideal.toml"]).refused(&["hold is \"continuous\"", "remove hold"]);
+    place.run(&["margins", "nowhere"]).refused(&["nowhere"]);
+    place.run(&["margins", "short.toml", "--controllers", "pdd"]).refused(&["pdd", "did you mean"]);
+    place.run(&["margins", "short.toml", "--controllers", "pd", "--budget", "0"]).refused(&["budget is 0"]);
+}
