@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use flexure::io::{Body, Links, ROBOTS, load_robot, load_scenario};
+use flexure::io::{Body, Links, ROBOTS, SmoothStart, load_robot, load_scenario};
 use toml::de::{DeTable, DeValue};
 
 /// Sum of the masses of panda.urdf but for the base link, which does not move.
@@ -76,7 +76,7 @@ fn files_on_disk_are_read_like_built_in_ones() {
     assert_eq!(robot.links, load_robot("quanser-2dof").unwrap().links);
     let scenario = load_scenario(&format!("{root}scenarios/two-link-tanh.toml")).unwrap();
     assert_eq!((scenario.name.as_str(), scenario.smooth_start), ("two-link-tanh", None));
-    assert_eq!(load_scenario("two-link-tanh-smooth").unwrap().smooth_start, Some(2.0));
+    assert_eq!(load_scenario("two-link-tanh-smooth").unwrap().smooth_start, Some(SmoothStart::within(2.0)));
 }
 
 /// Dotted keys of the numbers in `value`, entries of a list of tables together: `links.joint.mass`.

@@ -60,7 +60,7 @@ fn point_to_point_motions_have_the_smoothness_of_their_name() {
 #[test]
 fn a_smooth_start_leaves_from_the_robot_and_reaches_the_reference() {
     let scenario = load_scenario("two-link-tanh-smooth").expect("built in");
-    let duration = scenario.smooth_start.expect("smooth");
+    let duration = scenario.smooth_start.expect("smooth").duration;
     let reference = AnyReference::<f64, 2>::new(&scenario).expect("a path");
     let start = reference.at::<5>(0.0).0;
     assert!(start.iter().all(|jet| (0..5).all(|k| jet.derivative(k) == 0.0)), "{start:?}");

@@ -286,8 +286,8 @@ fn does_not_depend_on_units() {
 
 #[test]
 fn joins_from_rest_elsewhere() {
-    let q_d = SmoothStart { from: Vector([0.0, 5.0]), duration: 1.0, then: spline(&rough()) };
-    assert_eq!(q_d.at::<5>(0.0), q_d.from.lift());
+    let q_d = SmoothStart::from_rest(Vector([0.0, 5.0]), 1.0, spline(&rough()));
+    assert_eq!(q_d.at::<5>(0.0), Vector([0.0, 5.0]).lift());
     assert_eq!(q_d.at::<5>(1.7), q_d.then.at(1.7));
 }
 

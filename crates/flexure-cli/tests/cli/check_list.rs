@@ -45,6 +45,30 @@ fn shipped_files_are_good() {
     }
 }
 
+/// A reference that exceeds a limit is an answer, a limit that no speed keeps a bad input; both with numbers.
+#[test]
+fn what_a_reference_uses_of_the_limits_is_told() {
+    let place = Place::new();
+    let used = place.run(&["check", "planar-2r-tanh", "--json"]).done().json();
+    assert_eq!(used[0]["reference"]["usage"].as_array().unwrap().len(), 2, "{used}");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/two-link-tanh-smooth.toml");
+    let text = std::fs::read_to_string(root).unwrap().replace("quanser-2dof", "two-link-plausible");
+    place.write("fast.toml", &text);
+    let fast = place.run(&["check", "fast.toml"]);
+    assert_eq!(fast.code, Some(1), "{fast:?}");
+    fast.said(&["joint2: motor torque of 2.746", "fast.toml"]);
+    assert!(fast.stdout.contains("torque_limit") && fast.stdout.contains("1.64"), "{}", fast.stdout);
+    let scaled =
+        |key: &str| text.replace("[controller]", &format!("[reference.time_scaling]\n{key}\n[controller]"));
+    place.write("slow.toml", scaled("margin = 0.8"));
+    let slow = place.run(&["check", "slow.toml"]).done();
+    assert!(slow.stdout.contains("at 0.346"), "{}", slow.stdout);
+    place.write("never.toml", scaled("margin = 0.8").replace("q_m = [0.0, 0.0]", "q_m = [0.0, 1.0]"));
+    for command in ["check", "run"] {
+        place.run(&[command, "never.toml"]).refused(&["no speed keeps the reference within 0.8", "would do"]);
+    }
+}
+
 #[test]
 fn one_bad_file_among_good_ones_is_told_apart() {
     let place = Place::new();

@@ -2,8 +2,8 @@
 //!
 //! A flexible-joint robot is flat: the trajectory of its links decides motor torques, their rates, deflections and
 //! velocities, by exact inverse dynamics on Taylor series. They are looked at every control period and at least a thousand
-//! times a run, and once more at the top of each hump between. That is a dense sample, not a proof: `flexure certify
-//! --along` bounds what happens in between. And it is the reference that is asked, not the loop: a robot that starts off its
+//! times a run, and once more at the top of each hump between. That is a dense sample, not a proof: bounds over
+//! whole spans of time are those of [`along`](crate::along). And it is the reference that is asked, not the loop: a robot that starts off its
 //! reference needs more than the reference does.
 
 mod bounds;
@@ -53,7 +53,7 @@ pub fn usage(scenario: &Scenario) -> Result<Vec<Usage>, Problems> {
 
 /// What to say of each limit that the reference exceeds.
 pub fn exceeded(scenario: &Scenario, usage: &[Usage]) -> Vec<Problem> {
-    let beyond = usage.iter().filter(|usage| usage.share > 1.0);
+    let beyond = usage.iter().filter(|usage| usage.share > 1.0 || usage.share.is_nan());
     beyond
         .map(|usage| {
             let message = format!("the reference exceeds a limit: {}", described(scenario, usage));

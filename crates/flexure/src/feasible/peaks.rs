@@ -33,14 +33,15 @@ pub struct Peak {
 
 /// For each bound what comes closest, among `samples` intervals of the run and the tops of the humps between them.
 pub fn peaks(course: &Course<'_>, bounds: &[Bound], samples: usize) -> Vec<Peak> {
-    let mut best: Vec<Peak> = bounds.iter().map(|_| Peak { value: f64::NAN, time: 0.0 }).collect();
+    let mut best: Vec<Option<Peak>> = bounds.iter().map(|_| None).collect();
     visit(course, bounds, samples, &mut |i, peak| {
-        if !(bounds[i].share(peak.value) <= bounds[i].share(best[i].value)) {
-            best[i] = peak;
+        let share = |peak: Peak| bounds[i].share(peak.value);
+        if best[i].is_none_or(|best| share(best) < share(peak) || share(peak).is_nan()) {
+            best[i] = Some(peak);
         }
         true
     });
-    best
+    best.into_iter().flatten().collect()
 }
 
 /// Whether every share stays within what `margin` allows.

@@ -130,10 +130,10 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> 
     let plant = plant::read(root, &joints, robot.as_ref());
     refuse_imperfections(root);
     let own = provenance::assumptions(root, places);
-    if let (Some(field), Some(timed), Some(initial)) = (reference_field, &timed, &initial) {
-        if timed.smooth_start.is_none() {
-            check_start(&field, robot.as_ref(), &timed.reference, initial);
-        }
+    if let (Some(field), Some(timed), Some(initial)) = (reference_field, &timed, &initial)
+        && timed.smooth_start.is_none()
+    {
+        check_start(&field, robot.as_ref(), &timed.reference, initial);
     }
     assumed.extend(own?);
     let ((duration, control_period), robot) = (times?, robot?);
