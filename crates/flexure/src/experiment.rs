@@ -96,10 +96,10 @@ fn describe(scenario: &Scenario) -> String {
         Hold::ZeroOrder => format!("torque held for {} ms", 1e3 * scenario.control_period),
         Hold::Continuous => "continuous control".to_owned(),
     };
-    let unknown =
-        unknown(&scenario.plant.options()).map(|unknown| format!("; {unknown}")).unwrap_or_default();
+    let conditions = scenario.conditions();
+    let unknown = if conditions.is_empty() { String::new() } else { format!("; with {}", conditions.join(", ")) };
     let law = law_name(scenario.controller.kind(), scenario.controller.phi());
-    format!("{} under {law}; {start}; {hold}{unknown}", scenario.robot.name)
+    format!("{} under {law}; {start}; {hold}{}", scenario.robot.name, unknown.replace('_', " "))
 }
 
 /// A law in words.

@@ -1,7 +1,7 @@
 //! What laws are compared on.
 
 use crate::feasible::{effort, pinned};
-use crate::io::{Imperfection, Problem, Problems, Scenario, TASKS, load_scenario};
+use crate::io::{Problem, Problems, Scenario, TASKS, load_scenario};
 use crate::report::number::duration;
 
 /// Names of built-in tasks begin with it; left out where only tasks are named.
@@ -34,13 +34,8 @@ impl Task {
 
     /// Robot, control period and what is not ideal, in words.
     pub fn conditions(&self) -> String {
-        let Scenario { robot, control_period, imperfections, estimator, guard, .. } = &self.scenario;
-        let mut kinds: Vec<&str> = imperfections.iter().map(Imperfection::kind).collect();
-        kinds.dedup();
-        let estimator = estimator.is_some().then_some("observer");
-        let guard = guard.is_some().then_some("guard");
-        let unknown = self.scenario.plant.options();
-        let extras = unknown.into_iter().chain(kinds).chain(estimator).chain(guard).collect::<Vec<_>>();
+        let Scenario { robot, control_period, .. } = &self.scenario;
+        let extras = self.scenario.conditions();
         let extras = if extras.is_empty() { "nothing else".to_owned() } else { extras.join(", ") };
         format!(
             "{}, {:.3} s, torque held for {}; {extras}",

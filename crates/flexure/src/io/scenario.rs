@@ -85,6 +85,24 @@ impl Scenario {
         self.decimals.and(self.robot.decimals).enclose(x)
     }
 
+    /// What is between this loop and the ideal one, in words: options of the plant, kinds of imperfections, `observer`,
+    /// `disturbance observer`, `guard`.
+    pub fn conditions(&self) -> Vec<&'static str> {
+        let mut conditions = self.plant.options();
+        for imperfection in &self.imperfections {
+            if conditions.last() != Some(&imperfection.kind()) {
+                conditions.push(imperfection.kind());
+            }
+        }
+        let parts = [
+            (self.estimator.is_some(), "observer"),
+            (self.disturbance_observer.is_some(), "disturbance observer"),
+            (self.guard.is_some(), "guard"),
+        ];
+        conditions.extend(parts.iter().filter(|(is_there, _)| *is_there).map(|(_, name)| name));
+        conditions
+    }
+
     /// The gains of its v-CBC law: what certificates are about.
     ///
     /// # Errors
