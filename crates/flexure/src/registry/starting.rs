@@ -32,7 +32,7 @@ impl Controller {
             let link =
                 side(|drive| drive.free_inertia, &|drive| drive.free_inertia * drive.bandwidth().powi(2));
             let motor = side(|drive| drive.motor_inertia, &|drive| drive.stiffness);
-            return Ok(Self::Vcbc(VcbcGains { phi: Phi::Linear, link, motor }));
+            return Ok(Self::Vcbc(Box::new(VcbcGains { phi: Phi::Linear, link, motor })));
         }
         let Some(shape) = BASELINES.iter().find(|shape| shape.kind == kind) else {
             let hint = "`flexure list controllers` shows them";
