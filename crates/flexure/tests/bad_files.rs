@@ -224,7 +224,7 @@ const SCENARIO_CASES: &[Case] = &[
         "0\n[controller]",
         "reference.smooth_start.duration is 0 s, must be > 0",
     ),
-    ("\"vcbc\"", "\"pd\"", "\"pd\"", "controller.kind is 'pd'"),
+    ("\"vcbc\"", "\"pid\"", "\"pid\"", "controller.kind is 'pid'"),
     ("phi = \"tanh\"", "phi = \"tan\"", "\"tan\"", "controller.phi is 'tan'"),
     ("phi = \"tanh\"", "phi = \"coupled-tanh\"", "[controller.link]", "missing key controller.link.kappa"),
     (
