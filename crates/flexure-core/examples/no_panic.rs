@@ -6,7 +6,11 @@
 
 use std::hint::black_box;
 
-use flexure_core::control::{CoupledTanh, Input, Vcbc};
+use flexure_core::control::{
+    Backstepping, Cascade, ControlLaw, CoupledTanh, Esp, FeedbackLinearization, FeedforwardPd,
+    GravityCancellation, Input, IntegralManifold, Linear, Passivity, Pd, PdOnlineGravity, RigidVcbc,
+    SingularPerturbation, TorqueFeedback, Vcbc,
+};
 use flexure_core::estimate::{
     Disturbance, DisturbanceObserver, Estimator, FilteredDifference, MotorObserver, Observer,
 };
@@ -32,6 +36,32 @@ fn law_of_the_arm(robot: &Arm, law: &Law<2>, x: &Motion<f64, 2>, q_d: &V<Jet<f64
 fn law_of_a_tree(robot: &Chain, law: &Law<7>, x: &Motion<f64, 7>, q_d: &V<Jet<f64, 5>, 7>) -> V<f64, 7> {
     law.command(robot, x, q_d, &Input::ZERO).u_m
 }
+
+/// Defines a function that runs a law on a tree.
+macro_rules! law_on_a_tree {
+    ($($name:ident: $law:ty),+ $(,)?) => {$(
+        #[cfg_attr(not(debug_assertions), no_panic)]
+        fn $name(robot: &Chain, law: &$law, x: &Motion<f64, 7>, q_d: &V<Jet<f64, 5>, 7>) -> V<f64, 7> {
+            law.torque(robot, x, q_d)
+        }
+    )+};
+}
+
+law_on_a_tree!(
+    backstepping: Backstepping<f64, 7>,
+    cascade: Cascade<f64, 7>,
+    esp: Esp<f64, 7>,
+    feedback_linearization: FeedbackLinearization<f64, 7>,
+    feedforward_pd: FeedforwardPd<f64, 7>,
+    gravity_cancellation: GravityCancellation<f64, 7>,
+    integral_manifold: IntegralManifold<f64, 7>,
+    passivity: Passivity<f64, 7>,
+    pd: Pd<f64, 7>,
+    pd_online_gravity: PdOnlineGravity<f64, 7>,
+    rigid: RigidVcbc<f64, Linear<f64, 7>, 7>,
+    singular_perturbation: SingularPerturbation<f64, 7>,
+    torque_feedback: TorqueFeedback<f64, 7>,
+);
 
 #[cfg_attr(not(debug_assertions), no_panic)]
 fn dynamics(robot: &Chain, x: &State<f64, 7>, u_m: &V<f64, 7>) -> [State<f64, 7>; 2] {
@@ -133,6 +163,23 @@ fn main() {
         motor_observer as fn(&mut _, &_, &_) -> _,
         disturbance as fn(&mut _, &_, &_, &_) -> _,
         guarded as fn(&mut _, &_, &_, _) -> _,
+    ));
+    black_box((
+        backstepping as fn(&_, &_, &_, &_) -> _,
+        cascade as fn(&_, &_, &_, &_) -> _,
+        esp as fn(&_, &_, &_, &_) -> _,
+        feedback_linearization as fn(&_, &_, &_, &_) -> _,
+        feedforward_pd as fn(&_, &_, &_, &_) -> _,
+        gravity_cancellation as fn(&_, &_, &_, &_) -> _,
+    ));
+    black_box((
+        integral_manifold as fn(&_, &_, &_, &_) -> _,
+        passivity as fn(&_, &_, &_, &_) -> _,
+        pd as fn(&_, &_, &_, &_) -> _,
+        pd_online_gravity as fn(&_, &_, &_, &_) -> _,
+        rigid as fn(&_, &_, &_, &_) -> _,
+        singular_perturbation as fn(&_, &_, &_, &_) -> _,
+        torque_feedback as fn(&_, &_, &_, &_) -> _,
     ));
     assert!(jets(black_box(Jet::variable(0.5))).coefficient(4).is_finite());
 }

@@ -272,7 +272,7 @@ const SCENARIO_CASES: &[Case] = &[
         "factor",
         "unknown key 'factor' in [reference.time_scaling]",
     ),
-    ("\"vcbc\"", "\"pd\"", "\"pd\"", "controller.kind is 'pd'"),
+    ("\"vcbc\"", "\"pid\"", "\"pid\"", "controller.kind is 'pid'"),
     ("phi = \"tanh\"", "phi = \"tan\"", "\"tan\"", "controller.phi is 'tan'"),
     ("phi = \"tanh\"", "phi = \"coupled-tanh\"", "[controller.link]", "missing key controller.link.kappa"),
     (

@@ -77,9 +77,8 @@ fn scenario(case: &Case) -> io::Scenario {
     scenario.robot.motor_inertia.clone_from(&case.M_m);
     scenario.robot.link_damping.clone_from(&case.D_l);
     scenario.robot.motor_damping.clone_from(&case.D_m);
-    let io::Controller::Vcbc(io::VcbcGains { phi, link, motor }) = &mut scenario.controller else {
-        panic!("the scenario is of v-CBC")
-    };
+    let io::Controller::Vcbc(gains) = &mut scenario.controller else { panic!("the scenario is of v-CBC") };
+    let io::VcbcGains { phi, link, motor } = gains.as_mut();
     *phi = match case.phi.as_str() {
         "tanh" => io::Phi::Tanh,
         "linear" => io::Phi::Linear,

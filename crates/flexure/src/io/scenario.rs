@@ -109,7 +109,7 @@ impl Scenario {
     /// If its controller is another one.
     pub fn vcbc(&self) -> Result<&VcbcGains, Problem> {
         match &self.controller {
-            Controller::Vcbc(gains) => Ok(gains),
+            Controller::Vcbc(gains) => Ok(gains.as_ref()),
             Controller::Baseline(law) => {
                 let message = format!("controller.kind is '{}': certificates are for 'vcbc'", law.kind);
                 let help = "of other laws nothing is proved; `flexure run` simulates them";

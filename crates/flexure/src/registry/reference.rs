@@ -55,7 +55,7 @@ impl<const N: usize> AnyReference<f64, N> {
 
     /// The reference of a scenario at the speed of its time scaling, if it has one, replaced by `speed`.
     pub(crate) fn at_speed(scenario: &io::Scenario, speed: f64) -> Result<Self, io::Problems> {
-        Self::over(scenario, speed, |x| x, |start| with_robot(&scenario.robot, start))
+        Self::over(scenario, speed, &|x| x, |start| with_robot(&scenario.robot, start))
     }
 }
 
@@ -71,21 +71,23 @@ impl<const N: usize> AnyReference<Interval, N> {
             _ => Interval::point(feasible::speed(scenario)?),
         };
         let start = |start: Start<'_, _>| with_enclosed_robot(&scenario.robot, start);
-        Self::over(scenario, speed, |x| scenario.bounds(x), start)
+        Self::over(scenario, speed, &|x| scenario.bounds(x), start)
     }
 }
 
 /// The links' motion when a scenario begins, to the jerk: what the state says, by the model that the law has.
-struct Start<'a, F> {
+///
+/// The conversion stands behind a reference: one type a number, or every joint count would compile this for every robot.
+struct Start<'a, C> {
     initial: &'a io::Initial,
-    number: F,
+    number: &'a dyn Fn(f64) -> C,
 }
 
-impl<C: Over<C>, F: Fn(f64) -> C> RobotVisitor<C> for Start<'_, F> {
+impl<C: Over<C>> RobotVisitor<C> for Start<'_, C> {
     type Output = Vec<Jet<C, 4>>;
 
     fn visit<L: Links<C, N> + Sync, const N: usize>(self, robot: Fjr<C, L, N>) -> Vec<Jet<C, 4>> {
-        let numbers = |values: &[f64]| vector(values).map(&self.number);
+        let numbers = |values: &[f64]| vector(values).map(self.number);
         let io::Initial { q_l, q_m, dq_l, dq_m } = self.initial;
         let x = Motion { q_l: numbers(q_l), q_m: numbers(q_m), v_l: numbers(dq_l), v_m: numbers(dq_m) };
         robot.link_motion(&robot.links.factor(&x.q_l), &x).0.to_vec()
@@ -95,11 +97,11 @@ impl<C: Over<C>, F: Fn(f64) -> C> RobotVisitor<C> for Start<'_, F> {
 impl<C: Scalar, const N: usize> AnyReference<C, N> {
     /// The reference of a scenario with its numbers, but for samples and the speed, through `number`; `motion` says how a
     /// robot that starts somewhere moves there.
-    fn over<F: Fn(f64) -> C + Copy>(
+    fn over(
         scenario: &io::Scenario,
         speed: C,
-        number: F,
-        motion: impl FnOnce(Start<'_, F>) -> Result<Vec<Jet<C, 4>>, io::Problems>,
+        number: &dyn Fn(f64) -> C,
+        motion: impl FnOnce(Start<'_, C>) -> Result<Vec<Jet<C, 4>>, io::Problems>,
     ) -> Result<Self, io::Problems> {
         let path = Self::path(scenario, number)?;
         let timed = match scenario.time_scaling {

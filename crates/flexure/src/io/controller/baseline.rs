@@ -54,6 +54,9 @@ pub struct Drive {
     pub motor_inertia: f64,
     /// Inertia of the links about the joint at q = 0, the other joints held [kg m²].
     pub link_inertia: f64,
+    /// The same with the other joints free [kg m²], the smallest at q = 0 and with one joint at a time a quarter turn (or
+    /// π/2 m) away: what damping of this joint alone acts on.
+    pub free_inertia: f64,
 }
 
 /// Fastest errors that starting gains ask for [1/s]: a control period of 1 ms does not show at that.
@@ -100,10 +103,10 @@ const LINKS: [Gain; 2] = [
 
 const SHAPING: Gain = gain("shaping", &quantity::GAIN_SHAPING, Drive::bandwidth);
 const LINK_DAMPING: Gain =
-    gain("link_damping", &quantity::GAIN_LINK, |drive| drive.link_inertia * drive.bandwidth());
+    gain("link_damping", &quantity::GAIN_LINK, |drive| drive.free_inertia * drive.bandwidth());
 
 const SPRING_DAMPING: Gain =
-    gain("damping", &quantity::GAIN_SPRING, |drive| drive.motor_inertia * drive.bandwidth());
+    gain("damping", &quantity::GAIN_SPRING, |drive| (drive.stiffness * drive.motor_inertia).sqrt());
 
 /// How much faster than the links motors shall be that stand between them and the law.
 const INNER: f64 = 3.0;

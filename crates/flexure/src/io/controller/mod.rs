@@ -13,7 +13,7 @@ use super::suggest;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Controller {
     /// Virtual-contraction based control: kind `vcbc`.
-    Vcbc(VcbcGains),
+    Vcbc(Box<VcbcGains>),
     /// One of the laws that it is compared with.
     Baseline(Baseline),
 }
@@ -70,7 +70,7 @@ pub(super) fn read(field: &Field<'_>, joints: &Joints) -> Option<Controller> {
     let kind = table.required("kind", &format!("one of {listed}"))?;
     let text = kind.text()?;
     if text == VCBC {
-        return vcbc::read(field, joints).map(Controller::Vcbc);
+        return vcbc::read(field, joints).map(|gains| Controller::Vcbc(Box::new(gains)));
     }
     let Some(shape) = BASELINES.iter().find(|shape| shape.kind == text) else {
         let message = format!("{} is {}, which is not known", kind.path, suggest::quoted(text));
