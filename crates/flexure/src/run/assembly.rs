@@ -132,7 +132,7 @@ where
     let Scenario { imperfections, seed, control_period: period, .. } = scenario;
     // Until the first command arrives the motors are held where they are.
     let before = robot.spring_torque(&x.q_l, &x.q_m);
-    let mut controller = Controller::ideal(robot, reference, law);
+    let mut controller = Controller::new(robot, reference, law);
     controller.sensors = sensors(imperfections, *seed);
     controller.actuator = actuator(imperfections, *seed, *period, before);
     controller.estimator = estimator(scenario.estimator.as_ref(), imperfections, *period);

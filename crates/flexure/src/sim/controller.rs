@@ -1,6 +1,6 @@
 //! What stands between the motion of the robot and the torque on its motors: sensors, estimator, law, guard and drive.
 
-use flexure_core::estimate::{DisturbanceObserver, Estimator};
+use flexure_core::estimate::{DisturbanceObserver, Estimator, FilteredDifference};
 use flexure_core::guard::{Age, Guard, Phase, Status};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion};
@@ -77,6 +77,18 @@ pub struct Action<const N: usize> {
     pub status: Option<Status<N>>,
 }
 
+impl<'a, L, R, F, const N: usize> Controller<'a, L, R, F, FilteredDifference<f64, N>, N>
+where
+    L: Links<f64, N>,
+    R: Reference<f64, N>,
+    F: Fn(f64, &Motion<f64, N>, &Vector<Jet<f64, 5>, N>) -> Vector<f64, N>,
+{
+    /// The law on true states, its torque on the motors at once.
+    pub fn ideal(robot: &'a Fjr<f64, L, N>, reference: &'a R, law: F) -> Self {
+        Self::new(robot, reference, law)
+    }
+}
+
 impl<'a, L, R, F, E, const N: usize> Controller<'a, L, R, F, E, N>
 where
     L: Links<f64, N>,
@@ -84,8 +96,8 @@ where
     F: Fn(f64, &Motion<f64, N>, &Vector<Jet<f64, 5>, N>) -> Vector<f64, N>,
     E: Estimator<f64, N>,
 {
-    /// The law on true states, its torque on the motors at once.
-    pub fn ideal(robot: &'a Fjr<f64, L, N>, reference: &'a R, law: F) -> Self {
+    /// The law with nothing between it and the robot yet.
+    pub fn new(robot: &'a Fjr<f64, L, N>, reference: &'a R, law: F) -> Self {
         let state = State { applied: Vector::ZERO, rejoined: None };
         let (sensors, actuator) = (Sensors::default(), Actuator::default());
         Self {

@@ -21,14 +21,15 @@ pub struct Tuned {
     pub evaluations: usize,
 }
 
-/// Largest factor, either way, between the gains that the search begins with and those that it tries: e³ ≈ 20.
-const HALF_WIDTH: f64 = 3.0;
+/// Largest factor, either way, by which the search changes the speed of the loop, and each gain beside it: e² ≈ 7.4.
+const HALF_WIDTH: f64 = 2.0;
 
 /// Torque changes per control period that are no chatter, as a part of the torque.
 const CHATTER: f64 = 0.05;
 
-/// Searches for the gains of the scenario's law that make its [`cost`] least, with at most `budget` runs. Every vector of gains
-/// is multiplied by a factor of its own, the same for all joints: what is searched is the logarithms of these factors.
+/// Searches for the gains of the scenario's law that make its [`cost`] least, with at most `budget` runs. One
+/// coordinate makes the whole loop faster or slower: it multiplies each gain by a power of the speed, which its unit says. Then every
+/// vector of gains has a factor of its own, the same for all joints. What is searched is the logarithms of these factors.
 ///
 /// # Errors
 /// As [`run`](crate::run::run).
@@ -38,8 +39,11 @@ pub fn tune(scenario: &Scenario, budget: usize, seed: u64) -> Result<Tuned, Prob
     let start_cost = cost(&measure(&trial)?);
     let gains: Vec<Vec<f64>> =
         scenario.controller.gains().into_iter().map(|(_, values)| values.to_vec()).collect();
+    let powers = scenario.controller.speed_powers();
     let scaled = |exponents: &[f64]| {
-        let scaled = gains.iter().zip(exponents).map(|(gain, x)| gain.iter().map(|g| g * x.exp()).collect());
+        let (speed, own) = exponents.split_first().unwrap_or((&0.0, &[]));
+        let factors = own.iter().zip(&powers).map(|(own, &power)| (own + f64::from(power) * speed).exp());
+        let scaled = gains.iter().zip(factors).map(|(gain, x)| gain.iter().map(|g| g * x).collect());
         scenario.controller.with_gains(&scaled.collect::<Vec<Vec<f64>>>())
     };
     let trials = std::cell::RefCell::new(&mut trial);
@@ -48,7 +52,7 @@ pub fn tune(scenario: &Scenario, budget: usize, seed: u64) -> Result<Tuned, Prob
         trial.controller = scaled(exponents);
         measure(&trial).map_or(f64::INFINITY, |run| cost(&run))
     };
-    let best = search(gains.len(), HALF_WIDTH, budget, seed, &at);
+    let best = search(1 + gains.len(), HALF_WIDTH, budget, seed, &at);
     Ok(Tuned { controller: scaled(&best.at), cost: best.cost, start_cost, evaluations: best.evaluations })
 }
 

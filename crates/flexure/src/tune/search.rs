@@ -19,8 +19,9 @@ pub struct Best {
 /// First step of the local search, as a part of the half width.
 const FIRST_STEP: f64 = 0.25;
 
-/// The best of at most `budget` points within ±`half_width` of zero in each of `dimension` directions: zero itself first, then
-/// half the budget at random, then Powell's COBYLA from the best of those. Random numbers come from `seed` alone.
+/// The best of at most `budget` points within ±`half_width` of zero in each of `dimension` directions: zero itself first, a quarter
+/// of the budget evenly along the first direction, a quarter at random around the best of those, and the rest by Powell's
+/// COBYLA from the best so far. Random numbers come from `seed` alone.
 ///
 /// A cost that is not a number counts as infinite. M. J. D. Powell, *A direct search optimization method that models the
 /// objective and constraint functions by linear interpolation*, 1994.
@@ -33,13 +34,20 @@ pub fn search(
 ) -> Best {
     let finite = |x: &[f64]| Some(cost(x)).filter(|cost| !cost.is_nan()).unwrap_or(f64::INFINITY);
     let origin = vec![0.0; dimension];
-    let mut best = Best { cost: finite(&origin), at: origin, evaluations: 1 };
+    let mut best = Best { cost: finite(&origin), at: origin.clone(), evaluations: 1 };
+    let along = if dimension == 0 { 0 } else { budget / 4 };
+    for i in 0..along {
+        let mut at = origin.clone();
+        at[0] = half_width * (2.0 * (i as f64 + 0.5) / along as f64 - 1.0);
+        best.consider(&at, finite(&at));
+    }
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
-    let within = Uniform::new_inclusive(-half_width, half_width).expect("a half width above zero");
-    while best.evaluations < budget.div_ceil(2) {
-        let at: Vec<f64> = (0..dimension).map(|_| within.sample(&mut random)).collect();
-        let cost = finite(&at);
-        best.consider(&at, cost);
+    let around = Uniform::new_inclusive(-0.5 * half_width, 0.5 * half_width).expect("a half width above zero");
+    let center = best.at.clone();
+    while dimension > 0 && best.evaluations < budget.div_ceil(2) {
+        let step = |x: &f64| (x + around.sample(&mut random)).clamp(-half_width, half_width);
+        let at: Vec<f64> = center.iter().map(step).collect();
+        best.consider(&at, finite(&at));
     }
     let left = budget.saturating_sub(best.evaluations);
     if left == 0 || dimension == 0 {

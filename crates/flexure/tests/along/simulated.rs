@@ -1,11 +1,10 @@
 //! Runs under a disturbance stay in the tube, and within the bounds.
 
 use flexure::along::{along, start_level};
-use flexure::core::control::Command;
 use flexure::core::linalg::Vector;
 use flexure::core::model::{Links, Motion};
 use flexure::io::{Scenario, load_scenario};
-use flexure::sim::{ClosedLoop, Hold};
+use flexure::sim::{ClosedLoop, Controller, Hold};
 
 use super::floats::{self, Floats};
 use super::{bounds, level};
@@ -24,13 +23,19 @@ fn stays<L: Links<f64, N> + Clone, const N: usize>(
     let bounds = bounds(&found);
     let [q_l, q_m] = [&scenario.initial.q_l, &scenario.initial.q_m].map(|q| Vector::from_fn(|i| q[i]));
     let start = Motion { q_l, q_m, v_l: Vector::ZERO, v_m: Vector::ZERO };
-    let law = |t: f64, x: &Motion<f64, N>| {
-        let command = system.command(t, x);
-        Command { u_m: command.u_m.map(|u| u + disturbance(t)), ..command }
+    let law = |t: f64, x: &Motion<f64, N>, _: &Vector<_, N>| {
+        system.command(t, x).u_m.map(|u| u + disturbance(t))
     };
-    let run = ClosedLoop { duration: 4.0, period: 0.001, hold: Hold::Continuous, tolerance: 1e-10 };
+    let mut controller = Controller::ideal(&system.robot, &system.reference, law);
+    let run = ClosedLoop {
+        duration: 4.0,
+        period: 0.001,
+        hold: Hold::Continuous,
+        tolerance: 1e-10,
+        longest_step: 1e-3,
+    };
     let mut worst = 0.0_f64;
-    let outcome = run.run(&system.robot.clone().into(), start, &law, &mut |instant| {
+    let outcome = run.run(&system.robot.clone().into(), start, &[], &mut controller, &mut |instant| {
         let values = system.values(instant.t, instant.motion);
         worst = worst.max(values.level / found.level);
         for (i, value) in values.quantities.iter().enumerate() {

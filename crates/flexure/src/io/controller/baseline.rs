@@ -19,6 +19,14 @@ impl Baseline {
     }
 }
 
+impl Baseline {
+    /// The powers of 1/s in the units of its gains.
+    pub(super) fn speed_powers(&self) -> Vec<i32> {
+        let shape = BASELINES.iter().find(|shape| shape.kind == self.kind);
+        shape.map_or_else(Vec::new, |shape| shape.gains.iter().map(|gain| gain.quantity.per_second()).collect())
+    }
+}
+
 /// Which gains a law has.
 #[derive(Debug)]
 pub struct Shape {

@@ -48,6 +48,15 @@ impl Controller {
         }
     }
 
+    /// By which power each gain grows with the speed of the loop, from its unit, in the order of [`gains`](Self::gains): a law
+    /// that is to be twice as fast has its stiffnesses four times and its dampings twice as large.
+    pub fn speed_powers(&self) -> Vec<i32> {
+        match self {
+            Self::Vcbc(gains) => gains.speed_powers(),
+            Self::Baseline(law) => law.speed_powers(),
+        }
+    }
+
     /// The same law with other gains, in the order of [`gains`](Self::gains); gains beyond the end of `values` stay.
     pub fn with_gains(&self, values: &[Vec<f64>]) -> Self {
         let mut changed = self.clone();

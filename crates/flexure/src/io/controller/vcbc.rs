@@ -24,6 +24,18 @@ impl VcbcGains {
         names.zip(self.link.values().chain(self.motor.values()).map(Vec::as_slice)).collect()
     }
 
+    /// The powers of 1/s in their units.
+    pub(super) fn speed_powers(&self) -> Vec<i32> {
+        let power = |key: &str| match key {
+            "metric" => quantity::GAIN_METRIC.per_second(),
+            "shaping" => quantity::GAIN_SHAPING.per_second(),
+            "damping" => quantity::GAIN_DAMPING.per_second(),
+            "kappa" => quantity::GAIN_KAPPA.per_second(),
+            _ => quantity::GAIN_HARDENING.per_second(),
+        };
+        self.link.keys().chain(self.motor.keys()).map(power).collect()
+    }
+
     /// The same gains, to be changed.
     pub(super) fn slots(&mut self) -> Vec<&mut Vec<f64>> {
         self.link.slots().chain(self.motor.slots()).collect()
