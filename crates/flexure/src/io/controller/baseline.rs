@@ -72,7 +72,7 @@ const FASTEST: f64 = 20.0;
 
 impl Drive {
     /// How fast errors shall decay [1/s]: half the frequency at which the links swing while the motor is held, at most
-    /// [`FASTEST`].
+    /// 20 1/s.
     pub fn bandwidth(&self) -> f64 {
         (0.5 * (self.stiffness / self.link_inertia).sqrt()).min(FASTEST)
     }
