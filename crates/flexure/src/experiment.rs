@@ -97,7 +97,8 @@ fn describe(scenario: &Scenario) -> String {
         Hold::Continuous => "continuous control".to_owned(),
     };
     let conditions = scenario.conditions();
-    let unknown = if conditions.is_empty() { String::new() } else { format!("; with {}", conditions.join(", ")) };
+    let unknown =
+        if conditions.is_empty() { String::new() } else { format!("; with {}", conditions.join(", ")) };
     let law = law_name(scenario.controller.kind(), scenario.controller.phi());
     format!("{} under {law}; {start}; {hold}{}", scenario.robot.name, unknown.replace('_', " "))
 }

@@ -3,7 +3,6 @@
 use flexure::core::control::Input;
 use flexure::core::linalg::Vector;
 use flexure::core::model::{Fjr, Motion};
-use flexure::core::reference::Reference as _;
 use flexure::core::robots::Tree;
 use flexure::experiment::REPRODUCED;
 use flexure::io::{Hold, Links, Scenario, load_scenario};

@@ -42,7 +42,8 @@ pub fn search(
         best.consider(&at, finite(&at));
     }
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
-    let around = Uniform::new_inclusive(-0.5 * half_width, 0.5 * half_width).expect("a half width above zero");
+    let around =
+        Uniform::new_inclusive(-0.5 * half_width, 0.5 * half_width).expect("a half width above zero");
     let center = best.at.clone();
     while dimension > 0 && best.evaluations < budget.div_ceil(2) {
         let step = |x: &f64| (x + around.sample(&mut random)).clamp(-half_width, half_width);

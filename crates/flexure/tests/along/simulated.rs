@@ -23,9 +23,8 @@ fn stays<L: Links<f64, N> + Clone, const N: usize>(
     let bounds = bounds(&found);
     let [q_l, q_m] = [&scenario.initial.q_l, &scenario.initial.q_m].map(|q| Vector::from_fn(|i| q[i]));
     let start = Motion { q_l, q_m, v_l: Vector::ZERO, v_m: Vector::ZERO };
-    let law = |t: f64, x: &Motion<f64, N>, _: &Vector<_, N>| {
-        system.command(t, x).u_m.map(|u| u + disturbance(t))
-    };
+    let law =
+        |t: f64, x: &Motion<f64, N>, _: &Vector<_, N>| system.command(t, x).u_m.map(|u| u + disturbance(t));
     let mut controller = Controller::ideal(&system.robot, &system.reference, law);
     let run = ClosedLoop {
         duration: 4.0,

@@ -43,6 +43,7 @@ pub fn with_these(mut scenario: Scenario, imperfections: Vec<flexure::io::Imperf
     scenario
 }
 
+/// What comes of it.
 pub fn simulate(scenario: &Scenario) -> Run {
     run(scenario, &|_| ()).expect("a robot of two joints")
 }

@@ -23,7 +23,9 @@ impl Baseline {
     /// The powers of 1/s in the units of its gains.
     pub(super) fn speed_powers(&self) -> Vec<i32> {
         let shape = BASELINES.iter().find(|shape| shape.kind == self.kind);
-        shape.map_or_else(Vec::new, |shape| shape.gains.iter().map(|gain| gain.quantity.per_second()).collect())
+        shape.map_or_else(Vec::new, |shape| {
+            shape.gains.iter().map(|gain| gain.quantity.per_second()).collect()
+        })
     }
 }
 
