@@ -3,7 +3,7 @@
 use kuva::render::render::{Primitive, TextAnchor};
 
 use super::marker::{Marker, RADIUS};
-use super::number::short;
+use super::number::{power_of_ten, short};
 use super::range::{Range, round_step};
 use super::sheet::{Sheet, text_width};
 use super::style::{GRID, INK, MUTED};
@@ -138,7 +138,7 @@ fn exponents(values: impl Iterator<Item = f64>) -> Range {
 /// 1, 2 and 5 times them on shorter ones, even steps where the axis is so short that it is hardly bent.
 fn ticks(axis: Range, most: f64) -> Vec<(f64, String)> {
     let ends = Range { low: 10f64.powf(axis.low), high: 10f64.powf(axis.high) };
-    let named = |value: f64| (value, short(value, 4));
+    let named = |value: f64| (value, name(value));
     if axis.span() < 0.6 {
         let step = round_step(ends, most);
         let first = (ends.low / step).ceil();
@@ -152,6 +152,20 @@ fn ticks(axis: Range, most: f64) -> Vec<(f64, String)> {
         .filter(|value| ends.contains(*value))
         .map(named)
         .collect()
+}
+
+/// A round number, as short as it gets.
+#[expect(clippy::cast_possible_truncation, reason = "an exponent of ten of an f64: within ±308")]
+fn name(value: f64) -> String {
+    // A product of a power of ten is off by a rounding.
+    let exponent = (value.log10() + 1e-9).floor();
+    if (-3.0..5.0).contains(&exponent) {
+        return short(value, 4);
+    }
+    match short(value / 10f64.powf(exponent), 4).as_str() {
+        "1" => power_of_ten(exponent as i32),
+        mantissa => format!("{mantissa}×{}", power_of_ten(exponent as i32)),
+    }
 }
 
 /// Whole numbers, both ends included.
@@ -186,7 +200,7 @@ fn label(sheet: &mut Sheet, (x, y): (f64, f64), content: &str, anchor: TextAncho
 
 #[cfg(test)]
 mod tests {
-    use super::{Range, exponents, ticks};
+    use super::{Range, exponents, name, ticks};
 
     /// At least two labels on any axis, at most nine, all inside.
     #[test]
@@ -200,6 +214,12 @@ mod tests {
                 assert!(values.iter().all(|value| axis.contains(value.log10())), "{axis:?}: {values:?}");
             }
         }
+    }
+
+    #[test]
+    fn labels_are_short() {
+        let names = [0.0001, 2e-7, 0.001, 0.2, 1.0, 50.0, 5e5, 2.25].map(name);
+        assert_eq!(names, ["10⁻⁴", "2×10⁻⁷", "0.001", "0.2", "1", "50", "5×10⁵", "2.25"]);
     }
 
     #[test]
