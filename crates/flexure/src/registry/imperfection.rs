@@ -7,7 +7,7 @@ use super::robot::vector;
 use crate::io::{self, Imperfection, Side};
 use crate::sim::imperfection::{
     Actuating, Actuator, CurrentQuantisation, Deadlines, Delay, Dropout, Encoder, Missed, Noise, Outage,
-    PerSide, Random, Sampling, Saturation, Sensing, Sensors, Slew, TorqueGain,
+    PerSide, Random, Sampling, Saturation, Sensing, Sensors, Slew,
 };
 
 /// The registered imperfections.
@@ -128,7 +128,6 @@ fn actuating<const N: usize>(
         Imperfection::Deadline(io::Deadline::Every(every)) => {
             Box::new(Deadlines::new(Missed::Every(*every), before))
         }
-        Imperfection::TorqueGain(factor) => Box::new(TorqueGain(vector(factor))),
         Imperfection::CurrentQuantisation(step) => Box::new(CurrentQuantisation(vector(step))),
         Imperfection::Saturation(limit) => Box::new(Saturation(vector(limit))),
         Imperfection::TorqueRate(rate) => Box::new(Slew::new(vector(rate), before)),

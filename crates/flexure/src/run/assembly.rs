@@ -72,6 +72,7 @@ pub(super) fn plant<L, const N: usize>(scenario: &Scenario, robot: Fjr<f64, L, N
                 };
                 *side = dry(friction);
             }
+            Imperfection::TorqueGain(factor) => plant.torque_gain = vector(factor),
             Imperfection::Spring(spring) => {
                 plant.spring_hardening += vector(&spring.hardening);
                 // The file gives it to either side.

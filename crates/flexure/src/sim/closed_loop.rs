@@ -115,7 +115,8 @@ impl ClosedLoop {
         for k in 0..=periods {
             let tick = Tick::new(u64::from(k), self.period);
             let t = tick.t;
-            let action = controller.step(&tick, &x);
+            let mut action = controller.step(&tick, &x);
+            action.applied = action.applied.map(|torque| plant.torque_gain.diag_mul(&torque));
             let (energy, ledger) = (world.energy(&x), world.ledger);
             let residual = energy - start - ledger.supplied + ledger.dissipated;
             scale = scale.max(energy.abs()).max(ledger.throughput).max(ledger.dissipated);

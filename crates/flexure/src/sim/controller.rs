@@ -54,7 +54,8 @@ pub struct Guarded<const N: usize> {
 /// What the controller remembers from one instant to the next.
 #[derive(Clone, Debug)]
 struct State<const N: usize> {
-    /// Mean motor torque since the last instant, as the drive reports it [N m].
+    /// Mean motor torque since the last instant, as the drive reports it: after its delays and limits, with the torque constant that
+    /// it believes in [N m].
     applied: Vector<f64, N>,
     /// Where the robot was when the law took over from the guard.
     rejoined: Option<Stop<f64, N>>,
@@ -71,7 +72,8 @@ pub struct Action<const N: usize> {
     pub disturbance: Vector<f64, N>,
     /// Torque that leaves the controller [N m].
     pub u_m: Vector<f64, N>,
-    /// Torque on the motors until the next instant [N m].
+    /// Torque on the motors until the next instant [N m]: what the drive believes to give when it comes from
+    /// [`step`](Controller::step), what the motors give when a loop shows it.
     pub applied: Pieces<N>,
     /// What the guard says; none without one.
     pub status: Option<Status<N>>,

@@ -23,6 +23,9 @@ pub struct Plant<L, const N: usize> {
     pub motor_friction: Friction<N>,
     /// Inertial coupling of the rotors; without it they only spin about their own axes.
     pub rotor_coupling: Option<RotorCoupling<f64, N>>,
+    /// What the motors give of the torque that their drives believe to give > 0: torque constants that differ from the data
+    /// sheet. Drives report what they believe.
+    pub torque_gain: Vector<f64, N>,
     /// Torque on the links from outside, constant while the plant is advanced [N m].
     pub external: Vector<f64, N>,
 }
@@ -41,6 +44,7 @@ impl<L, const N: usize> From<Fjr<f64, L, N>> for Plant<L, N> {
             link_friction: Friction::NONE,
             motor_friction: Friction::NONE,
             rotor_coupling: None,
+            torque_gain: Vector([1.0; N]),
             external: Vector::ZERO,
         }
     }

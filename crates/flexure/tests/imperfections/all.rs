@@ -76,7 +76,7 @@ const ACTUATION: &[Graded] = &[
 ];
 
 /// Those that are not between law and robot, or are made of something else that has tests of its own.
-const ELSEWHERE: &[&str] = &["velocity-filter", "friction", "spring", "model-error", "push"];
+const ELSEWHERE: &[&str] = &["velocity-filter", "torque-gain", "friction", "spring", "model-error", "push"];
 
 const COUNT: u64 = 2000;
 

@@ -1,6 +1,7 @@
 //! Whole loops with imperfections, estimators and guards, as scenario files describe them.
 
 mod effects;
+mod estimators;
 mod faults;
 mod hardware;
 mod identity;

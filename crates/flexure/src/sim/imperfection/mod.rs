@@ -2,14 +2,13 @@
 //!
 //! Once a control period [`Sensors`] turn the true motion into what is measured, and an [`Actuator`] turns the commanded
 //! torque into what acts on the motors. Stages keep an order of their own whatever the order they are given in: noise,
-//! encoders, sampling and dropouts; deadlines, torque gain, current steps, saturation and torque rate, delay.
+//! encoders, sampling and dropouts; deadlines, current steps, saturation and torque rate, delay.
 
 mod current;
 mod deadlines;
 mod delay;
 mod dropout;
 mod encoder;
-mod gain;
 mod held;
 mod noise;
 mod pieces;
@@ -26,7 +25,6 @@ pub use deadlines::{Deadlines, Missed};
 pub use delay::Delay;
 pub use dropout::{Dropout, Outage};
 pub use encoder::Encoder;
-pub use gain::TorqueGain;
 pub use noise::Noise;
 pub use pieces::Pieces;
 pub use random::Random;

@@ -32,6 +32,12 @@ impl<const N: usize> Pieces<N> {
         std::iter::once((0.0, end, self.first)).chain(rest)
     }
 
+    /// The same pieces with every torque through `f`.
+    #[must_use]
+    pub fn map(&self, f: impl Fn(Vector<f64, N>) -> Vector<f64, N>) -> Self {
+        Self { first: f(self.first), change: self.change.map(|(offset, torque)| (offset, f(torque))) }
+    }
+
     /// Torque at the end of the period [N m].
     pub fn last(&self) -> Vector<f64, N> {
         self.change.map_or(self.first, |(_, torque)| torque)
