@@ -24,6 +24,16 @@ pub enum Edge {
     Nowhere,
 }
 
+impl Edge {
+    /// The farthest change at which the loop holds, if there is one.
+    pub fn holds(&self) -> Option<f64> {
+        match self {
+            Self::Between { holds, .. } | Self::Beyond { holds } => Some(*holds).filter(|&holds| holds > 0.0),
+            Self::Nowhere => None,
+        }
+    }
+}
+
 /// The way from the scenario as it is to the largest change that is tried.
 #[derive(Clone, Copy, Debug)]
 pub struct Way {

@@ -38,7 +38,8 @@ pub struct Margins {
     pub stiffness_high: Edge,
     /// Standard deviation of white noise that may be added to all measured positions, in rad.
     pub noise: Edge,
-    /// Root mean square link error per standard deviation of little noise on all measured positions [rad/rad].
+    /// Root mean square link error per standard deviation of noise on all measured positions [rad/rad], at a tenth of the noise that
+    /// the loop bears.
     pub noise_to_error: Option<f64>,
     /// Root mean square change of the motor torque from one control instant to the next, per standard deviation of that noise
     /// [N m/rad].
@@ -53,8 +54,9 @@ const TIMES: f64 = 10.0;
 /// … or larger by at most this, in rad.
 const BY: f64 = 0.01;
 
-/// Noise in rad that is little: a loop answers to it as to a small signal.
-const LITTLE: f64 = 1e-6;
+/// Part of the noise that the loop bears at which its answer to noise is measured: far from where it stops holding, and not below
+/// what encoders show.
+const LITTLE: f64 = 0.1;
 
 /// Measures the margins of a scenario's loop. Each is where the loop still holds on the way from the scenario as it is: loops that
 /// hold again farther out are not looked for.
@@ -97,13 +99,14 @@ pub fn margins(scenario: &Scenario) -> Result<Margins, Problems> {
         edges.push(edge);
         runs += tried;
     }
-    let noisy = measure(&Change::Noise(LITTLE).of(&scenario))?;
-    let per_noise = |of: fn(&Run) -> f64| {
-        let excess = of(&noisy).powi(2) - of(&nominal).powi(2);
-        (rms.is_some() && noisy.divergence.is_none()).then(|| excess.max(0.0).sqrt() / LITTLE)
-    };
     let [delay, gain_low, gain_high, stiffness_low, stiffness_high, noise] =
         edges.try_into().expect("six searches");
+    let little = noise.holds().map(|holds| LITTLE * holds);
+    let noisy = little.map(|little| measure(&Change::Noise(little).of(&scenario))).transpose()?;
+    let per_noise = |of: fn(&Run) -> f64| {
+        let (little, noisy) = little.zip(noisy.as_ref().filter(|run| run.divergence.is_none()))?;
+        Some((of(noisy).powi(2) - of(&nominal).powi(2)).max(0.0).sqrt() / little)
+    };
     Ok(Margins {
         name: scenario.name.clone(),
         controller: scenario.controller.kind().to_owned(),
@@ -118,7 +121,7 @@ pub fn margins(scenario: &Scenario) -> Result<Margins, Problems> {
         noise,
         noise_to_error: per_noise(|run| run.summary.rms_e_l),
         noise_to_torque: per_noise(|run| run.summary.rms_torque_change),
-        runs: runs + 1,
+        runs: runs + usize::from(noisy.is_some()),
     })
 }
 
