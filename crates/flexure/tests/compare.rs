@@ -1,9 +1,10 @@
 //! Control laws on the same bench: ranks, what a comparison depends on, what becomes of laws that diverge.
+#![expect(clippy::float_cmp, reason = "ranks are halves, and made-up errors have exact quotients")]
 
 use flexure::compare::{
     Entrant, Leaderboard, Score, TIE, Task, TaskScores, check_budget, compare, entrants, ranks, tasks,
 };
-use flexure::io::{TASKS, load_scenario};
+use flexure::io::{Imperfection, TASKS, load_scenario};
 use flexure::report::{chatter_figure, effort_figure, leaderboard_page, leaderboard_table};
 
 fn named(names: &[&str]) -> Vec<Entrant> {
@@ -122,7 +123,7 @@ fn the_suite_has_tasks_of_every_sort() {
     assert_eq!(suite.len(), TASKS.len());
     assert!(suite.len() >= 9);
     let kinds: Vec<_> =
-        suite.iter().flat_map(|task| &task.scenario.imperfections).map(|i| i.kind()).collect();
+        suite.iter().flat_map(|task| &task.scenario.imperfections).map(Imperfection::kind).collect();
     for kind in ["encoder", "velocity-filter", "saturation", "model-error", "delay", "push", "friction"] {
         assert!(kinds.contains(&kind), "{kind}");
     }
@@ -187,7 +188,7 @@ fn laws_that_diverge_come_last() {
     let mut scenario = load_scenario("task-delay-4ms").expect("built in");
     scenario.duration = 3.0;
     for imperfection in &mut scenario.imperfections {
-        if let flexure::io::Imperfection::Delay(delay) = imperfection {
+        if let Imperfection::Delay(delay) = imperfection {
             delay.computation = 0.1;
         }
     }
