@@ -343,7 +343,7 @@ fn only_sound_settings() {
     assert!(
         !with(|s| s.period = 0.0) && !with(|s| s.period = f64::INFINITY) && !with(|s| s.rejoin_after = 0)
     );
-    assert!(!with(|s| s.torque_limit[1] = f64::INFINITY) && !with(|s| s.torque_limit[1] = f64::NAN));
+    assert!(with(|s| s.torque_limit[1] = f64::INFINITY) && !with(|s| s.torque_limit[1] = f64::NAN));
     assert!(!with(|s| s.torque_rate_limit[0] = f64::NAN) && !with(|s| s.torque_rate_limit[0] = 0.0));
     assert!(!with(|s| s.stop_damping[0] = -1.0) && !with(|s| s.stop_damping[0] = f64::INFINITY));
     assert!(!with(|s| s.position_bound[0] = f64::NAN) && !with(|s| s.speed_bound[1] = 0.0));

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use flexure::experiment::Experiment;
+use flexure::feasible;
 use flexure::io::{Problem, load_scenario, prepare, write_experiment};
 use flexure::report::summary_table;
 use flexure::run::{exceeded, preload};
@@ -35,6 +36,7 @@ pub fn run(scenario: &str, out: &Path, json: bool) -> Result<(), Failure> {
     let scenario = load_scenario(scenario)?;
     say(&scenario.warnings);
     say(&preload(&scenario)?);
+    let beyond = feasible::exceeded(&scenario, &feasible::usage(&scenario)?);
     prepare(out)?;
     let experiment = {
         let progress = Progress::new(&scenario.name, 1);
@@ -48,11 +50,31 @@ pub fn run(scenario: &str, out: &Path, json: bool) -> Result<(), Failure> {
         print::json(&Outcome::new(&experiment, files))?;
     } else {
         print::line(&summary_table(std::slice::from_ref(&experiment.run.summary)))?;
+        if let Some(line) = summary_line(&experiment.run.summary) {
+            print::line(&line)?;
+        }
         for file in &files {
             print::line(&format!("wrote {}", file.display()))?;
         }
     }
-    diverged(&experiment).map_or(Ok(()), |problem| Err(Failure::No(vec![problem.into()])))
+    let answers: Vec<Problem> = diverged(&experiment).into_iter().chain(beyond).collect();
+    if answers.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::No(answers.into_iter().map(Into::into).collect()))
+}
+
+/// What the table does not say of a real loop.
+fn summary_line(summary: &Summary) -> Option<String> {
+    let real = !summary.imperfections.is_empty() || summary.stops > 0 || summary.suspended_fraction > 0.0;
+    real.then(|| {
+        format!(
+            "rms |e_l| {:.3} mrad; no certificate could hold for {:.2} % of the run; safe stops: {}",
+            1e3 * summary.rms_e_l,
+            100.0 * summary.suspended_fraction,
+            summary.stops
+        )
+    })
 }
 
 /// What to say of a loop that diverged.
@@ -66,6 +88,11 @@ pub fn diverged(experiment: &Experiment) -> Option<Problem> {
                 "the loop diverged",
                 "shorten control_period, lower the gains, or join the reference smoothly with \
                  [reference.smooth_start]; outputs end where the loop does",
+            ),
+            Cause::Torque => (
+                "no-torque",
+                "the torque is no number",
+                "a sensor that drops out reads NaN: add [guard]; or gains are too high; outputs end where the loop does",
             ),
             Cause::Unsolvable => (
                 "unsolvable",

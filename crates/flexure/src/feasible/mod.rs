@@ -63,7 +63,7 @@ pub fn exceeded(scenario: &Scenario, usage: &[Usage]) -> Vec<Problem> {
                 "no speed mends that: choose another path, or end points inside the limits"
             } else {
                 "run along it slower, [reference.time_scaling] with margin = 0.9 finds a speed; or join it in a longer \
-                 smooth_start.duration"
+                 smooth_start.duration, a moving robot with a shorter smooth_start.settle"
             };
             scenario.places.problem("reference", "limits", message, help)
         })

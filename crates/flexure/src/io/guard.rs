@@ -25,7 +25,7 @@ pub struct GuardSettings {
 const REJOIN_AFTER: u64 = 10;
 
 /// Time in which it does, if nothing is said \[s\].
-const REJOIN_DURATION: f64 = 0.1;
+const REJOIN_DURATION: f64 = 1.0;
 
 /// Most control periods that a count in `[guard]` may be.
 const MOST: u64 = 1_000_000;

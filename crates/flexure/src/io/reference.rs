@@ -84,6 +84,10 @@ impl Reference {
     }
 }
 
+/// Longest time in s in which a moving robot comes to rest if nothing is said: springs swing faster, and a jerk carries the
+/// reference on by its cube.
+const SETTLE: f64 = 0.25;
+
 /// How the robot joins the reference from where it is and how it moves at t = 0: `[reference.smooth_start]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmoothStart {
@@ -96,7 +100,7 @@ pub struct SmoothStart {
 impl SmoothStart {
     /// Reaching the reference, and the end of the robot's own motion, in `duration` seconds.
     pub const fn within(duration: f64) -> Self {
-        Self { duration, settle: duration }
+        Self { duration, settle: duration.min(SETTLE) }
     }
 }
 
@@ -162,7 +166,7 @@ fn smooth_start(field: &Field<'_>) -> Option<SmoothStart> {
     let duration = table.number("duration", &quantity::DURATION);
     let settle = table.optional("settle", |field| field.number(&quantity::DURATION));
     let (duration, settle) = (duration?, settle?);
-    Some(SmoothStart { duration, settle: settle.unwrap_or(duration) })
+    Some(SmoothStart { duration, settle: settle.unwrap_or(duration.min(SETTLE)) })
 }
 
 fn time_scaling(field: &Field<'_>) -> Option<TimeScaling> {

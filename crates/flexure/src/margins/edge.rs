@@ -108,7 +108,7 @@ mod tests {
             (Way::inward(1.0, 100.0), 3.7),
             (Way::inward(1.0, 0.01), 0.41),
         ] {
-            let inside = |x: f64| if at > 1.0 || at < 0.02 { x < at } else { x > at };
+            let inside = |x: f64| (x < at) == (way.last > way.from);
             let Edge::Between { holds, fails } = edge(way, inside) else { panic!("an edge at {at}") };
             assert!(inside(holds) && !inside(fails));
             assert!((holds - fails).abs() <= 0.01 * holds.max(fails));

@@ -58,11 +58,20 @@ const BY: f64 = 0.01;
 /// what encoders show.
 const LITTLE: f64 = 0.1;
 
+/// What is changed, and how far.
+type Search = (fn(f64) -> Change, edge::Way);
+
+/// A loop with a larger root mean square error, in rad, does not follow its reference: it has no margins.
+const LOST: f64 = 0.1;
+
 /// Measures the margins of a scenario's loop. Each is where the loop still holds on the way from the scenario as it is: loops that
 /// hold again farther out are not looked for.
 ///
 /// # Errors
 /// As [`run`](crate::run::run), and for a loop in continuous time, which has no devices that could be late.
+///
+/// # Panics
+/// Never: there are as many edges as searches.
 pub fn margins(scenario: &Scenario) -> Result<Margins, Problems> {
     if scenario.hold == Hold::Continuous {
         let message = "hold is \"continuous\": margins are of loops with control periods";
@@ -72,11 +81,12 @@ pub fn margins(scenario: &Scenario) -> Result<Margins, Problems> {
     let scenario = feasible::pinned(scenario)?;
     let nominal = measure(&scenario)?;
     let rms = nominal.divergence.is_none().then_some(nominal.summary.rms_e_l);
-    let allowed = rms.map_or(BY, |rms| (TIMES * rms).max(rms + BY));
+    let followed = rms.filter(|&rms| rms <= LOST);
+    let allowed = followed.map_or(BY, |rms| (TIMES * rms).max(rms + BY).min(2.0 * LOST));
     let holds = |run: &Run| run.divergence.is_none() && run.summary.rms_e_l <= allowed;
     let try_change = |change: Change| Ok(holds(&measure(&change.of(&scenario))?));
     let period = scenario.control_period;
-    let searches: [(fn(f64) -> Change, edge::Way); 6] = [
+    let searches: [Search; 6] = [
         (Change::Delay, edge::Way::outward(0.0, 0.125 * period, scenario.duration / 4.0)),
         (Change::TorqueGain, edge::Way::inward(1.0, 0.01)),
         (Change::TorqueGain, edge::Way::inward(1.0, 100.0)),
@@ -84,14 +94,13 @@ pub fn margins(scenario: &Scenario) -> Result<Margins, Problems> {
         (Change::Stiffness, edge::Way::inward(1.0, 100.0)),
         (Change::Noise, edge::Way::outward(0.0, 1e-6, 1.0)),
     ];
-    let found: Vec<Result<(Edge, usize), Problems>> = searches
-        .par_iter()
-        .map(
-            |(change, way)| {
-                if rms.is_some() { way.edge(&|x| try_change(change(x))) } else { Ok((Edge::Nowhere, 0)) }
-            },
-        )
-        .collect();
+    let found: Vec<Result<(Edge, usize), Problems>> =
+        searches
+            .par_iter()
+            .map(|(change, way)| {
+                if followed.is_some() { way.edge(&|x| try_change(change(x))) } else { Ok((Edge::Nowhere, 0)) }
+            })
+            .collect();
     let mut edges = Vec::new();
     let mut runs = 1;
     for found in found {
@@ -105,7 +114,8 @@ pub fn margins(scenario: &Scenario) -> Result<Margins, Problems> {
     let noisy = little.map(|little| measure(&Change::Noise(little).of(&scenario))).transpose()?;
     let per_noise = |of: fn(&Run) -> f64| {
         let (little, noisy) = little.zip(noisy.as_ref().filter(|run| run.divergence.is_none()))?;
-        Some((of(noisy).powi(2) - of(&nominal).powi(2)).max(0.0).sqrt() / little)
+        let excess = of(noisy).powi(2) - of(&nominal).powi(2);
+        (excess > 0.0).then(|| excess.sqrt() / little)
     };
     Ok(Margins {
         name: scenario.name.clone(),
@@ -133,8 +143,12 @@ impl Margins {
 
     /// Says that the loop does not even hold as it is, if so.
     pub fn objection(&self, scenario: &Scenario) -> Option<Problem> {
-        self.rms_e_l.is_none().then(|| {
-            let message = format!("{}: the loop diverges as it is: it has no margins", self.name);
+        (self.delay == Edge::Nowhere).then(|| {
+            let how = match self.rms_e_l {
+                None => "diverges as it is".to_owned(),
+                Some(rms) => format!("does not follow its reference, rms error {rms:.3} rad"),
+            };
+            let message = format!("{}, {}: the loop {how}: it has no margins", self.name, self.law());
             let help = "lower the gains, shorten control_period, or join the reference smoothly; `flexure run` shows how it diverges";
             scenario.places.problem("controller", "diverged", message, help)
         })

@@ -22,7 +22,6 @@ pub const ESTIMATORS: &[Entry] = &[
 
 /// Any registered estimator.
 #[derive(Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "one a run")]
 pub enum AnyEstimator<const N: usize> {
     /// `velocity-filter`.
     FilteredDifference(FilteredDifference<f64, N>),
@@ -33,6 +32,9 @@ pub enum AnyEstimator<const N: usize> {
 }
 
 /// The estimator of a loop with control periods of `period` in s; none if the law sees the readings themselves.
+///
+/// # Panics
+/// For bandwidths or cut-offs that the reader of scenarios refuses.
 pub fn estimator<const N: usize>(
     estimator: Option<&io::Estimator>,
     imperfections: &[Imperfection],

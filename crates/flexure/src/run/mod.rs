@@ -19,7 +19,7 @@ pub use limits::exceeded;
 pub use preload::preload;
 use recorder::{Columns, Recorder};
 
-use crate::io::{Problem, Problems, Scenario};
+use crate::io::{Imperfection, Problem, Problems, Scenario};
 use crate::rates::BlockRates;
 use crate::registry::{self, AnyLaw, AnyReference, PairVisitor, any_law, with_pair};
 use crate::sim::{Divergence, Instant, Outcome};
@@ -106,7 +106,7 @@ impl PairVisitor for Simulate<'_> {
         let settings = assembly::settings(scenario);
         let pushes = assembly::pushes(scenario);
         let outcome = settings.run(&plant, start, &pushes, &mut controller, &mut observe);
-        let trace = recorder.map_or_else(Trace::default, Recorder::finish);
+        let trace = recorder.map(Recorder::finish).unwrap_or_default();
         let summary = summary(scenario, &figures, &outcome, started.elapsed().as_secs_f64());
         Ok(Run { summary, trace, divergence: outcome.divergence })
     }
@@ -117,7 +117,7 @@ fn columns<const N: usize>(scenario: &Scenario, law: &AnyLaw<f64, N>) -> Columns
     let Scenario { imperfections, estimator, disturbance_observer, guard, .. } = scenario;
     Columns {
         errors: matches!(law, AnyLaw::Vcbc(_)),
-        devices: imperfections.iter().any(|what| what.is_of_devices())
+        devices: imperfections.iter().any(Imperfection::is_of_devices)
             || estimator.is_some()
             || disturbance_observer.is_some()
             || guard.is_some(),
@@ -138,7 +138,7 @@ fn summary<const N: usize>(
         controller: scenario.controller.kind().to_owned(),
         phi: scenario.controller.phi().map(str::to_owned),
         plant: scenario.plant.options(),
-        imperfections: scenario.imperfections.iter().map(|imperfection| imperfection.kind()).collect(),
+        imperfections: scenario.imperfections.iter().map(Imperfection::kind).collect(),
         max_abs_e_l: ended(figures.max_abs_e_l),
         rms_e_l: ended(figures.rms_e_l()),
         final_abs_e_l: ended(figures.final_abs_e_l),

@@ -83,6 +83,8 @@ pub struct Divergence {
 pub enum Cause {
     /// Positions, speeds or torques left every sensible range, or the finite numbers.
     Unbounded,
+    /// The torque left the finite numbers while the robot was still in range: a reading was no number, or a gain too high.
+    Torque,
     /// The motion between two control instants could not be integrated.
     Unsolvable,
 }
@@ -123,7 +125,8 @@ impl ClosedLoop {
             worst = worst.max(residual.abs());
             let magnitude = largest(&x);
             if !(magnitude < BEYOND && action.applied.last().iter().all(f64::is_finite)) {
-                divergence = Some(Divergence { time: t, magnitude, cause: Cause::Unbounded });
+                let cause = if magnitude < BEYOND { Cause::Torque } else { Cause::Unbounded };
+                divergence = Some(Divergence { time: t, magnitude, cause });
                 break;
             }
             observe(&Instant { t, motion: &x, action: &action, energy, residual, ledger: &ledger });

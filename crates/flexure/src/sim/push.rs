@@ -73,8 +73,8 @@ mod tests {
     #[test]
     fn nothing_before_and_nothing_after() {
         for shape in [Shape::Rectangle, Shape::HalfSine] {
-            assert_eq!(push(shape).mean(0.0, 0.25)[0], 0.0);
-            assert_eq!(push(shape).mean(0.75, 0.25)[0], 0.0);
+            assert_eq!(push(shape).mean(0.0, 0.25), Vector([0.0]));
+            assert_eq!(push(shape).mean(0.75, 0.25), Vector([0.0]));
             assert!(push(shape).mean(0.49, 0.02)[0] > 2.9);
         }
     }

@@ -247,7 +247,7 @@ mod tests {
                 let speed = problem.speed[side][i] + problem.h * solved.accelerations[side][i];
                 if solved.slides[side][i].is_some() {
                     assert!(
-                        friction * speed >= 0.0 && friction.abs() == most,
+                        friction * speed >= 0.0 && friction.abs() >= most,
                         "{friction} N m at {speed} rad/s"
                     );
                 } else {

@@ -25,6 +25,9 @@ const FIRST_STEP: f64 = 0.25;
 ///
 /// A cost that is not a number counts as infinite. M. J. D. Powell, *A direct search optimization method that models the
 /// objective and constraint functions by linear interpolation*, 1994.
+///
+/// # Panics
+/// Unless `half_width` is a number above zero.
 pub fn search(
     dimension: usize,
     half_width: f64,

@@ -24,18 +24,30 @@ struct Fault {
     outages: Vec<[f64; 2]>,
 }
 
+/// Random numbers, one after the other.
+struct Chance(Xoshiro256PlusPlus);
+
+impl Chance {
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        Uniform::new(low, high).unwrap().sample(&mut self.0)
+    }
+
+    fn below(&mut self, count: usize) -> usize {
+        Uniform::new(0, count).unwrap().sample(&mut self.0)
+    }
+}
+
 /// A random number of dropouts (holding or NaN, of links, motors or both), and by chance delay, saturation, push, missed
 /// deadlines and noise.
 fn fault(seed: u64) -> Fault {
-    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
-    let mut between = |low: f64, high: f64| Uniform::new(low, high).unwrap().sample(&mut random);
+    let mut chance = Chance(Xoshiro256PlusPlus::seed_from_u64(seed));
     let mut text = String::new();
     let mut outages = Vec::new();
-    for _ in 0..between(0.0, 3.0) as usize {
-        let from = PERIOD * between(10.0, 800.0).round();
-        let until = (from + PERIOD * between(1.0, 200.0).round()).min(CLEAR);
-        let mode = ["nan", "hold"][between(0.0, 2.0) as usize];
-        let side = ["link", "motor", "both"][between(0.0, 3.0) as usize];
+    for _ in 0..chance.below(3) {
+        let from = PERIOD * chance.between(10.0, 800.0).round();
+        let until = (from + PERIOD * chance.between(1.0, 200.0).round()).min(CLEAR);
+        let mode = ["nan", "hold"][chance.below(2)];
+        let side = ["link", "motor", "both"][chance.below(3)];
         let window = format!("from = {from:.3}\nuntil = {until:.3}");
         writeln!(
             text,
@@ -44,28 +56,30 @@ fn fault(seed: u64) -> Fault {
         .unwrap();
         outages.push([from, until]);
     }
-    if between(0.0, 1.0) < 0.5 {
-        writeln!(text, "[[imperfection]]\nkind = \"delay\"\nactuation = {}", between(0.0, 0.003)).unwrap();
+    if chance.between(0.0, 1.0) < 0.5 {
+        writeln!(text, "[[imperfection]]\nkind = \"delay\"\nactuation = {}", chance.between(0.0, 0.003))
+            .unwrap();
     }
-    if between(0.0, 1.0) < 0.5 {
-        let part = between(0.8, 1.0);
+    if chance.between(0.0, 1.0) < 0.5 {
+        let part = chance.between(0.8, 1.0);
         writeln!(text, "[[imperfection]]\nkind = \"saturation\"\nlimit = [{}, {}]", 8.39 * part, 1.67 * part)
             .unwrap();
     }
-    if between(0.0, 1.0) < 0.5 {
-        let (a, b) = (between(-2.0, 2.0), between(-0.5, 0.5));
-        let (from, duration) = (between(0.0, 0.8), between(0.01, 0.2));
+    if chance.between(0.0, 1.0) < 0.5 {
+        let (a, b) = (chance.between(-2.0, 2.0), chance.between(-0.5, 0.5));
+        let (from, duration) = (chance.between(0.0, 0.8), chance.between(0.01, 0.2));
         writeln!(
             text,
             "[[imperfection]]\nkind = \"push\"\ntorque = [{a}, {b}]\nfrom = {from}\nduration = {duration}"
         )
         .unwrap();
     }
-    if between(0.0, 1.0) < 0.3 {
-        writeln!(text, "[[imperfection]]\nkind = \"deadline\"\nprobability = {}", between(0.0, 0.2)).unwrap();
+    if chance.between(0.0, 1.0) < 0.3 {
+        writeln!(text, "[[imperfection]]\nkind = \"deadline\"\nprobability = {}", chance.between(0.0, 0.2))
+            .unwrap();
     }
-    if between(0.0, 1.0) < 0.3 {
-        let noise = between(0.0, 2e-4);
+    if chance.between(0.0, 1.0) < 0.3 {
+        let noise = chance.between(0.0, 2e-4);
         writeln!(text, "[[imperfection]]\nkind = \"noise\"\nlink = {noise}\nmotor = {noise}").unwrap();
     }
     Fault { text, outages }
@@ -131,7 +145,7 @@ fn survives(seed: u64) {
         context()
     );
     let stops = usize::try_from(run.summary.stops).unwrap();
-    assert!((stops > 0) == !fault.outages.is_empty(), "{stops} stops: {}", context());
+    assert_ne!(stops > 0, fault.outages.is_empty(), "{stops} stops: {}", context());
 }
 
 #[test]

@@ -8,6 +8,7 @@ use super::{ideal, same_bits, simulate, with_these};
 const NOTHING: &str = r#"
 [[imperfection]]
 kind = "noise"
+link = 0.0
 [[imperfection]]
 kind = "encoder"
 resolution = 0.0
@@ -32,7 +33,7 @@ kind = "saturation"
 limit = 1e9
 [[imperfection]]
 kind = "torque-rate"
-limit = 1e12
+limit = 1e8
 [[imperfection]]
 kind = "delay"
 actuation = 0.0

@@ -1,5 +1,7 @@
 //! Whole loops with imperfections, estimators and guards, as scenario files describe them.
 
+#![allow(clippy::float_cmp, reason = "flags are 0 or 1, files give decimals, and nothing is exactly nothing")]
+
 mod effects;
 mod estimators;
 mod faults;
@@ -13,24 +15,15 @@ use flexure::io::{Scenario, load_scenario, scenario_from_text};
 use flexure::run::{Run, run};
 
 /// A built-in scenario with tables added to its text, `duration` s long.
-pub fn with(name: &str, duration: f64, more: &str) -> Scenario {
+fn with(name: &str, duration: f64, more: &str) -> Scenario {
     let text = flexure::io::SCENARIOS.iter().find(|(known, _)| *known == name).expect("built in").1;
-    let lines: Vec<String> =
-        text.lines()
-            .map(|line| {
-                if line.starts_with("duration = ") {
-                    format!("duration = {duration}")
-                } else {
-                    line.to_owned()
-                }
-            })
-            .collect();
-    let text = format!("{}\n{more}\n", lines.join("\n"));
+    let line = text.lines().find(|line| line.starts_with("duration = ")).expect("a duration");
+    let text = format!("{}\n{more}\n", text.replacen(line, &format!("duration = {duration}"), 1));
     scenario_from_text(name, &text, Path::new(".")).unwrap_or_else(|problems| panic!("{problems}\n{text}"))
 }
 
 /// The ideal loop on the plausible arm: 2 ms, the gains of its hardware scenario.
-pub fn ideal(duration: f64) -> Scenario {
+fn ideal(duration: f64) -> Scenario {
     let mut scenario = load_scenario("two-link-hardware").expect("built in");
     scenario.duration = duration;
     scenario.imperfections.clear();
@@ -39,18 +32,18 @@ pub fn ideal(duration: f64) -> Scenario {
 }
 
 /// `scenario` with these imperfections and no others.
-pub fn with_these(mut scenario: Scenario, imperfections: Vec<flexure::io::Imperfection>) -> Scenario {
+fn with_these(mut scenario: Scenario, imperfections: Vec<flexure::io::Imperfection>) -> Scenario {
     scenario.imperfections = imperfections;
     scenario
 }
 
 /// What comes of it.
-pub fn simulate(scenario: &Scenario) -> Run {
+fn simulate(scenario: &Scenario) -> Run {
     run(scenario, &|_| ()).expect("a robot of two joints")
 }
 
 /// Whether two runs have the same bits in every column that both have, and how many those are.
-pub fn same_bits(a: &Run, b: &Run) -> usize {
+fn same_bits(a: &Run, b: &Run) -> usize {
     let mut common = 0;
     for column in a.trace.columns() {
         let Some(other) = b.trace.column(&column.name) else { continue };

@@ -24,6 +24,7 @@ pub(in crate::io) fn agree(real: &Loop<'_>) {
     real.continuous();
     real.velocities();
     real.placement();
+    real.bandwidth();
     real.hardening();
     real.limits();
     real.ages();
@@ -138,6 +139,23 @@ impl<'a> Loop<'a> {
             };
             let message = format!("no encoder on the {} side, but {who} needs one", missing.name());
             entry.field.error("contradiction", message, hint);
+        }
+    }
+
+    /// The gains of an observer with motor encoders only assume that it is slower than its period.
+    fn bandwidth(&self) {
+        let Some(Estimator::Observer { encoders: Encoders::Motor, bandwidth }) = self.estimator else {
+            return;
+        };
+        let (Some((_, period)), Some(field)) = (self.context.times, self.root.get("estimator")) else {
+            return;
+        };
+        if let Some(fast) = bandwidth.iter().find(|&&bandwidth| bandwidth * period >= 1.0) {
+            let message = format!(
+                "estimator.bandwidth is {fast} rad/s, must be < {} rad/s, one over the control period",
+                1.0 / period
+            );
+            field.error("range", message, "with encoders = \"motor\"; a tenth of that is a good start");
         }
     }
 
