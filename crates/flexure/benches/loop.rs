@@ -77,6 +77,7 @@ mod whole_loop {
     use flexure::io::load_scenario;
     use flexure::run::measure;
 
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few thousand periods")]
     #[divan::bench(args = ["two-link-everything", "two-link-hardware", "two-link-tanh-smooth"], sample_count = 10, sample_size = 1)]
     fn periods(bencher: Bencher, name: &str) {
         let scenario = load_scenario(name).expect("built in");
