@@ -1,6 +1,6 @@
 //! Estimators in the loop, compared on the plausible arm at 500 Hz.
 
-use flexure::io::{DisturbanceObserver, Encoders, Estimator, Scenario};
+use flexure::io::{DisturbanceObserver, Scenario};
 use flexure::run::Run;
 
 use super::{ideal, simulate, with, with_these};
@@ -13,9 +13,12 @@ fn scenario(text: &str) -> Scenario {
     with_these(ideal(8.0), with("two-link-tanh-smooth", 1.0, text).imperfections)
 }
 
-fn observed(text: &str, encoders: Encoders, bandwidth: f64) -> Scenario {
-    let mut scenario = scenario(text);
-    scenario.estimator = Some(Estimator::Observer { encoders, bandwidth: vec![bandwidth; 2] });
+fn observed(text: &str, encoders: &str, bandwidth: f64) -> Scenario {
+    let observer =
+        format!("[estimator]\nkind = \"observer\"\nencoders = \"{encoders}\"\nbandwidth = {bandwidth}");
+    let parts = with("two-link-tanh-smooth", 1.0, &format!("{text}{observer}"));
+    let mut scenario = with_these(ideal(8.0), parts.imperfections);
+    scenario.estimator = parts.estimator;
     scenario
 }
 
@@ -36,10 +39,10 @@ fn velocity_error(run: &Run) -> f64 {
 #[test]
 fn observers_see_velocities_that_filters_do_not() {
     let filtered = simulate(&scenario(&format!("{COARSE}{FILTER}")));
-    let both = simulate(&observed(COARSE, Encoders::Both, 30.0));
+    let both = simulate(&observed(COARSE, "both", 30.0));
     let motor = simulate(&observed(
         &COARSE.replace("resolution", "placement = \"motor\"\nresolution"),
-        Encoders::Motor,
+        "motor",
         30.0,
     ));
     let [filter, both_error, motor_error] = [&filtered, &both, &motor].map(velocity_error);
