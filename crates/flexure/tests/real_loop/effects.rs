@@ -1,7 +1,7 @@
 //! More of an imperfection, more of its effect; and the effects that the issue of real loops is about.
 
 use super::{ideal, simulate, with, with_these};
-use flexure::io::Imperfection;
+use flexure::io::{Controller, Imperfection};
 
 /// The imperfections of some text.
 fn these(text: &str) -> Vec<Imperfection> {
@@ -89,4 +89,23 @@ fn the_papers_start_on_a_real_drive_does_not_track() {
     // From a smooth start no torque comes near that, and nothing happens.
     let smooth = simulate(&with("two-link-tanh-smooth", 4.0, text));
     assert!(smooth.summary.rms_e_l < 1e-4, "{:?}", smooth.summary);
+}
+
+/// The dead zone of a file is to either side: a deflection inside it moves nothing.
+#[test]
+fn a_dead_zone_is_to_either_side() {
+    let spring = "[[imperfection]]\nkind = \"spring\"\ndead_zone = 0.01\n";
+    let mut scenario = with_these(ideal(0.2), with("two-link-tanh-smooth", 1.0, spring).imperfections);
+    let pd = Controller::default_for("pd", &scenario.robot).unwrap();
+    scenario.controller = pd.with_gains(&[vec![1e-12; 2], vec![0.0; 2]]);
+    let moved = |deflection: f64| {
+        let mut scenario = scenario.clone();
+        scenario.initial.q_m = vec![deflection; 2];
+        let run = simulate(&scenario);
+        *run.trace.column("q_l1").unwrap().last().unwrap()
+    };
+    for inside in [0.008, -0.008] {
+        assert!(moved(inside).abs() < 1e-12, "{} rad", moved(inside));
+    }
+    assert!(moved(0.012) > 1e-6 && moved(-0.012) < -1e-6);
 }

@@ -29,3 +29,23 @@ fn a_limit_that_was_hit_leaves_nothing_behind() {
     let apart = late.map(|k| (a[k] - b[k]).abs()).fold(0.0, f64::max);
     assert!(apart < 1e-4, "{apart} after {after} s");
 }
+
+/// After a stop the reference starts where the robot stands, wherever the path has got to meanwhile.
+#[test]
+fn the_reference_is_joined_from_where_the_robot_stands() {
+    let text = "[[imperfection]]\nkind = \"dropout\"\nfrom = 6.0\nuntil = 6.3\n[guard]\nstop_damping = 1.0\n";
+    let parts = with("two-link-tanh-smooth", 1.0, text);
+    let mut scenario = with_these(ideal(9.0), parts.imperfections);
+    let undisturbed = simulate(&ideal(9.0));
+    scenario.guard = parts.guard;
+    let run = simulate(&scenario);
+    let stopped = run.trace.column("stopped").unwrap();
+    let last = (0..stopped.len()).rev().find(|&k| stopped[k] == 1.0).expect("a stop");
+    for joint in 0..2 {
+        let [q_ld, q_l] = ["q_ld", "q_l"].map(|name| run.trace.joints(name)[joint][last + 1]);
+        let path = undisturbed.trace.joints("q_ld")[joint][last + 1];
+        assert!((q_ld - q_l).abs() < 5e-3, "joined at {q_ld}, the robot is at {q_l}");
+        assert!((path - q_l).abs() > 0.02, "the path is at {path}, the robot at {q_l}: nothing to join");
+    }
+    assert!(run.summary.final_abs_e_l < 1e-2, "{:?}", run.summary);
+}
