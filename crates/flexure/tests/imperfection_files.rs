@@ -575,6 +575,12 @@ const CASES: &[Case] = &[
         "the guard lets 8.39 N m through for joint 1, must be <= 1 N m",
     ),
     (
+        "[[imperfection]]\nkind = \"torque-rate\"\nlimit = 100\n[guard]\ntorque_rate_limit = 1e4\nstop_damping = 1",
+        "1e4",
+        "contradiction",
+        "the guard lets 10000 N m/s through for joint 1, must be <= 100 N m/s, the torque-rate in line 18",
+    ),
+    (
         "[[imperfection]]\nkind = \"sampling\"\nperiod = 0.005\n[guard]\nmax_age = 3\nstop_damping = 1",
         ENTRY,
         "contradiction",

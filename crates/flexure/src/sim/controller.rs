@@ -115,7 +115,8 @@ where
         }
     }
 
-    /// Starts over at the motion `x`, held by the motor torque `applied` [N m] until now.
+    /// Starts estimator and disturbance observer at the motion `x`, held by the motor torque `applied` [N m] until now. Sensors,
+    /// guard and drive start when they are made.
     pub fn start(&mut self, x: &Motion<f64, N>, applied: Vector<f64, N>) {
         self.state = State { applied, rejoined: None };
         if let Some(estimator) = &mut self.estimator {

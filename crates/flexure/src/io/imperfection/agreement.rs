@@ -183,28 +183,18 @@ impl<'a> Loop<'a> {
             Imperfection::Saturation(limit) => Some((found, limit)),
             _ => None,
         });
-        if let (Some((found, drive)), Some(guard)) = (saturation, self.guard)
-            && let Some((i, (low, high))) = larger(&guard.torque_limit, drive)
-            && let Some(field) = self.root.get("guard")
-        {
-            let site = field.any_table().and_then(|table| table.get("torque_limit")).unwrap_or(field);
-            let message = format!(
-                "the guard lets {high} N m through for joint {}, must be <= {low} N m, the saturation in line {}",
-                i + 1,
-                found.field.line()
-            );
-            site.error(
-                "contradiction",
-                message,
-                "a guard knows of limits that it keeps to: set guard.torque_limit to the drive's or less",
-            );
-        }
         let torque =
             saturation.map(|(_, limit)| limit).or(self.context.robot.map(|robot| &robot.limits.torque));
         let rates = self.found.iter().find_map(|found| match &found.what {
             Imperfection::TorqueRate(rate) => Some((found, rate)),
             _ => None,
         });
+        if let Some(guard) = self.guard {
+            self.keeps_to(("torque_limit", "N m"), &guard.torque_limit, saturation);
+            // A guard need not know of rates at all.
+            let rates = rates.filter(|_| guard.torque_rate_limit.iter().all(|rate| rate.is_finite()));
+            self.keeps_to(("torque_rate_limit", "N m/s"), &guard.torque_rate_limit, rates);
+        }
         if let (Some(torque), Some((found, rate)), Some((duration, _))) = (torque, rates, self.context.times)
         {
             let slow = torque.iter().zip(rate).position(|(t, r)| t.is_finite() && t / r > duration);
@@ -217,6 +207,22 @@ impl<'a> Loop<'a> {
                 found.field.error("range", message, "drives do it in milliseconds; is the rate in N m/ms?");
             }
         }
+    }
+
+    /// A limit of the guard is not above that of the drive.
+    fn keeps_to(&self, (key, unit): (&str, &str), guard: &[f64], drive: Option<(&Found<'_>, &Vec<f64>)>) {
+        let (Some((found, drive)), Some(field)) = (drive, self.root.get("guard")) else { return };
+        let Some((i, (low, high))) = larger(guard, drive) else { return };
+        let given = field.any_table().and_then(|table| table.get(key));
+        let message = format!(
+            "the guard lets {high} {unit} through for joint {}, must be <= {low} {unit}, the {} in line {}",
+            i + 1,
+            found.what.kind(),
+            found.field.line()
+        );
+        let hint =
+            format!("a guard knows of limits that it keeps to: set guard.{key} to the drive's or less");
+        given.unwrap_or(field).error("contradiction", message, hint);
     }
 
     /// A guard must not take for dead what is only slow.
