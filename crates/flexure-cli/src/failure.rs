@@ -3,7 +3,7 @@
 use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
 
-use flexure::io::{Problem, Problems, WriteError};
+use flexure::files::{Problem, Problems, WriteError};
 use miette::{MietteDiagnostic, MietteHandlerOpts, Report};
 use textwrap::WordSplitter;
 

@@ -1,18 +1,20 @@
 //! What proofs cost: `cargo bench -p flexure --bench certify`. The rates that they prove are printed first.
 
+use arm::{ArmFlow, coupled_tanh, flow, linear, region, tanh};
 use divan::{Bencher, black_box};
-use flexure::certify::direct::{self, Flow, best_rate};
-use flexure::certify::{Certificate, Number, Problem, certify};
-use flexure::io::load_scenario;
-use flexure::proof::{Question, Region, prove};
+use flexure::prove::engine::certificate::Certificate;
+use flexure::prove::engine::direct::{self, Flow, best_rate};
+use flexure::prove::engine::number::Number;
+use flexure::prove::engine::structural::{Problem, certify};
+use flexure::prove::question::{Question, Region, prove};
+use flexure::scenario::load_scenario;
 use flexure::verify::verify;
 use flexure_core::control::{CoupledTanh, Linear, Tanh};
+use flexure_core::scalar::Interval;
 
 #[path = "../tests/direct/arm.rs"]
 #[allow(dead_code, reason = "shared with the tests")]
 mod arm;
-use arm::{ArmFlow, coupled_tanh, flow, linear, region, tanh};
-use flexure_core::scalar::Interval;
 
 /// Boxes that a proof may look at.
 const BUDGET: usize = 20_000;
@@ -31,7 +33,7 @@ const TANH_CONVERGENCE: f64 = 9.950_547_536_867_305;
 fn problem(scenario: &str, error: f64) -> Problem {
     let scenario = load_scenario(scenario).expect("built in");
     let region = Region::Errors(vec![error; 2 * scenario.robot.joint_count()]);
-    flexure::proof::problem(&scenario, &Question { region, ..Question::default() }, None)
+    flexure::prove::question::problem(&scenario, &Question { region, ..Question::default() }, None)
         .expect("a constant metric")
 }
 

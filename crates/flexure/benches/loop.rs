@@ -9,11 +9,14 @@ fn main() {
 /// One control period of a robot with every imperfection of the plant: friction on both sides, hardening, play, hysteresis.
 mod rough_plant {
     use super::Bencher;
-    use flexure::io;
-    use flexure::registry::{RobotVisitor, with_robot};
-    use flexure::sim::{Friction, Hysteresis, Ledger, Plant, Stepper, Stepping};
+
+    use flexure::plant::{Friction, Hysteresis, Plant};
+    use flexure::robot::{RobotVisitor, with_robot};
+    use flexure::simulate::{Ledger, Stepper, Stepping};
     use flexure_core::linalg::Vector;
-    use flexure_core::model::{Fjr, Links, Motion};
+    use flexure_core::model::Fjr;
+    use flexure_core::model::Links;
+    use flexure_core::model::Motion;
 
     struct Period<'a, 'b> {
         bencher: Bencher<'a, 'b>,
@@ -55,7 +58,7 @@ mod rough_plant {
     }
 
     fn period(bencher: Bencher, robot: &str, seconds: f64) {
-        let robot = io::load_robot(robot).expect("built in");
+        let robot = flexure::robot::load_robot(robot).expect("built in");
         with_robot(&robot, Period { bencher, seconds }).expect("supported");
     }
 
@@ -74,8 +77,8 @@ mod rough_plant {
 mod whole_loop {
     use super::Bencher;
     use divan::counter::ItemsCount;
-    use flexure::io::load_scenario;
-    use flexure::run::measure;
+    use flexure::scenario::load_scenario;
+    use flexure::simulate::measure;
 
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few thousand periods")]
     #[divan::bench(args = ["two-link-everything", "two-link-hardware", "two-link-tanh-smooth"], sample_count = 10, sample_size = 1)]

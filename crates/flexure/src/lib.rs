@@ -2,29 +2,23 @@
 
 pub use flexure_core as core;
 
-pub mod along;
-pub mod certify;
 pub mod compare;
-pub mod confirmation;
 mod eigenvalues;
-pub mod evaluate;
-pub mod experiment;
+pub mod estimators;
+pub mod eval;
 pub mod feasible;
-pub mod io;
+pub mod files;
+pub mod imperfections;
+pub mod laws;
 pub mod margins;
-pub mod overview;
-pub mod paper;
-pub mod proof;
-pub mod proof_summary;
-pub mod rates;
-pub mod reference;
-pub mod registry;
+pub mod plant;
+pub mod prove;
+pub mod references;
 pub mod report;
-pub mod run;
-pub mod sampling;
-pub mod sim;
-pub mod summary;
-pub mod trace;
+pub mod reproduce;
+pub mod robot;
+pub mod scenario;
+pub mod simulate;
 pub mod tune;
 pub mod verify;
 

@@ -3,7 +3,11 @@
 use std::fs;
 use std::path::Path;
 
-use flexure::io::{Problem, Problems, load_robot, load_scenario, robot_from_text, scenario_from_text};
+use flexure::files::{Problem, Problems};
+use flexure::robot::load_robot;
+use flexure::robot::robot_from_text;
+use flexure::scenario::load_scenario;
+use flexure::scenario::scenario_from_text;
 
 const ARM: &str = r#"name = "arm"
 gravity = [0.0, 0.0, -9.81]

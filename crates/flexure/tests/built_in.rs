@@ -2,7 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use flexure::io::{Body, Links, ROBOTS, SmoothStart, load_robot, load_scenario};
+use flexure::files::ROBOTS;
+use flexure::references::SmoothStart;
+use flexure::robot::load_robot;
+use flexure::robot::{Body, Links};
+use flexure::scenario::load_scenario;
 use toml::de::{DeTable, DeValue};
 
 /// Sum of the masses of panda.urdf but for the base link, which does not move.

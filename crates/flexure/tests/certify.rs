@@ -1,11 +1,17 @@
 //! Certificates of the two-link robot with the paper's gains: the figures of the theory.
 
-use flexure::certify::certificate::{
+use flexure::files::SCENARIOS;
+use flexure::prove::engine::certificate::Certificate;
+use flexure::prove::engine::certificate::{
     BlockName, Body, Controller, Gains, JointKind, Links, Phi, Robot, Side, StructureName, Witness,
 };
-use flexure::certify::{Certificate, Number, Problem, Request, State, Verdict, certify};
-use flexure::io::{SCENARIOS, load_scenario};
-use flexure::proof::{Question, prove};
+use flexure::prove::engine::number::Number;
+use flexure::prove::engine::region::Request;
+use flexure::prove::engine::structural::{Problem, certify};
+use flexure::prove::engine::verdict::Verdict;
+use flexure::prove::engine::witness::State;
+use flexure::prove::question::{Question, prove};
+use flexure::scenario::load_scenario;
 use flexure_core::control::{CoupledTanh, Linear, Shaping, Tanh};
 use flexure_core::linalg::Vector;
 

@@ -1,7 +1,9 @@
 //! The arms under gravity against closed forms written here by hand.
 
-use flexure::evaluate::{ModelRow, evaluate_model};
-use flexure::io::{Links, Robot, StateFile, StateRow, load_robot};
+use flexure::eval::{ModelRow, evaluate_model};
+use flexure::files::{StateFile, StateRow};
+use flexure::robot::load_robot;
+use flexure::robot::{Links, Robot};
 
 /// Tomei (1991), a1 … a13 as printed: the digits tell how far to trust them.
 const PRINTED: [(&str, [&str; 13]); 2] = [
@@ -91,7 +93,7 @@ fn tomei_s_parameters_tell_other_arms_apart() {
         change(&mut robot);
         disagreement(&robot, &printed)
     };
-    let body = |i: usize, change: &'static dyn Fn(&mut flexure::io::Body)| {
+    let body = |i: usize, change: &'static dyn Fn(&mut flexure::robot::Body)| {
         altered(&|robot| match &mut robot.links {
             Links::Tree(bodies) => change(&mut bodies[i]),
             other => panic!("{other:?}"),

@@ -1,11 +1,22 @@
 //! Control laws on the same bench: ranks, what a comparison depends on, what becomes of laws that diverge.
 #![expect(clippy::float_cmp, reason = "ranks are halves, and made-up errors have exact quotients")]
 
-use flexure::compare::{
-    Entrant, Leaderboard, Score, TIE, Task, TaskScores, check_budget, compare, entrants, ranks, tasks,
-};
-use flexure::io::{Imperfection, TASKS, load_scenario};
-use flexure::report::{chatter_figure, effort_figure, leaderboard_page, leaderboard_table};
+use flexure::compare::Entrant;
+use flexure::compare::Leaderboard;
+use flexure::compare::Score;
+use flexure::compare::TIE;
+use flexure::compare::Task;
+use flexure::compare::TaskScores;
+use flexure::compare::entrants;
+use flexure::compare::ranks;
+use flexure::compare::tasks;
+use flexure::compare::{check_budget, compare};
+use flexure::files::TASKS;
+use flexure::imperfections::Imperfection;
+use flexure::report::chatter_figure;
+use flexure::report::effort_figure;
+use flexure::report::{leaderboard_page, leaderboard_table};
+use flexure::scenario::load_scenario;
 
 fn named(names: &[&str]) -> Vec<Entrant> {
     entrants(&names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>()).expect("known laws")
@@ -100,7 +111,7 @@ fn equal_mean_ranks_share_a_place() {
 /// Names are what makes a law; v-CBC with φ linear has two.
 #[test]
 fn laws_are_named_once() {
-    assert_eq!(entrants(&[]).expect("all laws").len(), flexure::registry::CONTROLLERS.len() + 1);
+    assert_eq!(entrants(&[]).expect("all laws").len(), flexure::laws::CONTROLLERS.len() + 1);
     for entrant in entrants(&[]).expect("all laws") {
         assert_eq!(Entrant::named(&entrant.name()).expect("its own name"), entrant);
     }

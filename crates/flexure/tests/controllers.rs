@@ -7,14 +7,16 @@ use flexure::core::linalg::Vector;
 use flexure::core::model::{Fjr, Motion};
 use flexure::core::robots::Tree;
 use flexure::core::scalar::{Dual, Interval, Jet, Scalar};
-use flexure::evaluate::evaluate_law;
-use flexure::io::{
-    BASELINES, Controller, Links, Problems, Robot, Scenario, StateFile, StateRow, load_robot, load_scenario,
-    scenario_from_text,
-};
-use flexure::proof::{Question, prove};
-use flexure::registry::{CONTROLLERS, any_law};
-use flexure::run::run;
+use flexure::eval::evaluate_law;
+use flexure::files::{Problems, StateFile, StateRow};
+use flexure::laws::{BASELINES, Controller};
+use flexure::laws::{CONTROLLERS, any_law};
+use flexure::prove::question::{Question, prove};
+use flexure::robot::load_robot;
+use flexure::robot::{Links, Robot};
+use flexure::scenario::load_scenario;
+use flexure::scenario::{Scenario, scenario_from_text};
+use flexure::simulate::run;
 
 const HEAD: &str = "robot = \"quanser-2dof\"\nduration = 1.0\ncontrol_period = 0.001\n\
     [reference]\nkind = \"quintic\"\nfrom = 0.0\nto = 0.1\nstart = 0.0\nduration = 1.0\n[controller]\n";

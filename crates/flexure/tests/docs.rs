@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use flexure::io::{load_robot, load_scenario};
+use flexure::robot::load_robot;
+use flexure::scenario::load_scenario;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")

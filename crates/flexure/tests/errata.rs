@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use flexure::rates::BlockRates;
+use flexure::laws::BlockRates;
 use flexure_core::control::{
     Command, CoupledTanh, Input, Linear, LinkGains, Metric, MotorGains, Shaping, Tanh, Vcbc,
 };

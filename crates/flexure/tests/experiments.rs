@@ -4,11 +4,17 @@ use flexure::core::control::Input;
 use flexure::core::linalg::Vector;
 use flexure::core::model::{Fjr, Motion};
 use flexure::core::robots::Tree;
-use flexure::experiment::REPRODUCED;
-use flexure::io::{Hold, Links, Scenario, load_scenario};
-use flexure::registry::{AnyReference, law};
-use flexure::run::{Run, run};
-use flexure::sim::{self, ClosedLoop, Controller};
+use flexure::laws::law;
+use flexure::plant;
+use flexure::references::AnyReference;
+use flexure::reproduce::REPRODUCED;
+use flexure::robot::Links;
+use flexure::scenario::load_scenario;
+use flexure::scenario::{Hold, Scenario};
+use flexure::simulate;
+use flexure::simulate::Run;
+use flexure::simulate::run;
+use flexure::simulate::{ClosedLoop, Controller};
 
 fn simulate(change: impl Fn(&mut Scenario), name: &str) -> Run {
     let mut scenario = load_scenario(name).expect("built in");
@@ -79,7 +85,7 @@ fn five_hundred_hertz_is_too_slow_for_the_paper_s_gains() {
 
 #[test]
 fn every_built_in_scenario_runs_to_its_end_and_settles() {
-    for (name, _) in flexure::io::SCENARIOS {
+    for (name, _) in flexure::files::SCENARIOS {
         let run = simulate(|_| (), name);
         assert!(run.divergence.is_none(), "{name}: {:?}", run.divergence);
         assert!(run.summary.settling_time.is_some(), "{name}: {:?}", run.summary);
@@ -107,7 +113,8 @@ fn trace_and_summary_say_what_happened() {
     }
     // The settling time, found again from its definition.
     let errors = run.trace.joints("e_l");
-    let unsettled = (0..t.len()).rev().find(|&i| errors.iter().any(|e| e[i].abs() >= flexure::run::SETTLED));
+    let unsettled =
+        (0..t.len()).rev().find(|&i| errors.iter().any(|e| e[i].abs() >= flexure::simulate::SETTLED));
     let settled = unsettled.map_or(0.0, |i| t[i + 1]);
     assert_eq!(run.summary.settling_time, Some(settled));
     let largest = errors.iter().flat_map(|e| e.iter()).fold(0.0, |m: f64, e| m.max(e.abs()));
@@ -129,7 +136,7 @@ fn the_continuous_loop_starts_from_rest_on_the_reference() {
 
 #[test]
 fn an_arm_that_has_come_to_rest_costs_no_more_than_one_that_moves() {
-    use flexure::io::{Profile, Reference};
+    use flexure::references::{Profile, Reference};
     for (name, hold) in [
         ("pendulum-tanh", Hold::ZeroOrder),
         ("panda-tanh-smooth", Hold::ZeroOrder),
@@ -169,7 +176,7 @@ fn seven_joints_with_gravity_off_by(factor: f64) -> f64 {
             motor_damping: vector(&data.motor_damping),
         }
     };
-    let (plant, model) = (sim::Plant::from(robot(factor)), robot(1.0));
+    let (plant, model) = (plant::Plant::from(robot(factor)), robot(1.0));
     let (law, reference) =
         (law::<7>(scenario.vcbc().expect("v-CBC")), AnyReference::<f64, 7>::new(&scenario).expect("a path"));
     let torque =
@@ -181,17 +188,18 @@ fn seven_joints_with_gravity_off_by(factor: f64) -> f64 {
     let settings = ClosedLoop {
         duration: 4.0,
         period: 1e-3,
-        hold: sim::Hold::ZeroOrder,
-        tolerance: flexure::run::TOLERANCE,
+        hold: simulate::Hold::ZeroOrder,
+        tolerance: flexure::simulate::TOLERANCE,
         longest_step: 1e-3,
     };
     let mut error = 0.0_f64;
-    let outcome = settings.run(&plant, start, &[], &mut controller, &mut |instant: &sim::Instant<'_, 7>| {
-        if instant.t >= 2.0 {
-            let e_l = instant.motion.q_l - instant.action.reference.map(|jet| jet.coefficient(0));
-            error = e_l.iter().fold(error, |worst, e| worst.max(e.abs()));
-        }
-    });
+    let outcome =
+        settings.run(&plant, start, &[], &mut controller, &mut |instant: &simulate::Instant<'_, 7>| {
+            if instant.t >= 2.0 {
+                let e_l = instant.motion.q_l - instant.action.reference.map(|jet| jet.coefficient(0));
+                error = e_l.iter().fold(error, |worst, e| worst.max(e.abs()));
+            }
+        });
     if outcome.divergence.is_none() { error } else { f64::INFINITY }
 }
 

@@ -1,11 +1,13 @@
 //! References and the limits of robots: closed forms, and what a simulated run does.
 
-use flexure::feasible::{exceeded, speed, usage};
-use flexure::io::{
-    Hold, Problems, Profile, Reference, SCENARIOS, Scenario, SmoothStart, Speed, TimeScaling, load_robot,
-    load_scenario,
-};
-use flexure::run::run;
+use flexure::feasible::speed;
+use flexure::feasible::{exceeded, usage};
+use flexure::files::{Problems, SCENARIOS};
+use flexure::references::{Profile, Reference, SmoothStart, Speed, TimeScaling};
+use flexure::robot::load_robot;
+use flexure::scenario::load_scenario;
+use flexure::scenario::{Hold, Scenario};
+use flexure::simulate::run;
 
 /// The pendulum, weightless, on its sine, without smooth start: a linear drive.
 fn weightless() -> Scenario {

@@ -1,6 +1,7 @@
 //! A robot that is driven by the torque of its inverse dynamics, and by nothing else, follows the trajectory.
 
-use flexure::sim::{Integrator, Ledger, Plant};
+use flexure::plant::Plant;
+use flexure::simulate::{Integrator, Ledger};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{FeedForward, Fjr, Links, Motion};
 use flexure_core::reference::{Reference, Sine};

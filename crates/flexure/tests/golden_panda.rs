@@ -1,7 +1,10 @@
 //! The law and the model of a 7-joint arm against `golden/panda.json`: the links of `robots/panda.toml`, with the gains
 //! and drives of the file.
 
-use flexure::io::{self, StateFile, StateRow};
+use flexure::files::{StateFile, StateRow};
+use flexure::laws;
+use flexure::references;
+use flexure::scenario;
 use serde::Deserialize;
 
 /// The issue asks for 1e-8; the file's numbers and ours agree to rounding amplified by torques of 1e5 N m.
@@ -64,33 +67,33 @@ fn close(what: &str, got: &[f64], expected: &[f64]) {
     }
 }
 
-fn side(gains: &mut io::SideGains, metric: &[f64], damping: &[f64], kappa: bool) {
+fn side(gains: &mut laws::SideGains, metric: &[f64], damping: &[f64], kappa: bool) {
     gains.metric = metric.to_vec();
     gains.shaping = metric.to_vec();
     gains.damping = damping.to_vec();
     gains.kappa = kappa.then(|| vec![1.0; metric.len()]);
 }
 
-fn scenario(case: &Case) -> io::Scenario {
-    let mut scenario = io::load_scenario("panda-tanh-smooth").expect("built in");
+fn scenario(case: &Case) -> scenario::Scenario {
+    let mut scenario = scenario::load_scenario("panda-tanh-smooth").expect("built in");
     scenario.robot.stiffness.clone_from(&case.K);
     scenario.robot.motor_inertia.clone_from(&case.M_m);
     scenario.robot.link_damping.clone_from(&case.D_l);
     scenario.robot.motor_damping.clone_from(&case.D_m);
-    let io::Controller::Vcbc(gains) = &mut scenario.controller else { panic!("the scenario is of v-CBC") };
-    let io::VcbcGains { phi, link, motor } = gains.as_mut();
+    let laws::Controller::Vcbc(gains) = &mut scenario.controller else { panic!("the scenario is of v-CBC") };
+    let laws::VcbcGains { phi, link, motor } = gains.as_mut();
     *phi = match case.phi.as_str() {
-        "tanh" => io::Phi::Tanh,
-        "linear" => io::Phi::Linear,
+        "tanh" => laws::Phi::Tanh,
+        "linear" => laws::Phi::Linear,
         other => panic!("no case of the file has {other}"),
     };
     side(link, &case.Lambda_l, &case.K_ld, false);
     side(motor, &case.Lambda_m, &case.K_md, false);
     let Reference { offset, amplitude, frequency } = &case.reference;
     scenario.smooth_start = None;
-    scenario.reference = io::Reference::Sines {
+    scenario.reference = references::Reference::Sines {
         offset: offset.clone(),
-        terms: vec![io::Term {
+        terms: vec![references::Term {
             amplitude: amplitude.clone(),
             frequency: frequency.clone(),
             phase: vec![0.0; offset.len()],
@@ -119,8 +122,8 @@ fn panda_golden_file() {
             })
             .collect();
         let states = StateFile { name: "golden".to_owned(), rows };
-        let laws = flexure::evaluate::evaluate_law(&scenario, &states).expect("seven joints");
-        let models = flexure::evaluate::evaluate_model(&scenario.robot, &states).expect("seven joints");
+        let laws = flexure::eval::evaluate_law(&scenario, &states).expect("seven joints");
+        let models = flexure::eval::evaluate_model(&scenario.robot, &states).expect("seven joints");
         for ((law, model), sample) in laws.iter().zip(&models).zip(&case.samples) {
             let expect = &sample.expect;
             close("u_m", &law.u_m, &expect.u_m);

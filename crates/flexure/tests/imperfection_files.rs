@@ -5,11 +5,15 @@ use std::fs;
 use std::path::Path;
 
 use flexure::core::scalar::Interval;
-use flexure::io::{
-    Deadline, DropoutMode, Encoders, Estimator, Imperfection, Links, ModelError, Outage, Problem, Problems,
-    PushShape, Robot, Scenario, Side, Sides, VelocityFilter, load_robot, scenario_from_text,
+use flexure::estimators::{Encoders, Estimator};
+use flexure::files::{Problem, Problems};
+use flexure::imperfections::IMPERFECTIONS;
+use flexure::imperfections::{
+    Deadline, DropoutMode, Imperfection, ModelError, Outage, PushShape, Side, Sides, VelocityFilter,
 };
-use flexure::registry::IMPERFECTIONS;
+use flexure::robot::load_robot;
+use flexure::robot::{Links, Robot};
+use flexure::scenario::{Scenario, scenario_from_text};
 use miette::Diagnostic;
 use tempfile::TempDir;
 
@@ -306,7 +310,7 @@ fn payloads_on_trees_are_fixed_bodies() {
     let (Links::Tree(loaded), Links::Tree(heavy)) = (model.apply(&robot).links, heavy.links) else {
         panic!()
     };
-    let numbers = |links: &[flexure::io::Body]| -> Vec<f64> {
+    let numbers = |links: &[flexure::robot::Body]| -> Vec<f64> {
         let body = links[0];
         [body.mass].into_iter().chain(body.com).chain(body.inertia.into_iter().flatten()).collect()
     };

@@ -1,7 +1,7 @@
 //! The plant integrator: order, stiff damping, stiff springs, energy, and an independent solver.
 
 use differential_equations::prelude::{ExplicitRungeKutta, IVP, ODE};
-use flexure::sim::{Integrator, Ledger};
+use flexure::simulate::{Integrator, Ledger};
 use flexure_core::linalg::{Matrix, Vector};
 use flexure_core::model::{Fjr, Links, Motion};
 use flexure_core::robots::{Body, JointKind, Pendulum, PlanarTwoLink, Tree};

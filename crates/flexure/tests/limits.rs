@@ -1,7 +1,8 @@
 //! Limits of the robot that a run exceeds.
 
-use flexure::io::load_scenario;
-use flexure::run::{exceeded, run};
+use flexure::scenario::load_scenario;
+use flexure::simulate::exceeded;
+use flexure::simulate::run;
 
 /// A pendulum that follows 0.5 sin 3t exceeds exactly the limits that this motion does.
 #[test]

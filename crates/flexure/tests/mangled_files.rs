@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use flexure::io::{ROBOTS, SCENARIOS, robot_from_text, scenario_from_text};
+use flexure::files::{ROBOTS, SCENARIOS};
+use flexure::robot::robot_from_text;
+use flexure::scenario::scenario_from_text;
 
 /// Splitmix64: the same mutations on every run.
 struct Noise(u64);

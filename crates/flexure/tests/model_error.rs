@@ -1,7 +1,10 @@
 //! Robots that differ from their models: factors, payloads, and both robots at once.
 
-use flexure::io::{Factors, Links, ModelError, Payload, ROBOTS, Robot, load_robot};
-use flexure::registry::{PairVisitor, RobotVisitor, with_pair, with_robot};
+use flexure::files::ROBOTS;
+use flexure::imperfections::{Factors, ModelError, Payload};
+use flexure::robot::load_robot;
+use flexure::robot::{Links, Robot};
+use flexure::robot::{PairVisitor, RobotVisitor, with_pair, with_robot};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links as Dynamics};
 

@@ -3,7 +3,8 @@
 use std::f64::consts::PI;
 
 use differential_equations::prelude::{ExplicitRungeKutta, IVP, ODE};
-use flexure::sim::{Integrator, Ledger, Plant};
+use flexure::plant::Plant;
+use flexure::simulate::{Integrator, Ledger};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Motion, RotorCoupling};
 use flexure_core::robots::{Body, JointKind, Pendulum, PlanarTwoLink, Tree};

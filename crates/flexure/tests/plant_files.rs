@@ -2,10 +2,13 @@
 
 use std::fs;
 
-use flexure::experiment::{Experiment, report};
-use flexure::io::{Plant, Problem, Problems, Scenario, scenario_from_text};
-use flexure::report::{html, summary_table};
-use flexure::run::{preload, run};
+use flexure::files::{Problem, Problems};
+use flexure::report::html;
+use flexure::report::summary_table;
+use flexure::reproduce::{Experiment, report};
+use flexure::scenario::{Plant, Scenario, scenario_from_text};
+use flexure::simulate::preload;
+use flexure::simulate::run;
 use tempfile::TempDir;
 
 const QUANSER: &str = include_str!("../../../robots/quanser-2dof.toml");
@@ -52,7 +55,7 @@ fn read(scenario: &str) -> Result<Scenario, Problems> {
     read_with(GEARS, scenario)
 }
 
-fn simulated(scenario: &Scenario) -> flexure::run::Run {
+fn simulated(scenario: &Scenario) -> flexure::simulate::Run {
     run(scenario, &|_| ()).unwrap_or_else(|problems| panic!("{problems}"))
 }
 

@@ -1,6 +1,6 @@
 //! Reference rates of the two-link arm with the paper's gains: theory, section 5.
 
-use flexure::rates::BlockRates;
+use flexure::laws::BlockRates;
 use flexure_core::control::{CoupledTanh, Input, Linear, LinkGains, Metric, MotorGains, Shaping, Tanh, Vcbc};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Motion};

@@ -1,10 +1,15 @@
 //! Data become the right types: closed forms against what the files say.
 
 use flexure::core::reference::Reference as _;
-use flexure::evaluate::evaluate_model;
-use flexure::io::{Links, Profile, Reference, StateFile, StateRow, load_robot, load_scenario};
-use flexure::registry::{AnyReference, supported};
-use flexure::run::preload;
+use flexure::eval::evaluate_model;
+use flexure::files::{StateFile, StateRow};
+use flexure::references::AnyReference;
+use flexure::references::{Profile, Reference};
+use flexure::robot::Links;
+use flexure::robot::load_robot;
+use flexure::robot::supported;
+use flexure::scenario::load_scenario;
+use flexure::simulate::preload;
 
 #[test]
 fn the_pendulum_swings_about_its_joint() {

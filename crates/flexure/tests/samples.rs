@@ -4,7 +4,7 @@
 use flexure::core::linalg::Vector;
 use flexure::core::reference::{PointToPoint, Reference, Sine, SmoothStart, Smoothstep};
 use flexure::core::scalar::{Dual, Jet};
-use flexure::reference::{Samples, SamplesError};
+use flexure::references::{Samples, SamplesError};
 
 /// Unevenly spaced instants [s]; neighbouring intervals differ by up to a factor of 8.
 const TIMES: [f64; 9] = [-0.5, 0.0, 0.1, 0.9, 1.3, 1.5, 2.3, 2.5, 3.0];

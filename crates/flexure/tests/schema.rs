@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use flexure::certify::Certificate;
+use flexure::prove::engine::certificate::Certificate;
 
 /// `FLEXURE_WRITE=1 cargo test -p flexure --test schema` writes the file anew.
 #[test]

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use flexure::io::{Scenario, load_scenario, write_certificate};
-use flexure::proof::{Direct, Proof, Question, Region, SMALLEST_ERROR, prove};
-use flexure::proof_summary::ProofSummary;
-use flexure::report::proof_table;
+use flexure::prove::question::{Direct, Proof, Question, Region, SMALLEST_ERROR, prove};
+use flexure::prove::summary::ProofSummary;
+use flexure::report::{proof_table, write_certificate};
+use flexure::scenario::{Scenario, load_scenario};
 use serde::Serialize;
 
 use super::print;

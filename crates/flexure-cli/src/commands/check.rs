@@ -1,10 +1,10 @@
 //! `flexure check`: are these files good?
 
 use flexure::feasible::{self, Usage};
-use flexure::io::{self, Assumption, Checked, Problem, Problems, Scenario};
-use flexure::overview::{JointRow, overview};
-use flexure::registry::supported;
+use flexure::files::{Assumption, Problem, Problems};
 use flexure::report::{joint_table, usage_table};
+use flexure::robot::{JointRow, overview, supported};
+use flexure::scenario::{self, Checked, Scenario};
 use serde::Serialize;
 
 use super::print;
@@ -156,7 +156,7 @@ struct Found {
 }
 
 fn content(file: &str) -> Result<Found, Problems> {
-    match io::check(file)? {
+    match scenario::check(file)? {
         Checked::Robot(robot) => {
             let rows = overview(&robot)?;
             let assumed = assumed(&robot.assumptions());

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use flexure::compare::{Leaderboard, check_budget, compare as compared, entrants, tasks};
-use flexure::io::{prepare, write_leaderboard};
-use flexure::report::leaderboard_table;
+use flexure::files::prepare;
+use flexure::report::{leaderboard_table, write_leaderboard};
 use serde::Serialize;
 
 use super::print;

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use flexure::evaluate::evaluate_law;
-use flexure::io::{load_scenario, load_states};
+use flexure::eval::evaluate_law;
+use flexure::files::load_states;
+use flexure::scenario::load_scenario;
 
 use super::print;
 use crate::failure::{Failure, say};

@@ -1,7 +1,6 @@
 //! `flexure import`: a robot file to complete, from a URDF.
 
-use flexure::io;
-use flexure::registry::MAX_JOINTS;
+use flexure::robot::{self, MAX_JOINTS};
 use serde::Serialize;
 
 use super::print;
@@ -15,7 +14,7 @@ struct Draft {
 }
 
 pub fn import(urdf: &str, locks: &[(String, f64)], json: bool) -> Result<(), Failure> {
-    let io::Import { toml, joints, warnings } = io::import(urdf, locks)?;
+    let robot::Import { toml, joints, warnings } = robot::import(urdf, locks)?;
     say(&warnings);
     if let Some((name, _)) =
         locks.iter().enumerate().find_map(|(i, lock)| locks[..i].iter().find(|earlier| earlier.0 == lock.0))

@@ -2,8 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use flexure::io::{ROBOTS, SCENARIOS, TASKS};
-use flexure::registry::{CONTROLLERS, Entry, IMPERFECTIONS, REFERENCES, SHAPING};
+use flexure::files::{Entry, ROBOTS, SCENARIOS, TASKS};
+use flexure::imperfections::IMPERFECTIONS;
+use flexure::laws::{CONTROLLERS, SHAPING};
+use flexure::references::REFERENCES;
 
 use super::print;
 use crate::args::Kind;

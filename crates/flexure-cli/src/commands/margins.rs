@@ -1,9 +1,10 @@
 //! `flexure margins`: how much a loop bears.
 
 use flexure::compare::{Entrant, check_budget, entrants};
-use flexure::io::{Problems, Scenario, load_scenario};
+use flexure::files::Problems;
 use flexure::margins::{Margins as Found, margins as measured};
 use flexure::report::margins_table;
+use flexure::scenario::{Scenario, load_scenario};
 use flexure::tune::tune;
 use serde::Serialize;
 

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use flexure::evaluate::evaluate_model;
-use flexure::io::{load_robot, load_states};
+use flexure::eval::evaluate_model;
+use flexure::files::load_states;
+use flexure::robot::load_robot;
 
 use super::print;
 use crate::failure::{Failure, say};

@@ -2,10 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use flexure::experiment::{REPRODUCED, certificates, reproduce as experiments};
-use flexure::io::{prepare, write_certificates, write_experiment, write_report};
-use flexure::proof_summary::ProofSummary;
+use flexure::files::prepare;
+use flexure::prove::summary::ProofSummary;
 use flexure::report::{certificate_table, summary_table};
+use flexure::reproduce::{
+    REPRODUCED, certificates, reproduce as experiments, write_certificates, write_experiment, write_report,
+};
 use rayon::prelude::*;
 use serde::Serialize;
 

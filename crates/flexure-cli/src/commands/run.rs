@@ -2,13 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use flexure::experiment::Experiment;
 use flexure::feasible;
-use flexure::io::{Problem, load_scenario, prepare, write_experiment};
+use flexure::files::{Problem, prepare};
 use flexure::report::summary_table;
-use flexure::run::{exceeded, preload};
-use flexure::sim::{Cause, Divergence};
-use flexure::summary::Summary;
+use flexure::reproduce::{Experiment, write_experiment};
+use flexure::scenario::load_scenario;
+use flexure::simulate::{Cause, Divergence, Summary, exceeded, preload};
 use serde::Serialize;
 
 use super::print;

@@ -1,7 +1,8 @@
 //! The laws that take part, by name.
 
-use crate::io::{Controller, Phi, Problem, Problems, Robot, SideGains, suggest};
-use crate::registry::CONTROLLERS;
+use crate::files::{Problem, Problems, suggest};
+use crate::laws::{CONTROLLERS, Controller, Phi, SideGains};
+use crate::robot::Robot;
 
 /// A law that takes part: a registered controller, v-CBC with one of its shaping functions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use super::ranking::{Standing, TIE, ranks, standings};
-use super::score::Score;
-use super::task::Task;
+use crate::compare::ranking::{Standing, TIE, ranks, standings};
+use crate::compare::score::Score;
+use crate::compare::task::Task;
 
 /// What v-CBC is called, alone or before its shaping function.
 const VCBC: &str = "vcbc";

@@ -1,6 +1,6 @@
 //! Control laws on the same bench: the same tasks, the same search for gains, one leaderboard.
 //!
-//! Every law starts each task from [`Controller::default_for`](crate::io::Controller::default_for) and may simulate the
+//! Every law starts each task from [`Controller::default_for`](crate::laws::Controller::default_for) and may simulate the
 //! same number of runs to find better gains ([`tune`]); random numbers of the search come from one
 //! seed, the same for every law and task. So a result depends on its task, its law, budget and seed, and on nothing else:
 //! not on what else is compared, nor on the number of threads. docs/comparison.md has the protocol and what came of it.
@@ -13,15 +13,15 @@ mod task;
 
 use rayon::prelude::*;
 
+use crate::files::{Problem, Problems};
+use crate::simulate::measure;
+use crate::tune::tune;
+
 pub use entrant::{Entrant, entrants};
 pub use leaderboard::{Leaderboard, Loss, TaskScores, is_vcbc};
 pub use ranking::{Standing, TIE, ranks, standings};
 pub use score::{CHATTERS, Gain, Score};
 pub use task::{Task, tasks};
-
-use crate::io::{Problem, Problems};
-use crate::run::measure;
-use crate::tune::tune;
 
 /// Runs that each law may simulate on each task.
 pub const BUDGET: usize = 40;

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::leaderboard::TaskScores;
-use super::score::Score;
+use crate::compare::leaderboard::TaskScores;
+use crate::compare::score::Score;
 
 /// Errors within this factor of the best of a group are a tie.
 pub const TIE: f64 = 1.01;

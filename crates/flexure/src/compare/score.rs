@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::run::Run;
+use crate::simulate::Run;
 use crate::tune::Tuned;
 
 /// Torque changes per control period above this part of the torque are chatter: there the [penalised

@@ -1,8 +1,9 @@
 //! What laws are compared on.
 
 use crate::feasible::{effort, pinned};
-use crate::io::{Problem, Problems, Scenario, TASKS, load_scenario};
-use crate::report::number::duration;
+use crate::files::number::duration;
+use crate::files::{Problem, Problems, TASKS};
+use crate::scenario::{Scenario, load_scenario};
 
 /// Names of built-in tasks begin with it; left out where only tasks are named.
 const PREFIX: &str = "task-";

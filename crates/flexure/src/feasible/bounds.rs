@@ -1,8 +1,8 @@
 //! The limits of a robot, and what share of them numbers along a reference are.
 
-use super::Usage;
-use super::peaks::Peak;
-use crate::io::{JointKind, Robot};
+use crate::feasible::Usage;
+use crate::feasible::peaks::Peak;
+use crate::robot::{JointKind, Robot};
 
 /// What is limited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,12 +1,13 @@
 //! How much torque a reference takes.
 
-use super::search::speed;
-use super::track::with_track;
-use crate::io::{Problems, Scenario};
+use crate::feasible::search::speed;
+use crate::feasible::track::with_track;
+use crate::files::Problems;
+use crate::scenario::Scenario;
 
 /// Root mean square over time of the motor torque that keeps the robot of `scenario` on its reference, by exact inverse
 /// dynamics at every control instant; the largest over the joints [N m], as
-/// [`Summary::rms_u_m`](crate::summary::Summary::rms_u_m) is for a run.
+/// [`Summary::rms_u_m`](crate::simulate::Summary::rms_u_m) is for a run.
 ///
 /// # Errors
 /// As [`speed`].

@@ -3,7 +3,7 @@
 //! A flexible-joint robot is flat: the trajectory of its links decides motor torques, their rates, deflections and
 //! velocities, by exact inverse dynamics on Taylor series. They are looked at every control period and at least a thousand
 //! times a run, and once more at the top of each hump between. That is a dense sample, not a proof: bounds over
-//! whole spans of time are those of [`along`](crate::along). And it is the reference that is asked, not the loop: a robot that starts off its
+//! whole spans of time are those of [`along`](crate::prove::along). And it is the reference that is asked, not the loop: a robot that starts off its
 //! reference needs more than the reference does.
 
 mod bounds;
@@ -14,12 +14,15 @@ mod track;
 
 use serde::Serialize;
 
-use self::bounds::bounds;
-pub use self::effort::effort;
-use self::peaks::{Course, peaks};
-pub use self::search::speed;
-use self::track::with_track;
-use crate::io::{Problem, Problems, Scenario, Speed};
+use crate::feasible::bounds::bounds;
+use crate::feasible::peaks::{Course, peaks};
+use crate::feasible::track::with_track;
+use crate::files::{Problem, Problems};
+use crate::references::Speed;
+use crate::scenario::Scenario;
+
+pub use crate::feasible::effort::effort;
+pub use crate::feasible::search::speed;
 
 /// The largest share of a limit that is used along the reference.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -3,10 +3,10 @@
 use flexure_core::reference::Clock;
 use flexure_core::scalar::Interval;
 
-use super::bounds::{Bound, Quantity};
-use super::track::{Demand, Demands, Track};
-use crate::io::{Profile, Reference, Scenario};
-use crate::reference::when;
+use crate::feasible::bounds::{Bound, Quantity};
+use crate::feasible::track::{Demand, Demands, Track};
+use crate::references::{Profile, Reference, when};
+use crate::scenario::Scenario;
 
 /// The reference of a scenario at a speed.
 pub struct Course<'a> {

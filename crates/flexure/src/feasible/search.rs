@@ -1,10 +1,12 @@
 //! The largest speed at which a reference keeps the limits.
 
-use super::bounds::{Bound, bounds};
-use super::peaks::{Course, fits, peaks};
-use super::track::{Track, with_track};
-use super::{Usage, bounds as words, described};
-use crate::io::{Problem, Problems, Scenario, Speed};
+use crate::feasible::bounds::{Bound, bounds};
+use crate::feasible::peaks::{Course, fits, peaks};
+use crate::feasible::track::{Track, with_track};
+use crate::feasible::{Usage, bounds as words, described};
+use crate::files::{Problem, Problems};
+use crate::references::Speed;
+use crate::scenario::Scenario;
 
 /// Speeds are tried downwards in steps of this ratio.
 const RATIO: f64 = 0.9;

@@ -5,9 +5,11 @@ use flexure_core::model::{Fjr, Links};
 use flexure_core::reference::Reference as _;
 use flexure_core::scalar::Jet;
 
-use super::bounds::{Bound, Quantity};
-use crate::io::{Problems, Scenario};
-use crate::registry::{AnyReference, RobotVisitor, with_robot};
+use crate::feasible::bounds::{Bound, Quantity};
+use crate::files::Problems;
+use crate::references::AnyReference;
+use crate::robot::{RobotVisitor, with_robot};
+use crate::scenario::Scenario;
 
 /// A robot and a reference, whatever their types.
 pub trait Track {

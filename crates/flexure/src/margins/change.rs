@@ -1,6 +1,7 @@
 //! A scenario with a little more of one imperfection.
 
-use crate::io::{Delay, Factors, Imperfection, ModelError, Noise, Scenario};
+use crate::imperfections::{Delay, Factors, Imperfection, ModelError, Noise};
+use crate::scenario::Scenario;
 
 /// What is changed.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::io::Problems;
+use crate::files::Problems;
 
 /// How far something may be changed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -6,12 +6,13 @@ mod edge;
 use rayon::prelude::*;
 use serde::Serialize;
 
+use crate::feasible;
+use crate::files::{Problem, Problems};
+use crate::scenario::{Hold, Scenario};
+use crate::simulate::{Run, measure};
+
 pub use change::Change;
 pub use edge::Edge;
-
-use crate::feasible;
-use crate::io::{Hold, Problem, Problems, Scenario};
-use crate::run::{Run, measure};
 
 /// What a loop bears beyond its scenario.
 #[derive(Clone, Debug, Serialize)]
@@ -68,7 +69,7 @@ const LOST: f64 = 0.1;
 /// hold again farther out are not looked for.
 ///
 /// # Errors
-/// As [`run`](crate::run::run), and for a loop in continuous time, which has no devices that could be late.
+/// As [`run`](crate::simulate::run), and for a loop in continuous time, which has no devices that could be late.
 ///
 /// # Panics
 /// Never: there are as many edges as searches.

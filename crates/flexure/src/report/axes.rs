@@ -7,11 +7,11 @@ use kuva::render::layout::{ComputedLayout, Layout, TickFormat};
 use kuva::render::render::{PathData, Primitive};
 use kuva::render::theme::Theme;
 
-use super::curve::Curve;
-use super::number::{power_of_ten, short};
-use super::range::{Range, decade_step, round_step};
-use super::sheet::Sheet;
-use super::style::{FONT, GRID, INK, MUTED};
+use crate::files::number::{power_of_ten, short};
+use crate::report::curve::Curve;
+use crate::report::range::{Range, decade_step, round_step};
+use crate::report::sheet::Sheet;
+use crate::report::style::{FONT, GRID, INK, MUTED};
 
 /// How the numbers along an axis are written.
 #[derive(Clone, Copy, Debug, PartialEq)]

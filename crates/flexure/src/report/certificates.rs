@@ -2,9 +2,9 @@
 
 use maud::{Markup, html as markup};
 
-use super::number::{NONE, engineering, short, significant};
-use crate::certify::certificate::StructureName;
-use crate::proof_summary::ProofSummary;
+use crate::files::number::{NONE, engineering, short, significant};
+use crate::prove::engine::certificate::StructureName;
+use crate::prove::summary::ProofSummary;
 
 /// A proof as the report shows it.
 #[derive(Clone, Debug)]

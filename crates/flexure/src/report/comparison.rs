@@ -1,13 +1,13 @@
 //! Several runs in one axis: how fast each error decays.
 
-use super::axes::{Axes, Labels};
-use super::curve::Curve;
-use super::number::{duration, significant};
-use super::panel::{buckets, span};
-use super::range::{Range, decades};
-use super::sheet::{MARGIN, Sheet};
-use super::style::Stroke;
-use crate::trace::Trace;
+use crate::files::number::{duration, significant};
+use crate::report::axes::{Axes, Labels};
+use crate::report::curve::Curve;
+use crate::report::panel::{buckets, span};
+use crate::report::range::{Range, decades};
+use crate::report::sheet::{MARGIN, Sheet};
+use crate::report::style::Stroke;
+use crate::simulate::Trace;
 
 const WIDTH: f64 = 1200.0;
 const HEIGHT: f64 = 400.0;

@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use super::decimate::{decimate, envelope};
-use super::range::Range;
-use super::style::Stroke;
+use crate::report::decimate::{decimate, envelope};
+use crate::report::range::Range;
+use crate::report::style::Stroke;
 
 /// One line of a panel, in the units of its axes.
 #[derive(Clone, Debug)]

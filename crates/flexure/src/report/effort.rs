@@ -1,9 +1,9 @@
 //! What laws pay for their errors: a panel for each task of a comparison.
 
-use super::marker::Marker;
-use super::scatter::{Point, Scatter, legend};
-use super::sheet::{MARGIN, Sheet};
 use crate::compare::{CHATTERS, Leaderboard, Score, TaskScores, is_vcbc};
+use crate::report::marker::Marker;
+use crate::report::scatter::{Point, Scatter, legend};
+use crate::report::sheet::{MARGIN, Sheet};
 
 const WIDTH: f64 = 1200.0;
 const COLUMNS: usize = 3;

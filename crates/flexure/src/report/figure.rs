@@ -4,11 +4,11 @@
 //! a hundred times what follows), the axis shows the bulk and a narrow frame beside it shows the excursion whole.
 //! Errors and momentum errors are absolute values on a logarithmic axis: an exponential decay is a straight line.
 
-use super::curve::Curve;
-use super::panel::{HEIGHT, Panel, Scale, View, buckets, span};
-use super::sheet::{MARGIN, Sheet};
-use super::style::{INK, Stroke};
-use crate::trace::Trace;
+use crate::report::curve::Curve;
+use crate::report::panel::{HEIGHT, Panel, Scale, View, buckets, span};
+use crate::report::sheet::{MARGIN, Sheet};
+use crate::report::style::{INK, Stroke};
+use crate::simulate::Trace;
 
 /// What is written above the panels.
 #[derive(Clone, Debug, Default)]

@@ -2,10 +2,10 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 
-use super::certificates::{self, CertificateReport};
-use super::markdown::{ERRATA, body, subscripts};
-use super::number::{NONE, engineering};
-use crate::summary::Summary;
+use crate::files::number::{NONE, engineering};
+use crate::report::certificates::{self, CertificateReport};
+use crate::report::markdown::{ERRATA, body, subscripts};
+use crate::simulate::Summary;
 
 /// Everything a report says. The same report gives the same page, byte for byte: no clock is read.
 #[derive(Clone, Debug, Default)]

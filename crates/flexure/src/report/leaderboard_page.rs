@@ -2,10 +2,10 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 
-use super::effort::{chatter_figure, effort_figure};
-use super::html::{Assumption, assumptions};
-use super::number::{NONE, engineering, short, significant};
 use crate::compare::{Leaderboard, Loss, Score, TaskScores, is_vcbc};
+use crate::files::number::{NONE, engineering, short, significant};
+use crate::report::effort::{chatter_figure, effort_figure};
+use crate::report::html::{Assumption, assumptions};
 
 const TITLE: &str = "Control laws of flexible-joint robots on the same bench";
 

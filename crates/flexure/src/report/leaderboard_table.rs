@@ -2,9 +2,9 @@
 
 use comfy_table::{Cell, Row};
 
-use super::number::{NONE, short, significant};
-use super::table::{headed, right};
 use crate::compare::{Leaderboard, Score, Standing, TaskScores};
+use crate::files::number::{NONE, short, significant};
+use crate::report::table::{headed, right};
 
 /// Tasks side by side.
 const MOST_TASKS: usize = 7;

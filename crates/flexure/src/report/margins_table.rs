@@ -2,9 +2,9 @@
 
 use comfy_table::Cell;
 
-use super::number::{NONE, significant};
-use super::table::{headed, right};
+use crate::files::number::{NONE, significant};
 use crate::margins::{Edge, Margins};
+use crate::report::table::{headed, right};
 
 /// One row a loop, at most 100 columns wide.
 pub fn margins_table(margins: &[Margins]) -> String {

@@ -2,8 +2,8 @@
 
 use kuva::render::render::{PathData, Primitive};
 
-use super::sheet::Sheet;
-use super::style::{INK, hue};
+use crate::report::sheet::Sheet;
+use crate::report::style::{INK, hue};
 
 /// Radius of a mark that stands alone [px].
 pub(super) const RADIUS: f64 = 6.0;

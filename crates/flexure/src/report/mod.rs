@@ -2,6 +2,7 @@
 //!
 //! Nothing here reads a clock, a file or a font of the machine: the same runs give the same bytes everywhere.
 
+mod assumptions;
 mod axes;
 mod certificates;
 pub mod comparison;
@@ -15,7 +16,7 @@ mod leaderboard_table;
 mod margins_table;
 mod markdown;
 mod marker;
-pub mod number;
+mod outputs;
 mod panel;
 mod proof_table;
 mod range;
@@ -25,6 +26,7 @@ mod sheet;
 mod style;
 pub mod table;
 
+pub use assumptions::assumptions;
 pub use certificates::CertificateReport;
 pub use comparison::comparison;
 pub use effort::{chatter_figure, effort_figure};
@@ -33,6 +35,7 @@ pub use html::{Assumption, Report, RunReport, html};
 pub use leaderboard_page::leaderboard_page;
 pub use leaderboard_table::leaderboard_table;
 pub use margins_table::margins_table;
+pub use outputs::{write_certificate, write_leaderboard};
 pub use proof_table::{certificate_table, proof_table};
 pub use raster::{RasterError, png};
 pub use table::{joint_table, summary_table, usage_table};

@@ -1,12 +1,12 @@
 //! One panel: a heading, a line that says what is shown and what is not, and its axes.
 
-use super::axes::{Axes, Labels};
-use super::curve::Curve;
-use super::decimate::bucket_size;
-use super::number::{duration, short, significant};
-use super::range::{Linear, Range, decades};
-use super::sheet::Sheet;
-use super::style::{INK, MUTED};
+use crate::files::number::{duration, short, significant};
+use crate::report::axes::{Axes, Labels};
+use crate::report::curve::Curve;
+use crate::report::decimate::bucket_size;
+use crate::report::range::{Linear, Range, decades};
+use crate::report::sheet::Sheet;
+use crate::report::style::{INK, MUTED};
 
 /// Height of a panel with its heading [px].
 pub(super) const HEIGHT: f64 = HEADING + AXES;

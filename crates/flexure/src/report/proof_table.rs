@@ -2,12 +2,12 @@
 
 use std::fmt::Write;
 
-use super::number::{NONE, engineering, short, significant};
-use super::table::{headed, right};
-use crate::along::Along;
-use crate::certify::Verdict;
-use crate::certify::certificate::{Norm, Side, StructureName};
-use crate::proof_summary::{BlockRates, ProofSummary, WitnessSummary};
+use crate::files::number::{NONE, engineering, short, significant};
+use crate::prove::along::Along;
+use crate::prove::engine::certificate::{Norm, Side, StructureName};
+use crate::prove::engine::verdict::Verdict;
+use crate::prove::summary::{BlockRates, ProofSummary, WitnessSummary};
+use crate::report::table::{headed, right};
 
 /// What was proved, refuted or left undecided, at most 100 columns wide.
 pub fn proof_table(summary: &ProofSummary) -> String {

@@ -1,6 +1,6 @@
 //! What an axis shows: the whole signal where that is legible, else its bulk, saying so.
 
-use super::curve::Curve;
+use crate::report::curve::Curve;
 
 /// Bounds of an axis, `low < high`.
 #[derive(Clone, Copy, Debug, PartialEq)]

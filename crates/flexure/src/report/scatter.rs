@@ -2,11 +2,11 @@
 
 use kuva::render::render::{Primitive, TextAnchor};
 
-use super::marker::{Marker, RADIUS};
-use super::number::{power_of_ten, short};
-use super::range::{Range, round_step};
-use super::sheet::{Sheet, text_width};
-use super::style::{GRID, INK, MUTED};
+use crate::files::number::{power_of_ten, short};
+use crate::report::marker::{Marker, RADIUS};
+use crate::report::range::{Range, round_step};
+use crate::report::sheet::{Sheet, text_width};
+use crate::report::style::{GRID, INK, MUTED};
 
 /// A point, in the units of the axes.
 pub(super) struct Point {

@@ -3,7 +3,7 @@
 use kuva::backend::svg::SvgBackend;
 use kuva::render::render::{Primitive, Scene, TextAnchor};
 
-use super::style::{FONT, INK, MUTED, Stroke};
+use crate::report::style::{FONT, INK, MUTED, Stroke};
 
 /// A figure being drawn, in pixels.
 pub(super) struct Sheet {

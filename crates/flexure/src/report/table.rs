@@ -1,13 +1,12 @@
 //! Tables for the terminal: the summary of several runs, the joints of a robot.
 
-use comfy_table::{
-    Cell, CellAlignment, ContentArrangement, LineStyle, Row, Table, presets::UTF8_HORIZONTAL_ONLY,
-};
+use comfy_table::presets::UTF8_HORIZONTAL_ONLY;
+use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Row, Table};
 
-use super::number::{NONE, engineering, short};
 use crate::feasible::Usage;
-use crate::overview::JointRow;
-use crate::summary::Summary;
+use crate::files::number::{NONE, engineering, short};
+use crate::robot::JointRow;
+use crate::simulate::Summary;
 
 /// Columns of a terminal that the table is laid out for.
 const WIDTH: u16 = 100;

@@ -5,8 +5,10 @@ mod search;
 pub use search::{Best, search};
 
 use crate::feasible;
-use crate::io::{Controller, Problems, Scenario};
-use crate::run::{Run, measure};
+use crate::files::Problems;
+use crate::laws::Controller;
+use crate::scenario::Scenario;
+use crate::simulate::{Run, measure};
 
 /// Gains that were searched for, and what they cost.
 #[derive(Clone, Debug)]
@@ -32,7 +34,7 @@ const CHATTER: f64 = 0.05;
 /// vector of gains has a factor of its own, the same for all joints. What is searched is the logarithms of these factors.
 ///
 /// # Errors
-/// As [`run`](crate::run::run).
+/// As [`run`](crate::simulate::run).
 pub fn tune(scenario: &Scenario, budget: usize, seed: u64) -> Result<Tuned, Problems> {
     let mut trial = feasible::pinned(scenario)?;
     // Whatever is wrong with the scenario is so for all gains.

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use super::document::{Block, Case, Certificate};
-use super::json::clipped;
-use super::number::Number;
-use super::shaping::{RATES, Rate};
-use super::verdict::{Claim, Rejected, ensure};
+use crate::verify::document::{Block, Case, Certificate};
+use crate::verify::json::clipped;
+use crate::verify::number::Number;
+use crate::verify::shaping::{RATES, Rate};
+use crate::verify::verdict::{Claim, Rejected, ensure};
 
 /// In this order in reports, in any order in the file.
 const BLOCKS: [&str; 4] = ["phi_l", "phi_m", "sigma_l", "sigma_m"];

@@ -1,8 +1,8 @@
 //! The variational closed loop in words: what couples links and motors does no work.
 
-use super::document::Certificate;
-use super::verdict::{Claim, Rejected, ensure};
-use super::words::Sum;
+use crate::verify::document::Certificate;
+use crate::verify::verdict::{Claim, Rejected, ensure};
+use crate::verify::words::Sum;
 
 /// The closed loop, row by row.
 const ROWS: [[&str; 4]; 4] = [

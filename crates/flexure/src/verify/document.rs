@@ -1,10 +1,10 @@
 //! The file as types. What is here has the right keys, names and list lengths; nothing is said of the numbers yet.
 
-use super::field::Field;
-use super::json::Node;
-use super::number::Number;
-use super::robot::{self, Robot};
-use super::verdict::Rejected;
+use crate::verify::field::Field;
+use crate::verify::json::Node;
+use crate::verify::number::Number;
+use crate::verify::robot::{self, Robot};
+use crate::verify::verdict::Rejected;
 
 /// A file.
 pub(super) struct Certificate {

@@ -1,8 +1,8 @@
 //! A place in the file and what stands there.
 
-use super::json::{Node, clipped};
-use super::number::Number;
-use super::verdict::Rejected;
+use crate::verify::json::{Node, clipped};
+use crate::verify::number::Number;
+use crate::verify::verdict::Rejected;
 
 /// A value with the path that leads to it.
 pub(super) struct Field<'a> {

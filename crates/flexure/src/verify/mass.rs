@@ -2,12 +2,12 @@
 
 use flexure_core::scalar::{Interval, Scalar};
 
-use super::document::Certificate;
-use super::matrix::Symmetric;
-use super::number::Number;
-use super::reach::own_inertia;
-use super::robot::Links;
-use super::verdict::{Claim, Rejected, ensure};
+use crate::verify::document::Certificate;
+use crate::verify::matrix::Symmetric;
+use crate::verify::number::Number;
+use crate::verify::reach::own_inertia;
+use crate::verify::robot::Links;
+use crate::verify::verdict::{Claim, Rejected, ensure};
 
 /// The entries (1, 1), (1, 2), (2, 2) of the planar arm where cos q_2 is `cosine`; zeros for other links.
 pub(super) fn planar_mass(links: &Links, cosine: f64) -> [Interval; 3] {

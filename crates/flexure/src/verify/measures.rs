@@ -2,10 +2,10 @@
 
 use flexure_core::scalar::{Interval, Scalar};
 
-use super::block;
-use super::document::{Certificate, Measure, SIDES, Side};
-use super::shaping::{Law, Rate};
-use super::verdict::{Claim, Rejected, ensure};
+use crate::verify::block;
+use crate::verify::document::{Certificate, Measure, SIDES, Side};
+use crate::verify::shaping::{Law, Rate};
+use crate::verify::verdict::{Claim, Rejected, ensure};
 
 const NORMS: [&str; 3] = ["1", "2", "inf"];
 

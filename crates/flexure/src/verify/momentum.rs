@@ -2,15 +2,15 @@
 
 use flexure_core::scalar::Interval;
 
-use super::block;
-use super::document::{Certificate, Side};
-use super::mass::{pendulum_mass, planar_mass};
-use super::matrix::Symmetric;
-use super::number::Number;
-use super::reach::mass_bound;
-use super::robot::Links;
-use super::shaping::Rate;
-use super::verdict::{Claim, Rejected, ensure};
+use crate::verify::block;
+use crate::verify::document::{Certificate, Side};
+use crate::verify::mass::{pendulum_mass, planar_mass};
+use crate::verify::matrix::Symmetric;
+use crate::verify::number::Number;
+use crate::verify::reach::mass_bound;
+use crate::verify::robot::Links;
+use crate::verify::shaping::Rate;
+use crate::verify::verdict::{Claim, Rejected, ensure};
 
 pub(super) fn check(certificate: &Certificate) -> Result<Vec<Claim>, Rejected> {
     Ok(vec![links(certificate)?, motors(certificate)?])

@@ -4,7 +4,7 @@ use std::fmt;
 
 use flexure_core::scalar::Interval;
 
-use super::json::clipped;
+use crate::verify::json::clipped;
 
 /// Longer texts are no numbers.
 const LONGEST: usize = 1000;

@@ -2,11 +2,11 @@
 
 use flexure_core::scalar::{Interval, Scalar};
 
-use super::block;
-use super::document::{Certificate, Phi, Side};
-use super::matrix::Symmetric;
-use super::shaping::{Law, Rate};
-use super::verdict::{Claim, Rejected};
+use crate::verify::block;
+use crate::verify::document::{Certificate, Phi, Side};
+use crate::verify::matrix::Symmetric;
+use crate::verify::shaping::{Law, Rate};
+use crate::verify::verdict::{Claim, Rejected};
 
 pub(super) fn check(certificate: &Certificate) -> Result<Vec<Claim>, Rejected> {
     let mut claims = Vec::new();

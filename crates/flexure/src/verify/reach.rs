@@ -5,11 +5,11 @@ mod tests;
 
 use flexure_core::scalar::{Interval, Scalar};
 
-use super::matrix::Symmetric;
-use super::number::Number;
-use super::robot::Body;
-use super::vector::{Vec3, across, cross, dot, norm, plus, rotation, scaled, squared, turned, unit};
-use super::verdict::{Rejected, ensure};
+use crate::verify::matrix::Symmetric;
+use crate::verify::number::Number;
+use crate::verify::robot::Body;
+use crate::verify::vector::{Vec3, across, cross, dot, norm, plus, rotation, scaled, squared, turned, unit};
+use crate::verify::verdict::{Rejected, ensure};
 
 /// Where a centre of mass can be, in a joint's frame: its coordinate along the axis, and upper bounds of its distances
 /// from the axis and from the origin.

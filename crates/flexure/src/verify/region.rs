@@ -2,11 +2,11 @@
 
 use flexure_core::scalar::{Interval, Scalar};
 
-use super::document::{Certificate, Side};
-use super::number::Number;
-use super::robot::positive;
-use super::shaping::Law;
-use super::verdict::{Claim, Rejected, ensure};
+use crate::verify::document::{Certificate, Side};
+use crate::verify::number::Number;
+use crate::verify::robot::positive;
+use crate::verify::shaping::Law;
+use crate::verify::verdict::{Claim, Rejected, ensure};
 
 pub(super) fn check(certificate: &Certificate) -> Result<Vec<Claim>, Rejected> {
     let region = &certificate.region;

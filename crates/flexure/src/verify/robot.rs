@@ -1,9 +1,9 @@
 //! The robot of the file, and whether its numbers are those of a robot.
 
-use super::document::Certificate;
-use super::field::Field;
-use super::number::Number;
-use super::verdict::{Claim, Rejected, ensure};
+use crate::verify::document::Certificate;
+use crate::verify::field::Field;
+use crate::verify::number::Number;
+use crate::verify::verdict::{Claim, Rejected, ensure};
 
 pub(super) struct Robot {
     pub joints: usize,

@@ -2,8 +2,8 @@
 
 use flexure_core::scalar::{Interval, Scalar};
 
-use super::document::{Certificate, Phi, Side};
-use super::number::Number;
+use crate::verify::document::{Certificate, Phi, Side};
+use crate::verify::number::Number;
 
 /// Which of the two rates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

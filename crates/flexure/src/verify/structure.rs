@@ -2,10 +2,10 @@
 
 use flexure_core::scalar::{Interval, Scalar};
 
-use super::document::{Certificate, Phi, Property, SIDES, Side, Witness};
-use super::robot::positive;
-use super::shaping::{Law, slope};
-use super::verdict::{Claim, Rejected, ensure};
+use crate::verify::document::{Certificate, Phi, Property, SIDES, Side, Witness};
+use crate::verify::robot::positive;
+use crate::verify::shaping::{Law, slope};
+use crate::verify::verdict::{Claim, Rejected, ensure};
 
 const NAMES: [&str; 4] =
     ["variational-ph", "ph-like", "strict-differential-passivity", "incremental-passivity"];

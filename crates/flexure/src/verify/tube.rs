@@ -2,13 +2,13 @@
 
 use flexure_core::scalar::{Interval, Scalar};
 
-use super::block;
-use super::document::{Certificate, SIDES, Tube};
-use super::number::Number;
-use super::region::twice;
-use super::robot::nonnegative;
-use super::shaping::Law;
-use super::verdict::{Claim, Rejected, ensure};
+use crate::verify::block;
+use crate::verify::document::{Certificate, SIDES, Tube};
+use crate::verify::number::Number;
+use crate::verify::region::twice;
+use crate::verify::robot::nonnegative;
+use crate::verify::shaping::Law;
+use crate::verify::verdict::{Claim, Rejected, ensure};
 
 pub(super) fn check(certificate: &Certificate) -> Result<Vec<Claim>, Rejected> {
     let Some(tube) = &certificate.tube else { return Ok(Vec::new()) };

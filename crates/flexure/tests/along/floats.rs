@@ -5,8 +5,10 @@ use flexure::core::linalg::Vector;
 use flexure::core::model::{Fjr, Links, Motion};
 use flexure::core::reference::Reference;
 use flexure::core::robots::{Pendulum, PlanarTwoLink};
-use flexure::io::{self, Scenario};
-use flexure::registry::{AnyReference, Law, command, law};
+use flexure::laws::{Law, command, law};
+use flexure::references::AnyReference;
+use flexure::robot;
+use flexure::scenario::Scenario;
 
 /// splitmix64, uniform on [−1, 1].
 pub struct Numbers(pub u64);
@@ -41,14 +43,14 @@ fn floats<L, const N: usize>(scenario: &Scenario, links: L) -> Floats<L, N> {
 }
 
 pub fn arm(scenario: &Scenario) -> Floats<PlanarTwoLink<f64>, 2> {
-    let io::Links::PlanarTwoLink { mass, length, com, inertia } = scenario.robot.links else {
+    let robot::Links::PlanarTwoLink { mass, length, com, inertia } = scenario.robot.links else {
         panic!("two links")
     };
     floats(scenario, PlanarTwoLink::new(mass, length[0], com, inertia))
 }
 
 pub fn pendulum(scenario: &Scenario) -> Floats<Pendulum<f64>, 1> {
-    let io::Links::Pendulum { mass, com, inertia } = scenario.robot.links else { panic!("pendulum") };
+    let robot::Links::Pendulum { mass, com, inertia } = scenario.robot.links else { panic!("pendulum") };
     let gravity = scenario.robot.gravity.iter().map(|x| x * x).sum::<f64>().sqrt();
     floats(scenario, Pendulum { inertia: inertia + mass * com * com, weight_moment: mass * com * gravity })
 }

@@ -1,10 +1,10 @@
 //! Verdicts on the limits of a robot.
 
-use flexure::along::{Limit, along};
-use flexure::certify::Verdict;
 use flexure::core::linalg::Vector;
 use flexure::core::model::Motion;
-use flexure::io::load_scenario;
+use flexure::prove::along::{Limit, along};
+use flexure::prove::engine::verdict::Verdict;
+use flexure::scenario::load_scenario;
 
 use super::{floats, level};
 

@@ -5,15 +5,18 @@ mod limits;
 mod simulated;
 mod slabs;
 
-use flexure::along::{Along, along, start_level};
-use flexure::certify::{Number, certify};
 use flexure::core::control::Input;
 use flexure::core::linalg::Vector;
 use flexure::core::model::{Links, Motion};
 use flexure::core::reference::Reference as _;
 use flexure::core::virtual_system::{Structure, error_coordinates};
-use flexure::io::{Profile, Reference, Scenario, load_scenario};
-use flexure::proof::{Question, Region, problem};
+use flexure::prove::along::{Along, along, start_level};
+use flexure::prove::engine::number::Number;
+use flexure::prove::engine::structural::certify;
+use flexure::prove::question::{Question, Region, problem};
+use flexure::references::{Profile, Reference};
+use flexure::scenario::Scenario;
+use flexure::scenario::load_scenario;
 use floats::{Floats, Numbers};
 
 /// The level of the tube under a disturbance of so much on every motor [N m].

@@ -1,10 +1,11 @@
 //! Runs under a disturbance stay in the tube, and within the bounds.
 
-use flexure::along::{along, start_level};
 use flexure::core::linalg::Vector;
 use flexure::core::model::{Links, Motion};
-use flexure::io::{Scenario, load_scenario};
-use flexure::sim::{ClosedLoop, Controller, Hold};
+use flexure::prove::along::{along, start_level};
+use flexure::scenario::Scenario;
+use flexure::scenario::load_scenario;
+use flexure::simulate::{ClosedLoop, Controller, Hold};
 
 use super::floats::{self, Floats};
 use super::{bounds, level};

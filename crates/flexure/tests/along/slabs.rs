@@ -1,14 +1,18 @@
 //! Slabs one by one: signed ranges, whatever their width.
 
-use flexure::certify::along::closed_loop::Enclosed;
-use flexure::certify::along::slab::Slab;
-use flexure::certify::along::tube::Tube;
 use flexure::core::linalg::Vector;
 use flexure::core::model::{Fjr, Links as _};
 use flexure::core::robots::PlanarTwoLink;
 use flexure::core::scalar::Interval;
-use flexure::io::{Links, Profile, Reference, Scenario, load_scenario};
-use flexure::registry::{AnyReference, AnyShaping, law_over};
+use flexure::laws::{AnyShaping, law_over};
+use flexure::prove::engine::envelope::closed_loop::Enclosed;
+use flexure::prove::engine::envelope::slab::Slab;
+use flexure::prove::engine::envelope::tube::Tube;
+use flexure::references::AnyReference;
+use flexure::references::{Profile, Reference};
+use flexure::robot::Links;
+use flexure::scenario::Scenario;
+use flexure::scenario::load_scenario;
 
 use super::floats::{self, Numbers};
 

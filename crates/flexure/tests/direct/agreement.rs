@@ -1,6 +1,6 @@
 //! The closed form that is proved about is what the code of the law gives.
 
-use flexure::certify::direct::law_agreement;
+use flexure::prove::engine::direct::law_agreement;
 use flexure_core::control::{Shaping, Vcbc};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion};

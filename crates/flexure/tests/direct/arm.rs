@@ -1,6 +1,7 @@
 //! The paper's arm and gains in any number, and regions.
 
-use flexure::certify::direct::{ClosedLoop, Region, Twins, vcbc};
+use flexure::prove::engine::direct::Twins;
+use flexure::prove::engine::direct::{ClosedLoop, Region, vcbc};
 use flexure_core::control::{CoupledTanh, Linear, LinkGains, Metric, MotorGains, Shaping, Tanh, Vcbc};
 use flexure_core::linalg::Vector;
 use flexure_core::model::Fjr;

@@ -1,9 +1,13 @@
 //! What no structure theorem covers: other shaping functions, broken laws, other controllers.
 
-use flexure::certify::Verdict;
-use flexure::certify::direct::{
-    Balance, Coordinate, Form, Region, System, Twins, best_rate, jacobian, prove, symmetric_part, vcbc,
-};
+use flexure::prove::engine::direct::best_rate;
+use flexure::prove::engine::direct::jacobian;
+use flexure::prove::engine::direct::prove;
+use flexure::prove::engine::direct::symmetric_part;
+use flexure::prove::engine::direct::{Balance, Form};
+use flexure::prove::engine::direct::{Coordinate, System, Twins};
+use flexure::prove::engine::direct::{Region, vcbc};
+use flexure::prove::engine::verdict::Verdict;
 use flexure_core::control::{Shaping, Tanh};
 use flexure_core::linalg::Vector;
 use flexure_core::robots::PlanarTwoLink;

@@ -2,8 +2,11 @@
 
 use std::time::Instant;
 
-use flexure::certify::Verdict;
-use flexure::certify::direct::{Best, Flow, Region, best_rate, prove};
+use flexure::prove::engine::direct::Flow;
+use flexure::prove::engine::direct::Region;
+use flexure::prove::engine::direct::prove;
+use flexure::prove::engine::direct::{Best, best_rate};
+use flexure::prove::engine::verdict::Verdict;
 use flexure_core::scalar::Interval;
 
 use crate::arm::{coupled_tanh, flow, linear, region, tanh};

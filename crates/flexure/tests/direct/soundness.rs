@@ -1,9 +1,11 @@
 //! Interval matrices contain those of points, and what was not shown is not claimed.
 
-use flexure::certify::Verdict;
-use flexure::certify::direct::{
-    Balance, ClosedLoop, Coordinate, Flow, Form, Region, System, Twins, best_rate, prove, vcbc,
-};
+use flexure::prove::engine::direct::best_rate;
+use flexure::prove::engine::direct::prove;
+use flexure::prove::engine::direct::{Balance, Form};
+use flexure::prove::engine::direct::{ClosedLoop, Region, vcbc};
+use flexure::prove::engine::direct::{Coordinate, Flow, System, Twins};
+use flexure::prove::engine::verdict::Verdict;
 use flexure_core::control::{LinkGains, Metric, MotorGains, Tanh, Vcbc};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links};
@@ -125,7 +127,7 @@ fn the_balance_is_the_rate_of_the_storage() {
 
 /// Ẇ without the engine: the core's closed loop in momenta, stepped in time.
 mod numerical {
-    use flexure::certify::direct::ClosedLoop;
+    use flexure::prove::engine::direct::ClosedLoop;
     use flexure_core::control::{Input, Shaping};
     use flexure_core::linalg::Vector;
     use flexure_core::model::{Links, MassFactor, Motion};

@@ -1,7 +1,9 @@
 //! Numbers of files: from TOML, from a URDF, with digits that no float has.
 
 use flexure::core::scalar::Interval;
-use flexure::io::{Links, Robot, load_scenario, robot_from_text, scenario_from_text};
+use flexure::robot::{Links, Robot, robot_from_text};
+use flexure::scenario::load_scenario;
+use flexure::scenario::scenario_from_text;
 
 const PENDULUM: &str = "name = 'arm'
 [links]
@@ -121,7 +123,7 @@ fn excess_digits_of_a_urdf_are_noticed() {
 #[test]
 fn scenarios_know_their_own_numbers() {
     let (_, text) =
-        flexure::io::SCENARIOS.iter().find(|(name, _)| *name == "two-link-tanh-smooth").expect("built in");
+        flexure::files::SCENARIOS.iter().find(|(name, _)| *name == "two-link-tanh-smooth").expect("built in");
     let scenario = load_scenario("two-link-tanh-smooth").expect("built in");
     assert_eq!(ends(scenario.bounds(55.0)), (55.0, 55.0));
     let long = text.replace("metric = [55.0, 30.0]", "metric = [55.00000000000000000001, 30.0]");

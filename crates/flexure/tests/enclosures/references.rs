@@ -2,10 +2,11 @@
 
 use flexure::core::reference::Reference as _;
 use flexure::core::scalar::{Interval, Jet};
-use flexure::io::{
-    Profile, Reference, SCENARIOS, Scenario, SmoothStart, Speed, Term, TimeScaling, load_scenario,
-};
-use flexure::registry::AnyReference;
+use flexure::files::SCENARIOS;
+use flexure::references::AnyReference;
+use flexure::references::{Profile, Reference, SmoothStart, Speed, Term, TimeScaling};
+use flexure::scenario::Scenario;
+use flexure::scenario::load_scenario;
 
 use super::encloses;
 

@@ -2,13 +2,19 @@
 
 use flexure::core::control::Input;
 use flexure::core::linalg::Vector;
-use flexure::core::model::{self, Fjr, Motion};
+use flexure::core::model;
+use flexure::core::model::{Fjr, Motion};
 use flexure::core::reference::Reference as _;
 use flexure::core::robots::PlanarTwoLink;
 use flexure::core::scalar::{Interval, Over};
-use flexure::evaluate::evaluate_law;
-use flexure::io::{Links, ROBOTS, Robot, SCENARIOS, StateFile, StateRow, load_robot, load_scenario};
-use flexure::registry::{AnyReference, Law, RobotVisitor, law_over, with_enclosed_robot, with_robot};
+use flexure::eval::evaluate_law;
+use flexure::files::{ROBOTS, SCENARIOS, StateFile, StateRow};
+use flexure::laws::{Law, law_over};
+use flexure::references::AnyReference;
+use flexure::robot::load_robot;
+use flexure::robot::{Links, Robot};
+use flexure::robot::{RobotVisitor, with_enclosed_robot, with_robot};
+use flexure::scenario::load_scenario;
 
 use super::{Numbers, encloses};
 

@@ -1,9 +1,9 @@
 //! Drives in numbers.
 
 use flexure::core::linalg::Vector;
-use flexure::io::{Deadline, Delay, Imperfection};
-use flexure::registry::actuator;
-use flexure::sim::imperfection::Tick;
+use flexure::imperfections::actuator;
+use flexure::imperfections::stages::Tick;
+use flexure::imperfections::{Deadline, Delay, Imperfection};
 
 use super::{PERIOD, driven, mean, torque, torques};
 
@@ -96,7 +96,7 @@ fn the_torque_before_goes_on() {
 fn torque_rises_in_so_many_periods() {
     let rise: Vec<_> = driven(&[Imperfection::TorqueRate(vec![250.0; 2])], 0, 30, step)
         .iter()
-        .map(flexure::sim::imperfection::Pieces::last)
+        .map(flexure::imperfections::stages::Pieces::last)
         .collect();
     for (k, u) in rise.iter().enumerate() {
         let periods = k.saturating_sub(9) as f64;

@@ -3,11 +3,12 @@
 
 use flexure::core::linalg::Vector;
 use flexure::core::model::Motion;
-use flexure::io::{
+use flexure::imperfections::IMPERFECTIONS;
+use flexure::imperfections::stages::Measured;
+use flexure::imperfections::stages::{Pieces, Random};
+use flexure::imperfections::{
     Deadline, Delay, Dropout, DropoutMode, Encoder, Imperfection, Noise, Outage, Sampling, Side, Sides,
 };
-use flexure::registry::IMPERFECTIONS;
-use flexure::sim::imperfection::{Measured, Pieces, Random};
 
 use super::{PERIOD, mean, motion, positions, readings, torque, torques};
 
@@ -154,8 +155,8 @@ fn signs_of_zeros_survive() {
         v_m: Vector([0.0; 2]),
     };
     for Graded { name, at, .. } in SENSING {
-        let mut sensors = flexure::registry::sensors(&[at(0)], 3);
-        let read = sensors.sense(&flexure::sim::imperfection::Tick::new(0, PERIOD), &zero);
+        let mut sensors = flexure::imperfections::sensors(&[at(0)], 3);
+        let read = sensors.sense(&flexure::imperfections::stages::Tick::new(0, PERIOD), &zero);
         assert_eq!(sensed_bits(&[read]), sensed_bits(&[Measured::exactly(zero)]), "{name}");
     }
 }

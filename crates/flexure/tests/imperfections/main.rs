@@ -6,9 +6,10 @@ mod sensing;
 
 use flexure::core::linalg::Vector;
 use flexure::core::model::Motion;
-use flexure::io::Imperfection;
-use flexure::registry::{actuator, sensors};
-use flexure::sim::imperfection::{Measured, Pieces, Tick};
+use flexure::imperfections::Imperfection;
+use flexure::imperfections::stages::Pieces;
+use flexure::imperfections::stages::{Measured, Tick};
+use flexure::imperfections::{actuator, sensors};
 
 /// Control period of all loops here \[s\].
 const PERIOD: f64 = 0.001;

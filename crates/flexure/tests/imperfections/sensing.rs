@@ -2,9 +2,11 @@
 
 use flexure::core::linalg::Vector;
 use flexure::core::model::Motion;
-use flexure::io::{Dropout, DropoutMode, Encoder, Imperfection, Noise, Outage, Sampling, Side, Sides};
-use flexure::registry::sensors;
-use flexure::sim::imperfection::{Measured, Tick};
+use flexure::imperfections::sensors;
+use flexure::imperfections::stages::{Measured, Tick};
+use flexure::imperfections::{
+    Dropout, DropoutMode, Encoder, Imperfection, Noise, Outage, Sampling, Side, Sides,
+};
 
 use super::{PERIOD, mean, motion, readings};
 

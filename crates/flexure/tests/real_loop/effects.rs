@@ -1,7 +1,8 @@
 //! More of an imperfection, more of its effect; and the effects that the issue of real loops is about.
 
 use super::{ideal, simulate, with, with_these};
-use flexure::io::{Controller, Imperfection};
+use flexure::imperfections::Imperfection;
+use flexure::laws::Controller;
 
 /// The imperfections of some text.
 fn these(text: &str) -> Vec<Imperfection> {

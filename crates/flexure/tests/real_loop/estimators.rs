@@ -1,7 +1,8 @@
 //! Estimators in the loop, compared on the plausible arm at 500 Hz.
 
-use flexure::io::{DisturbanceObserver, Scenario};
-use flexure::run::Run;
+use flexure::estimators::DisturbanceObserver;
+use flexure::scenario::Scenario;
+use flexure::simulate::Run;
 
 use super::{ideal, simulate, with, with_these};
 

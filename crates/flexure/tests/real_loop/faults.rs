@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use flexure::io::Scenario;
-use flexure::run::run;
+use flexure::scenario::Scenario;
+use flexure::simulate::run;
 use rand_distr::{Distribution, Uniform};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;
@@ -104,9 +104,9 @@ fn loop_with(fault: &Fault, seed: u64) -> Scenario {
     let parts = with("two-link-tanh-smooth", 1.0, &format!("{}{GUARD}", fault.text));
     let mut scenario = super::ideal(2.5);
     scenario.control_period = PERIOD;
-    scenario.reference = flexure::io::Reference::Sines {
+    scenario.reference = flexure::references::Reference::Sines {
         offset: vec![0.0; 2],
-        terms: vec![flexure::io::Term {
+        terms: vec![flexure::references::Term {
             amplitude: vec![0.4; 2],
             frequency: vec![0.6; 2],
             phase: vec![0.0; 2],

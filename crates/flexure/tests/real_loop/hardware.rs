@@ -1,6 +1,7 @@
 //! The plausible arm on its hardware.
 
-use flexure::io::{Imperfection, Side, load_scenario};
+use flexure::imperfections::{Imperfection, Side};
+use flexure::scenario::load_scenario;
 
 use super::simulate;
 

@@ -1,6 +1,8 @@
 //! Imperfections of no strength are none, bit by bit.
 
-use flexure::io::{Estimator, GuardSettings, Imperfection, Scenario, scenario_from_text};
+use flexure::estimators::Estimator;
+use flexure::imperfections::Imperfection;
+use flexure::scenario::{GuardSettings, Scenario, scenario_from_text};
 
 use super::{ideal, same_bits, simulate, with_these};
 
@@ -64,7 +66,7 @@ duration = 1.0
 "#;
 
 fn nothing() -> Vec<Imperfection> {
-    let text = flexure::io::SCENARIOS.iter().find(|(name, _)| *name == "two-link-hardware").unwrap().1;
+    let text = flexure::files::SCENARIOS.iter().find(|(name, _)| *name == "two-link-hardware").unwrap().1;
     let text = text.split("[guard]").next().unwrap();
     let scenario: Scenario = scenario_from_text("nothing", &format!("{text}{NOTHING}"), ".".as_ref())
         .unwrap_or_else(|problems| panic!("{problems}"));
@@ -74,7 +76,7 @@ fn nothing() -> Vec<Imperfection> {
 #[test]
 fn every_kind_is_there() {
     let kinds: Vec<_> = nothing().iter().map(Imperfection::kind).collect();
-    for entry in flexure::registry::IMPERFECTIONS {
+    for entry in flexure::imperfections::IMPERFECTIONS {
         // A filter has no strength to be zero.
         assert!(kinds.contains(&entry.name) || entry.name == "velocity-filter", "{}", entry.name);
     }
@@ -114,7 +116,8 @@ fn a_guard_that_has_nothing_to_do_changes_nothing() {
 /// predicts with a step of second order, (ωT)²/12 ≈ 3e-4 of what moves at ω = 30 1/s.
 #[test]
 fn an_observer_on_a_perfect_robot_changes_little() {
-    let observer = Estimator::Observer { encoders: flexure::io::Encoders::Both, bandwidth: vec![200.0; 2] };
+    let observer =
+        Estimator::Observer { encoders: flexure::estimators::Encoders::Both, bandwidth: vec![200.0; 2] };
     let mut scenario = ideal(6.0);
     scenario.estimator = Some(observer);
     let observed = simulate(&scenario);

@@ -11,12 +11,14 @@ mod limits;
 
 use std::path::Path;
 
-use flexure::io::{Scenario, load_scenario, scenario_from_text};
-use flexure::run::{Run, run};
+use flexure::scenario::load_scenario;
+use flexure::scenario::{Scenario, scenario_from_text};
+use flexure::simulate::Run;
+use flexure::simulate::run;
 
 /// A built-in scenario with tables added to its text, `duration` s long.
 fn with(name: &str, duration: f64, more: &str) -> Scenario {
-    let text = flexure::io::SCENARIOS.iter().find(|(known, _)| *known == name).expect("built in").1;
+    let text = flexure::files::SCENARIOS.iter().find(|(known, _)| *known == name).expect("built in").1;
     let line = text.lines().find(|line| line.starts_with("duration = ")).expect("a duration");
     let text = format!("{}\n{more}\n", text.replacen(line, &format!("duration = {duration}"), 1));
     scenario_from_text(name, &text, Path::new(".")).unwrap_or_else(|problems| panic!("{problems}\n{text}"))
@@ -32,7 +34,7 @@ fn ideal(duration: f64) -> Scenario {
 }
 
 /// `scenario` with these imperfections and no others.
-fn with_these(mut scenario: Scenario, imperfections: Vec<flexure::io::Imperfection>) -> Scenario {
+fn with_these(mut scenario: Scenario, imperfections: Vec<flexure::imperfections::Imperfection>) -> Scenario {
     scenario.imperfections = imperfections;
     scenario
 }

@@ -1,7 +1,7 @@
 //! A trace like that of a closed loop: a torque peak of a few milliseconds, then decaying errors on a sine.
 
-use flexure::summary::Summary;
-use flexure::trace::Trace;
+use flexure::simulate::Summary;
+use flexure::simulate::Trace;
 
 const PERIOD: f64 = 1e-3;
 

@@ -2,16 +2,22 @@
 
 mod fake;
 
-use flexure::io::load_scenario;
-use flexure::proof::{Question, prove};
-use flexure::proof_summary::ProofSummary;
+use flexure::prove::question::{Question, prove};
+use flexure::prove::summary::ProofSummary;
+use flexure::report::Assumption;
+use flexure::report::CertificateReport;
+use flexure::report::FigureOptions;
+use flexure::report::Report;
+use flexure::report::RunReport;
+use flexure::report::certificate_table;
 use flexure::report::decimate::{bucket_size, decimate, envelope};
-use flexure::report::{
-    Assumption, CertificateReport, FigureOptions, Report, RunReport, certificate_table, comparison,
-    four_panel, html, png, proof_table, summary_table,
-};
-use flexure::summary::Summary;
-use flexure::trace::Trace;
+use flexure::report::four_panel;
+use flexure::report::png;
+use flexure::report::summary_table;
+use flexure::report::{comparison, html, proof_table};
+use flexure::scenario::load_scenario;
+use flexure::simulate::Summary;
+use flexure::simulate::Trace;
 use roxmltree::Document;
 
 fn figure(trace: &Trace) -> String {

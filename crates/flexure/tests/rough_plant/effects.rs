@@ -1,6 +1,7 @@
 //! What holds for every imperfection of the plant: none at zero strength, more with more, the same every time.
 
-use flexure::sim::{Friction, Hysteresis, Integrator, Ledger, Plant, Stepper};
+use flexure::plant::{Friction, Hysteresis, Plant};
+use flexure::simulate::{Integrator, Ledger, Stepper};
 use flexure_core::linalg::Vector;
 use flexure_core::model::Motion;
 use flexure_core::robots::PlanarTwoLink;

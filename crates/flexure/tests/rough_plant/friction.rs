@@ -1,6 +1,6 @@
 //! Dry friction against closed forms, on links and on motors.
 
-use flexure::sim::{Friction, Plant};
+use flexure::plant::{Friction, Plant};
 use flexure_core::linalg::Vector;
 use flexure_core::model::Motion;
 use flexure_core::robots::Pendulum;

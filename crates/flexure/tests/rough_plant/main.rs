@@ -5,7 +5,8 @@ mod friction;
 mod spring;
 mod stepping;
 
-use flexure::sim::{Ledger, Plant, Stepper, Stepping};
+use flexure::plant::Plant;
+use flexure::simulate::{Ledger, Stepper, Stepping};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion};
 use flexure_core::robots::{Pendulum, PlanarTwoLink};

@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use flexure::sim::{Friction, Hysteresis, Plant, Stepper};
+use flexure::plant::{Friction, Hysteresis, Plant};
+use flexure::simulate::Stepper;
 use flexure_core::linalg::Vector;
 use flexure_core::model::Motion;
 use flexure_core::robots::Pendulum;

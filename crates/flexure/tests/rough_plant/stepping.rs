@@ -1,6 +1,7 @@
 //! The time stepping by itself: its order, its stability, its books.
 
-use flexure::sim::{Friction, Hysteresis, Integrator, Ledger, Plant, Stepping};
+use flexure::plant::{Friction, Hysteresis, Plant};
+use flexure::simulate::{Integrator, Ledger, Stepping};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion, RotorCoupling};
 use flexure_core::robots::{Body, JointKind, Tree};
@@ -69,7 +70,7 @@ fn it_is_of_order_two_on_a_chain_with_rotors() {
 fn stiff_dampers_and_springs_are_harmless() {
     let plant = two_link();
     let mut ride = Ride::new(&plant, at_rest(), 1e-3);
-    ride.stepper = flexure::sim::Stepper::Rough(Stepping::new(1e-3));
+    ride.stepper = flexure::simulate::Stepper::Rough(Stepping::new(1e-3));
     ride.on(2.0, [0.0, 90.0]);
     assert!((ride.x.v_m[1] - 1.0).abs() < 0.2, "90 N m against 90 N m s/rad: {} rad/s", ride.x.v_m[1]);
 

@@ -173,7 +173,7 @@ fn mimics_that_lead_nowhere() {
     ] {
         let folder = Folder::with(&urdf);
         let problems =
-            flexure::io::import(folder.path().join("arm.urdf").to_str().unwrap(), &[]).unwrap_err();
+            flexure::robot::import(folder.path().join("arm.urdf").to_str().unwrap(), &[]).unwrap_err();
         assert!(problems.to_string().contains("joint 'turn' mimics joint"), "{problems}");
     }
 }
@@ -183,7 +183,7 @@ fn mimics_that_lead_nowhere() {
 fn one_fault_is_one_error() {
     let text =
         "name = 'arm'\n[links]\nkind = 'urdf'\nfile = 'elsewhere.urdf'\n[joints.turn]\nstiffness = 1\n";
-    let problems = flexure::io::robot_from_text("arm.toml", text, ".".as_ref()).unwrap_err();
+    let problems = flexure::robot::robot_from_text("arm.toml", text, ".".as_ref()).unwrap_err();
     assert_eq!(problems.iter().count(), 1, "{problems}");
 }
 
@@ -235,6 +235,6 @@ fn bad_robot_files_about_a_urdf() {
         assert!(problems.to_string().contains(fragment), "{links} {joints}: {problems}");
         assert!(problems.iter().all(|problem| problem.line_column().is_some()), "{problems}");
     }
-    let problems = flexure::io::robot_from_text("r.toml", ARM, folder.path()).unwrap_err();
+    let problems = flexure::robot::robot_from_text("r.toml", ARM, folder.path()).unwrap_err();
     assert!(problems.to_string().contains("this is XML"), "{problems}");
 }

@@ -1,6 +1,6 @@
 //! `[joints]`: by order, by name, and what the URDF says.
 
-use flexure::io::Robot;
+use flexure::robot::Robot;
 
 use crate::{ARM, DRIVES, Folder};
 

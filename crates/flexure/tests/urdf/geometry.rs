@@ -1,6 +1,7 @@
 //! Where joints and masses end up.
 
-use flexure::io::{Body, JointKind, load_robot};
+use flexure::robot::load_robot;
+use flexure::robot::{Body, JointKind};
 
 use crate::{ARM, bodies};
 
@@ -89,7 +90,7 @@ fn branches_come_depth_first() {
         crate::Folder::with(&format!("<robot>{joints}{links}</robot>")).robot("", crate::DRIVES).unwrap();
     let names: Vec<_> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
     assert_eq!(names, ["j1", "j2", "j4", "j3", "j5"]);
-    let flexure::io::Links::Tree(bodies) = robot.links else { panic!() };
+    let flexure::robot::Links::Tree(bodies) = robot.links else { panic!() };
     let parents: Vec<_> = bodies.iter().map(|body| body.parent).collect();
     assert_eq!(parents, [None, Some(0), Some(1), Some(0), None]);
 }
@@ -157,8 +158,8 @@ motor_inertia = 1
 link_damping = 1
 motor_damping = 1
 "#;
-    let robot = flexure::io::robot_from_text("tree.toml", tree, ".".as_ref()).unwrap();
-    let flexure::io::Links::Tree(spelt_out) = robot.links else { panic!() };
+    let robot = flexure::robot::robot_from_text("tree.toml", tree, ".".as_ref()).unwrap();
+    let flexure::robot::Links::Tree(spelt_out) = robot.links else { panic!() };
     for (a, b) in spelt_out.iter().zip(&bodies(ARM, "")) {
         let all = |body: &Body| {
             let mut numbers = vec![body.mass];

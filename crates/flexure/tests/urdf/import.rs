@@ -1,6 +1,7 @@
 //! Robot files drafted from URDFs.
 
-use flexure::io::{import, load_robot, robot_from_text};
+use flexure::robot::load_robot;
+use flexure::robot::{import, robot_from_text};
 
 use crate::{ARM, Folder};
 
@@ -48,7 +49,7 @@ fn mimics_are_locked() {
     let robot = robot_from_text("draft.toml", &toml.replace("nan", "0.5"), folder.path()).unwrap();
     assert_eq!(robot.joints.iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>(), ["slide"]);
     // turn is held at 2 · 0.5 + 0.25: the slider starts 0.3 m out in that direction.
-    let flexure::io::Links::Tree(bodies) = robot.links else { panic!() };
+    let flexure::robot::Links::Tree(bodies) = robot.links else { panic!() };
     let [x, y, _] = bodies[0].translation;
     assert!((x - 0.3 * 1.25_f64.cos()).abs() < 1e-15 && (y - 0.3 * 1.25_f64.sin()).abs() < 1e-15);
     // Left to themselves they are refused.

@@ -7,7 +7,8 @@ mod import;
 
 use std::path::Path;
 
-use flexure::io::{Body, Links, Problems, Robot, robot_from_text};
+use flexure::files::Problems;
+use flexure::robot::{Body, Links, Robot, robot_from_text};
 
 /// A folder with `arm.urdf` in it.
 struct Folder(tempfile::TempDir);

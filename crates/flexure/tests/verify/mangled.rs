@@ -1,6 +1,7 @@
 //! Certificates with cuts, flipped bits and stray values: verified or refused, never a panic.
 
-use flexure::verify::{Rejected, verify};
+use flexure::verify::Rejected;
+use flexure::verify::verify;
 use serde_json::{Value, json};
 
 use crate::mutants::paths;

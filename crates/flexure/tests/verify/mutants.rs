@@ -1,6 +1,7 @@
 //! Certificates with one thing changed.
 
-use flexure::verify::{Rejected, verify};
+use flexure::verify::Rejected;
+use flexure::verify::verify;
 use serde_json::Value;
 
 use crate::certificates;

@@ -1,9 +1,11 @@
 //! What the prover writes: both checkers accept it for every built-in scenario, and refuse it once it claims a millionth
 //! more, or lacks a case.
 
-use flexure::certify::certify;
-use flexure::io::{SCENARIOS, load_scenario, robot_from_text};
-use flexure::proof::{Question, Region, problem};
+use flexure::files::SCENARIOS;
+use flexure::prove::engine::structural::certify;
+use flexure::prove::question::{Question, Region, problem};
+use flexure::robot::robot_from_text;
+use flexure::scenario::load_scenario;
 use flexure::verify::verify;
 use serde_json::Value;
 

@@ -4,9 +4,9 @@ use flexure_core::linalg::Vector;
 use flexure_core::model::Links as _;
 use flexure_core::robots::{self, JointKind, Tree};
 
-use super::super::number::Number;
-use super::super::robot::Body;
-use super::{mass_bound, own_inertia};
+use crate::verify::number::Number;
+use crate::verify::reach::{mass_bound, own_inertia};
+use crate::verify::robot::Body;
 
 const N: usize = 5;
 

@@ -1,0 +1,87 @@
+//! The estimators by name.
+
+use flexure_core::estimate::{Estimator, FilteredDifference, LowPass, MotorObserver, Observer};
+use flexure_core::linalg::Vector;
+use flexure_core::model::{Fjr, Links, Motion};
+
+use crate::estimators::{self, Encoders};
+use crate::files::Entry;
+use crate::imperfections::{Imperfection, VelocityFilter};
+use crate::robot::padded;
+
+/// The registered estimators.
+pub const ESTIMATORS: &[Entry] = &[
+    Entry {
+        name: "velocity-filter",
+        summary: "filtered differences of both encoders; an imperfection in scenario files",
+    },
+    Entry {
+        name: "observer",
+        summary: "the model of the robot, corrected by both encoders or by those of the motors",
+    },
+];
+
+/// Any registered estimator.
+#[derive(Clone, Debug)]
+pub enum AnyEstimator<const N: usize> {
+    /// `velocity-filter`.
+    FilteredDifference(FilteredDifference<f64, N>),
+    /// `observer` with both encoders.
+    Observer(Observer<f64, N>),
+    /// `observer` with the encoders of the motors.
+    MotorObserver(MotorObserver<f64, N>),
+}
+
+/// The estimator of a loop with control periods of `period` in s; none if the law sees the readings themselves.
+///
+/// # Panics
+/// For bandwidths or cut-offs that the reader of scenarios refuses.
+pub fn estimator<const N: usize>(
+    estimator: Option<&estimators::Estimator>,
+    imperfections: &[Imperfection],
+    period: f64,
+) -> Option<AnyEstimator<N>> {
+    const CHECKED: &str = "the reader takes positive numbers only";
+    if let Some(estimators::Estimator::Observer { encoders, bandwidth }) = estimator {
+        let bandwidth = padded(bandwidth, 1.0);
+        return Some(match encoders {
+            Encoders::Both => AnyEstimator::Observer(Observer::new(&bandwidth, period).expect(CHECKED)),
+            Encoders::Motor => {
+                AnyEstimator::MotorObserver(MotorObserver::new(&bandwidth, period).expect(CHECKED))
+            }
+        });
+    }
+    let filter = imperfections.iter().find_map(|imperfection| match imperfection {
+        Imperfection::VelocityFilter(filter) => Some(filter),
+        _ => None,
+    })?;
+    let filter = match *filter {
+        VelocityFilter::First { cutoff } => LowPass::first_order(cutoff, period),
+        VelocityFilter::Second { cutoff, damping } => LowPass::second_order(cutoff, damping, period),
+    };
+    Some(AnyEstimator::FilteredDifference(FilteredDifference::new(filter.expect(CHECKED))))
+}
+
+impl<const N: usize> Estimator<f64, N> for AnyEstimator<N> {
+    fn start(&mut self, x: &Motion<f64, N>) {
+        match self {
+            Self::FilteredDifference(estimator) => estimator.start(x),
+            Self::Observer(estimator) => estimator.start(x),
+            Self::MotorObserver(estimator) => estimator.start(x),
+        }
+    }
+
+    fn update<L: Links<f64, N>>(
+        &mut self,
+        robot: &Fjr<f64, L, N>,
+        q_l: &Vector<f64, N>,
+        q_m: &Vector<f64, N>,
+        u_m: &Vector<f64, N>,
+    ) -> Motion<f64, N> {
+        match self {
+            Self::FilteredDifference(estimator) => estimator.update(robot, q_l, q_m, u_m),
+            Self::Observer(estimator) => estimator.update(robot, q_l, q_m, u_m),
+            Self::MotorObserver(estimator) => estimator.update(robot, q_l, q_m, u_m),
+        }
+    }
+}

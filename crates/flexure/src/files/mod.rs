@@ -1,0 +1,31 @@
+//! Text on disk: documents whose every value knows its place, problems that point at it, and files that appear whole.
+//!
+//! Text becomes plain, validated data or a list of [`Problems`], each with the number, its unit, the allowed range, the line
+//! and a hint. What the keys mean is the business of the rooms above: robots, laws, references, imperfections, scenarios.
+//!
+//! Angles rad, torques N m, inertias kg m², time s, everything on the link side of the gear.
+
+mod atomic;
+pub(crate) mod base;
+pub(crate) mod builtin;
+pub(crate) mod decimals;
+pub(crate) mod diagnostic;
+pub(crate) mod document;
+mod entry;
+pub(crate) mod field;
+pub mod number;
+pub(crate) mod provenance;
+pub(crate) mod quantity;
+pub(crate) mod site;
+pub(crate) mod source;
+mod states;
+pub(crate) mod suggest;
+pub(crate) mod table;
+
+pub use atomic::{WriteError, create_folder, prepare, write_atomic};
+pub use builtin::{ROBOTS, SCENARIOS, TASKS};
+pub use diagnostic::{Problem, Problems};
+pub use document::Places;
+pub use entry::Entry;
+pub use provenance::Assumption;
+pub use states::{StateFile, StateRow, States, load_states};

@@ -1,0 +1,92 @@
+//! `[sources]`: where numbers come from, and which of them are assumed.
+
+use std::collections::BTreeSet;
+
+use crate::files::document::Places;
+use crate::files::field::Field;
+use crate::files::suggest;
+use crate::files::table::Table;
+
+/// A number that no source vouches for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Assumption {
+    /// Dotted key in the file, like `joints.stiffness`.
+    pub key: String,
+    /// The value as it stands there, `[9.0, 4.0]`.
+    pub value: String,
+    /// Why it is assumed.
+    pub note: String,
+    /// The file.
+    pub file: String,
+}
+
+/// Reads `[sources]` of `root`: each key names a key of the same file, in full or by its last parts.
+pub(crate) fn assumptions(root: &Table<'_>, places: &Places) -> Option<Vec<Assumption>> {
+    let Some(sources) = root.get("sources") else { return Some(Vec::new()) };
+    let mut assumed = Vec::new();
+    visit(&sources.any_table()?, "", places, &mut assumed)?;
+    Some(assumed)
+}
+
+/// A dotted key without quotes is a table inside `[sources]`: both notations mean the same.
+fn visit(table: &Table<'_>, prefix: &str, places: &Places, assumed: &mut Vec<Assumption>) -> Option<()> {
+    for (key, field) in table.fields() {
+        let key = if prefix.is_empty() { key.to_owned() } else { format!("{prefix}.{key}") };
+        if field.value.is_table() {
+            visit(&field.any_table()?, &key, places, assumed)?;
+        } else if let Some(note) = field.text()?.strip_prefix("assumed:") {
+            let (key, value) = named_by(&key, &field, places)?;
+            let note = note.trim().to_owned();
+            assumed.push(Assumption { key, value, note, file: places.file().to_owned() });
+        } else {
+            named_by(&key, &field, places)?;
+        }
+    }
+    Some(())
+}
+
+/// The full key that `key` names, and its text in the file.
+fn named_by(key: &str, field: &Field<'_>, places: &Places) -> Option<(String, String)> {
+    let paths = || {
+        let keys = places.keys().filter(|(path, _)| !path.starts_with("sources"));
+        keys.map(|(path, text)| {
+            (if key.contains('[') { path.to_owned() } else { without_indices(path) }, text)
+        })
+    };
+    let ending = format!(".{key}");
+    let mut matches: Vec<_> = paths().filter(|(path, _)| path == key).collect();
+    if matches.is_empty() {
+        // A number of one joint is found like the one of all joints.
+        matches = paths().map(|(path, text)| (without_joint(&path), text)).collect();
+        matches.retain(|(path, _)| path == key || path.ends_with(&ending));
+    }
+    let Some((first, text)) = matches.first().cloned() else {
+        let known: BTreeSet<String> = paths().map(|(path, _)| path).collect();
+        let message = format!("{} names no key of this file", suggest::quoted(key));
+        field.error("unknown-source", message, suggest::hint(key, known.iter().map(String::as_str)));
+        return None;
+    };
+    if let Some((other, _)) = matches.iter().find(|(path, _)| *path != first) {
+        let message = format!("{} may mean {first} or {other}", suggest::quoted(key));
+        field.error("ambiguous-source", message, format!("write the whole key, \"{first}\""));
+        return None;
+    }
+    let value = match matches.len() {
+        1 => text.split_whitespace().collect::<Vec<_>>().join(" "),
+        n => format!("{n} values"),
+    };
+    Some((first, value))
+}
+
+/// `links.joint[2].mass` → `links.joint.mass`.
+fn without_indices(path: &str) -> String {
+    path.split('[').map(|part| part.split_once(']').map_or(part, |(_, rest)| rest)).collect()
+}
+
+/// `joints.elbow.stiffness` → `joints.stiffness`.
+fn without_joint(path: &str) -> String {
+    match (path.strip_prefix("joints."), path.rsplit_once('.')) {
+        (Some(_), Some((_, key))) => format!("joints.{key}"),
+        _ => path.to_owned(),
+    }
+}

@@ -1,0 +1,149 @@
+//! The text of a file, read with care.
+
+use std::fs::File;
+use std::io::Read;
+use std::ops::Range;
+use std::path::Path;
+use std::sync::Arc;
+
+use miette::{MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
+
+use crate::files::diagnostic::Problem;
+
+/// Largest file of tables that is read \[bytes\].
+pub(crate) const LIMIT: u64 = 16 << 20;
+
+/// A file's name and text, or a part of it from some line on; cheap to clone.
+#[derive(Clone, Debug)]
+pub(crate) struct Source {
+    pub name: Arc<str>,
+    pub text: Arc<str>,
+    /// `text` without control characters, byte for byte as long: what a terminal may be shown.
+    shown: Arc<str>,
+    /// Lines of the file before `text`.
+    lines_before: usize,
+}
+
+impl Source {
+    /// From text that is at hand.
+    pub fn new(name: &str, text: &str) -> Self {
+        Self::part(name, text, 0)
+    }
+
+    /// From the text after `lines_before` lines.
+    pub fn part(name: &str, text: &str, lines_before: usize) -> Self {
+        let text: Arc<str> = text.into();
+        let shown = if text.chars().any(is_hostile) { harmless(&text).into() } else { text.clone() };
+        Self { name: name.into(), text, shown, lines_before }
+    }
+
+    /// Line and column of the byte at `offset`, counted from 1; the column in characters.
+    pub fn line_column(&self, offset: usize) -> Option<(usize, usize)> {
+        let before = self.text.get(..offset)?;
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        let column = before.get(line_start..)?.chars().count() + 1;
+        Some((self.lines_before + before.matches('\n').count() + 1, column))
+    }
+}
+
+impl SourceCode for Source {
+    fn read_span<'a>(
+        &'a self,
+        span: &SourceSpan,
+        lines_before: usize,
+        lines_after: usize,
+    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
+        let found = self.shown.read_span(span, lines_before, lines_after)?;
+        let (line, column) = self.line_column(span.offset()).ok_or(MietteError::OutOfBounds)?;
+        // Without context it is asked where the span is; the column is in characters.
+        let place = (lines_before + lines_after == 0).then_some((line - 1, column - 1));
+        let named = |data, span, (line, column), count| {
+            let name = self.name.to_string();
+            Box::new(MietteSpanContents::new_named(name, data, span, line, column, count))
+        };
+        let wide = found.data().split(|&byte| byte == b'\n').any(|line| line.len() > WIDEST);
+        if wide {
+            let window = self.window(span.offset());
+            let data = self.shown.get(window.clone()).unwrap_or_default().as_bytes();
+            return Ok(named(data, window.into(), place.unwrap_or((line - 1, 0)), 1));
+        }
+        let place = place.unwrap_or((found.line() + self.lines_before, found.column()));
+        Ok(named(found.data(), *found.span(), place, found.line_count()))
+    }
+}
+
+/// Widest line that is shown whole \[bytes\].
+pub(crate) const WIDEST: usize = 160;
+
+impl Source {
+    /// As much of `span` as is shown of it.
+    pub fn in_view(&self, span: &Range<usize>) -> Range<usize> {
+        let part = self.text.get(span.clone()).unwrap_or_default();
+        if part.len() <= WIDEST / 4 || part.lines().all(|line| line.len() <= WIDEST / 4) {
+            return span.clone();
+        }
+        let window = self.window(span.start);
+        span.start..window.end.min(span.end).min(span.start + WIDEST / 4)
+    }
+
+    /// A part around `offset` of the line that it is in.
+    fn window(&self, offset: usize) -> Range<usize> {
+        let text = &*self.shown;
+        let line_start = text[..offset].rfind('\n').map_or(0, |newline| newline + 1);
+        let line_end = text[offset..].find('\n').map_or(text.len(), |newline| offset + newline);
+        let boundary =
+            |at: usize| (0..=at.min(text.len())).rev().find(|&i| text.is_char_boundary(i)).unwrap_or(0);
+        let start = boundary(offset.saturating_sub(WIDEST / 2)).max(line_start);
+        start..boundary(start + WIDEST).min(line_end)
+    }
+}
+
+/// Whether a terminal might obey `c`.
+fn is_hostile(c: char) -> bool {
+    c.is_control() && !matches!(c, '\n' | '\r' | '\t')
+}
+
+fn harmless(text: &str) -> String {
+    text.chars()
+        .flat_map(|c| {
+            let (shown, count) = if is_hostile(c) { ('?', c.len_utf8()) } else { (c, 1) };
+            std::iter::repeat_n(shown, count)
+        })
+        .collect()
+}
+
+/// Reads the text file at `path`, of at most `limit` bytes.
+pub(crate) fn read(path: &Path, limit: u64) -> Result<Source, Problem> {
+    let name = path.display();
+    let unreadable = |error: std::io::Error| {
+        Problem::new(
+            "unreadable",
+            format!("cannot read {name}: {error}"),
+            "give the path of a text file (a path inside a file is relative to that file), or the name of a \
+             built-in robot or scenario",
+        )
+    };
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(unreadable)?;
+    file.take(limit + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    if bytes.len() as u64 > limit {
+        return Err(Problem::new(
+            "huge",
+            format!("{name} is larger than {} MiB", limit >> 20),
+            "files of this kind are smaller; is it the right file?",
+        ));
+    }
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let before = error.as_bytes().get(..valid).unwrap_or_default();
+        let line = before.split(|&byte| byte == b'\n').count();
+        let clean = String::from_utf8_lossy(error.as_bytes());
+        Problem::new(
+            "encoding",
+            format!("{name} is not UTF-8: invalid byte {valid} in line {line}"),
+            "save the file as UTF-8 text",
+        )
+        .at(&Source::new(&name.to_string(), &clean), valid..valid)
+    })?;
+    Ok(Source::new(&name.to_string(), &text))
+}

@@ -1,0 +1,128 @@
+//! Springs that are not linear: hardening, with play, with hysteresis.
+
+use flexure_core::linalg::Vector;
+use flexure_core::model::{Links, Motion};
+
+use crate::plant::plant::Plant;
+
+/// Springs that slip inside, one in parallel with each joint's own (Prandtl's elastic-perfectly-plastic element): its torque
+/// z follows the deflection with slope `stiffness` and stays within ±`yield_torque`. A cycle of amplitude A in deflection
+/// takes 4 τ_y (A − τ_y / k_h) out of the motion if A > τ_y / k_h, else nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hysteresis<const N: usize> {
+    /// k_h ≥ 0 [N m/rad].
+    pub stiffness: Vector<f64, N>,
+    /// τ_y ≥ 0 [N m].
+    pub yield_torque: Vector<f64, N>,
+}
+
+impl<const N: usize> Hysteresis<N> {
+    /// No hysteresis.
+    pub const NONE: Self = Self { stiffness: Vector([0.0; N]), yield_torque: Vector([0.0; N]) };
+
+    /// Whether there is none in any joint.
+    pub fn is_none(&self) -> bool {
+        (0..N).all(|i| self.stiffness[i] == 0.0 || self.yield_torque[i] == 0.0)
+    }
+
+    /// Torque of joint `i` [N m] after `torque` and a further deflection in rad, were it elastic.
+    #[inline]
+    pub(crate) fn elastic(&self, i: usize, torque: f64, deflection: f64) -> f64 {
+        torque + self.stiffness[i] * deflection
+    }
+
+    /// `torque` [N m] of joint `i` within what it can bear.
+    #[inline]
+    pub(crate) fn yielded(&self, i: usize, torque: f64) -> f64 {
+        torque.min(self.yield_torque[i]).max(-self.yield_torque[i])
+    }
+
+    /// Torque of joint `i` [N m] after `torque` and a further deflection in rad in one direction, and the work in J that
+    /// slipping took.
+    #[inline]
+    pub(crate) fn after(&self, i: usize, torque: f64, deflection: f64) -> (f64, f64) {
+        if self.stiffness[i] == 0.0 {
+            return (0.0, 0.0);
+        }
+        let elastic = self.elastic(i, torque, deflection);
+        let after = self.yielded(i, elastic);
+        (after, after * (elastic - after) / self.stiffness[i])
+    }
+
+    /// Energy in J that torques [N m] keep in the elements.
+    pub fn energy(&self, torque: &Vector<f64, N>) -> f64 {
+        (0..N)
+            .filter(|&i| self.stiffness[i] > 0.0)
+            .map(|i| 0.5 * torque[i] * torque[i] / self.stiffness[i])
+            .sum()
+    }
+}
+
+/// The part of the springs that is a function of the deflection.
+impl<L: Links<f64, N>, const N: usize> Plant<L, N> {
+    /// Torque K ε + k ε³ of the springs on the links [N m]; the motors feel its opposite. ε is the deflection beyond the
+    /// play. Hysteresis is not in it: its torque depends on the past.
+    pub fn spring_torque(&self, x: &Motion<f64, N>) -> Vector<f64, N> {
+        self.robot.spring_torque(&x.q_l, &x.q_m) + self.nonlinear_torque(x)
+    }
+
+    /// What [`spring_torque`](Self::spring_torque) has beyond K ζ [N m].
+    #[inline]
+    pub(crate) fn nonlinear_torque(&self, x: &Motion<f64, N>) -> Vector<f64, N> {
+        let slack = self.slack(x);
+        let zeta = x.deflection();
+        Vector::from_fn(|i| self.hardening(i, zeta[i] - slack[i]) - self.robot.stiffness[i] * slack[i])
+    }
+
+    /// Slope K + 3 k ε² of the spring torque [N m/rad], none inside the play.
+    #[inline]
+    pub(crate) fn tangent_stiffness(&self, x: &Motion<f64, N>) -> Vector<f64, N> {
+        let zeta = x.deflection();
+        let slack = self.slack(x);
+        Vector::from_fn(|i| {
+            let wound = zeta[i] - slack[i];
+            let loose = zeta[i].abs() < 0.5 * self.spring_gap[i];
+            if loose { 0.0 } else { self.robot.stiffness[i] + 3.0 * self.spring_hardening[i] * wound * wound }
+        })
+    }
+
+    /// Energy in J that hardening adds to the springs less what play takes out of them.
+    pub(crate) fn nonlinear_energy(&self, x: &Motion<f64, N>) -> f64 {
+        let slack = self.slack(x);
+        let zeta = x.deflection();
+        let wound = zeta - slack;
+        let hardening = Vector::from_fn(|i| self.hardening(i, wound[i])).dot(&wound);
+        // ½ K (ζ² − ε²)
+        let play = self.robot.stiffness.diag_mul(&slack).dot(&(zeta + wound));
+        0.25 * hardening - 0.5 * play
+    }
+
+    /// Deflection in rad at which the springs give `torque` [N m]; the middle of the play for none.
+    pub fn deflection_under(&self, torque: &Vector<f64, N>) -> Vector<f64, N> {
+        Vector::from_fn(|i| {
+            let (stiffness, hardening) = (self.robot.stiffness[i], self.spring_hardening[i]);
+            // Newton's iteration from beyond the root of a function that is convex there: monotone.
+            let wound = (0..100).fold(torque[i] / stiffness, |wound, _| {
+                let square = hardening * wound * wound;
+                wound - ((stiffness + square) * wound - torque[i]) / (stiffness + 3.0 * square)
+            });
+            if wound == 0.0 { wound } else { wound + 0.5 * self.spring_gap[i] * wound.signum() }
+        })
+    }
+
+    /// k ε³ of joint `i` [N m].
+    #[inline]
+    fn hardening(&self, i: usize, wound: f64) -> f64 {
+        self.spring_hardening[i] * wound * wound * wound
+    }
+
+    /// The part of the deflections that winds no spring, in rad.
+    #[inline]
+    fn slack(&self, x: &Motion<f64, N>) -> Vector<f64, N> {
+        let zeta = x.deflection();
+        Vector::from_fn(|i| {
+            let half = 0.5 * self.spring_gap[i];
+            zeta[i].min(half).max(-half)
+        })
+    }
+}

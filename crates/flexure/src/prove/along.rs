@@ -1,0 +1,237 @@
+//! A scenario's motion inside an error tube: bounds of errors, speeds, deflections and torques, and whether they keep the
+//! robot's limits.
+//!
+//! What is bounded is every state with W ≤ c at every time of the run, whatever led there. That a run stays in the tube is
+//! said by its certificate, and by [`start_level`] of where it begins.
+
+mod exceeding;
+
+use flexure_core::model::{Fjr, Links};
+use flexure_core::scalar::{Interval, Scalar};
+use serde::Serialize;
+
+use crate::files::{Problem, Problems};
+use crate::laws::law_over;
+use crate::prove::engine::envelope::closed_loop::{ClosedLoop, Enclosed, Place, Slope};
+use crate::prove::engine::envelope::slab::QUANTITIES;
+use crate::prove::engine::envelope::tube::Tube;
+use crate::prove::engine::envelope::witness::candidates;
+use crate::prove::engine::envelope::{Course, Request, course};
+use crate::prove::engine::number::Number;
+use crate::prove::engine::verdict::{Undecided, Verdict};
+use crate::references::{self, AnyReference, Profile};
+use crate::robot::{RobotVisitor, with_enclosed_robot};
+use crate::scenario::Scenario;
+
+pub use exceeding::Exceeding;
+
+/// What a robot may do along its reference inside a tube: upper bounds, one per joint.
+#[derive(Clone, Debug, Serialize)]
+pub struct Along {
+    /// c in J.
+    pub level: f64,
+    /// Link position errors |q̃_l| in rad.
+    pub error: Vec<f64>,
+    /// Link speeds |q̇_l| [rad/s].
+    pub velocity: Peaks,
+    /// Deflections of the springs |q_m − q_l| in rad.
+    pub deflection: Peaks,
+    /// Motor torques |u_m| [N m].
+    pub torque: Peaks,
+    /// Verdicts on the limits in the robot's file, joint by joint.
+    pub limits: Vec<Limit>,
+    /// Slabs of time that were looked at.
+    pub slabs: usize,
+}
+
+/// The largest absolute value of a quantity over the run, per joint.
+#[derive(Clone, Debug, Serialize)]
+pub struct Peaks {
+    /// Never exceeded; infinite where none was found.
+    pub bound: Vec<f64>,
+    /// When it may come closest to that, in s.
+    pub time: Vec<f64>,
+    /// About the largest value on the reference itself.
+    pub nominal: Vec<f64>,
+}
+
+/// A limit in the robot's file.
+#[derive(Clone, Debug, Serialize)]
+pub struct Limit {
+    /// Index of the joint.
+    pub joint: usize,
+    /// Its key in robot files: `velocity_limit`, `deflection_limit` or `torque_limit`.
+    pub key: &'static str,
+    /// The limit.
+    pub limit: f64,
+    /// Proved: never exceeded in the tube, with the bound. Refuted: a state in the tube that exceeds it.
+    pub verdict: Verdict<f64, Exceeding>,
+}
+
+/// Bounds along the reference of `scenario` in the tube {W ≤ `level`}, `level` in J, looking at `budget` slabs of time at
+/// most.
+///
+/// # Errors
+/// If the robot has too many joints, the samples of the reference make no path, Π_l is not constant, or the reference's
+/// third derivative jumps, which no tube outlives.
+pub fn along(scenario: &Scenario, level: &Number, budget: usize) -> Result<Along, Problems> {
+    let level = level.bounds().hi();
+    with_enclosed_robot(
+        &scenario.robot,
+        Build { scenario, then: &|system| bounds(scenario, system, level, budget) },
+    )?
+}
+
+/// An upper bound of W in J at the scenario's initial state: 0 where the robot starts on its reference, but for rounding.
+///
+/// # Errors
+/// As [`along`].
+pub fn start_level(scenario: &Scenario) -> Result<f64, Problems> {
+    with_enclosed_robot(&scenario.robot, Build { scenario, then: &|system| storage(scenario, system) })?
+}
+
+/// Hands the scenario's closed loop over intervals to `then`.
+struct Build<'a, R> {
+    scenario: &'a Scenario,
+    then: &'a dyn Fn(&dyn ClosedLoop) -> R,
+}
+
+impl<R> RobotVisitor<Interval> for Build<'_, R> {
+    type Output = Result<R, Problems>;
+
+    fn visit<L: Links<Interval, N> + Sync, const N: usize>(self, robot: Fjr<Interval, L, N>) -> Self::Output {
+        let scenario = self.scenario;
+        suitable(scenario)?;
+        let reference = AnyReference::<Interval, N>::enclosed(scenario)?;
+        let law = law_over(scenario.vcbc()?, |x| scenario.bounds(x));
+        let [breaks, kinks] = [reference.breaks(), reference.kinks()];
+        Ok((self.then)(&Enclosed { robot, law, reference, breaks, kinks }))
+    }
+}
+
+/// Whether W is what the bounds take it to be, and continuous.
+fn suitable(scenario: &Scenario) -> Result<(), Problems> {
+    scenario.vcbc()?;
+    if let Some(problem) = uneven_metric(scenario) {
+        return Err(problem.into());
+    }
+    if matches!(&scenario.reference, references::Reference::PointToPoint { profile: Profile::Quintic, .. }) {
+        let message = "the third derivative of a quintic jumps, and the errors with it: no tube holds them";
+        let help = "take septic or nonic";
+        return Err(scenario.places.problem("reference.kind", "reference", message, help).into());
+    }
+    Ok(())
+}
+
+/// What to say of a metric that depends on the error, if it does.
+pub(crate) fn uneven_metric(scenario: &Scenario) -> Option<Problem> {
+    let link = &scenario.vcbc().ok()?.link;
+    link.metric_hardening.as_ref().filter(|hardening| hardening.iter().any(|&h| h != 0.0))?;
+    let message = "controller.link.metric_hardening is not 0: proofs take a constant metric";
+    let help =
+        "with a Π_l that depends on the error the rate depends on the speed of the error too; leave it out";
+    Some(scenario.places.problem("controller.link.metric_hardening", "metric", message, help))
+}
+
+fn bounds(scenario: &Scenario, system: &dyn ClosedLoop, level: f64, budget: usize) -> Along {
+    let robot = &scenario.robot;
+    let given = [&robot.limits.velocity, &robot.limits.deflection, &robot.limits.torque];
+    let limits: Vec<Interval> = given.into_iter().flatten().map(|&limit| robot.bounds(limit)).collect();
+    let duration = scenario.bounds(scenario.duration).hi();
+    let course = course(system, &Request { level, duration, limits, budget });
+    let n = system.joints();
+    let peaks = |quantity: usize| {
+        let of = |f: &dyn Fn(usize) -> f64| (quantity * n..(quantity + 1) * n).map(f).collect();
+        Peaks {
+            bound: of(&|k| course.bound(k).0),
+            time: of(&|k| course.bound(k).1),
+            nominal: of(&|k| course.nominal(k).0),
+        }
+    };
+    let keys = ["velocity_limit", "deflection_limit", "torque_limit"];
+    let limit = |(joint, quantity): (usize, usize)| {
+        let limit = given[quantity][joint];
+        limit.is_finite().then(|| {
+            let verdict = verdict(scenario, system, &course, level, quantity * n + joint, limit);
+            Limit { joint, key: keys[quantity], limit, verdict }
+        })
+    };
+    let [velocity, deflection, torque] = [0, 1, 2].map(peaks);
+    Along {
+        level,
+        error: Tube::new(system, level, &vec![Interval::ZERO; n]).errors()[..n]
+            .iter()
+            .map(|e| e.hi())
+            .collect(),
+        velocity,
+        deflection,
+        torque,
+        limits: (0..n).flat_map(|i| (0..QUANTITIES.len()).map(move |k| (i, k))).filter_map(limit).collect(),
+        slabs: course.spent,
+    }
+}
+
+/// Whether quantity `k` keeps `limit`.
+fn verdict(
+    scenario: &Scenario,
+    system: &dyn ClosedLoop,
+    course: &Course,
+    level: f64,
+    k: usize,
+    limit: f64,
+) -> Verdict<f64, Exceeding> {
+    let exact = scenario.robot.bounds(limit);
+    let (bound, time) = course.bound(k);
+    if bound <= exact.lo() {
+        return Verdict::Proved(bound);
+    }
+    let (seen, _) = course.seen(k);
+    let found = (seen > exact.hi())
+        .then(|| candidates(system, level, course, k))
+        .into_iter()
+        .flatten()
+        .find_map(|candidate| exceeding::confirm(scenario, &candidate, level, k, exact.hi()));
+    found.map_or_else(
+        || {
+            let at = if bound.is_finite() {
+                format!(
+                    "near t = {time:.4} s the bound is {bound:.6e}, above the limit of {limit}; the largest value seen is \
+                     {seen:.6e}"
+                )
+            } else {
+                format!("no finite bound was found near t = {time:.4} s")
+            };
+            Verdict::Undecided(Undecided { at, spent: course.spent })
+        },
+        Verdict::Refuted,
+    )
+}
+
+/// W at the initial state, from above.
+fn storage(scenario: &Scenario, system: &dyn ClosedLoop) -> f64 {
+    let initial = &scenario.initial;
+    let enclosed = |values: &[f64]| values.iter().map(|&x| scenario.bounds(x)).collect::<Vec<_>>();
+    let constant = |values: &[f64]| enclosed(values).into_iter().map(Slope::value).collect::<Vec<_>>();
+    let x = Place {
+        q_l: constant(&initial.q_l),
+        q_m: constant(&initial.q_m),
+        v_l: constant(&initial.dq_l),
+        v_m: constant(&initial.dq_m),
+    };
+    let jets = system.reference(Interval::ZERO);
+    let q_ld: Vec<_> = jets.iter().map(|jet| std::array::from_fn(|k| Slope::value(jet[k]))).collect();
+    let answer = system.command(&x, &q_ld);
+    let [link, motor, inertia] = system.metrics();
+    let form = |metric: &[Interval], e: &[Slope]| {
+        metric
+            .iter()
+            .zip(e)
+            .fold(Interval::ZERO, |sum, (&metric, e)| sum + metric * e.coefficient(0).square())
+    };
+    let s_l: Vec<_> = answer.s_l.iter().map(|s| s.coefficient(0)).collect();
+    let twice = form(&link, &answer.e_l)
+        + form(&motor, &answer.e_m)
+        + form(&inertia, &answer.s_m)
+        + system.link_energy(&enclosed(&initial.q_l), &s_l);
+    (twice * Interval::point(0.5)).hi()
+}

@@ -1,0 +1,87 @@
+//! What to say of a proof that is none, or not of everything that was asked.
+
+use crate::files::Problem;
+use crate::prove::along::Limit;
+use crate::prove::engine::verdict::Verdict;
+use crate::prove::question::Proof;
+use crate::scenario::Scenario;
+
+impl Proof {
+    /// The verdict on everything that was asked, in a word.
+    pub fn word(&self, scenario: &Scenario) -> &'static str {
+        match self.complaint(scenario) {
+            None => "proved",
+            Some((_, true)) => "refuted",
+            Some((_, false)) => "undecided",
+        }
+    }
+
+    /// What to say where nothing was proved, and whether that is because it is wrong.
+    pub fn complaint(&self, scenario: &Scenario) -> Option<(Problem, bool)> {
+        let problem =
+            |code, message: String, help: &str| scenario.places.problem("controller", code, message, help);
+        match &self.verdict {
+            Verdict::Proved(_) => match &self.confirmation {
+                Some(Verdict::Refuted(witness)) => {
+                    let message = format!(
+                        "{}: the direct engine finds {:.6e} 1/s at {}, below the certified rate: one of both is wrong",
+                        scenario.name, witness.rate, witness.at
+                    );
+                    Some((problem("contradiction", message, "do not trust the certificate; report it"), true))
+                }
+                Some(Verdict::Undecided(undecided))
+                    if self.limits(scenario).is_none_or(|(_, wrong)| !wrong) =>
+                {
+                    let message = format!(
+                        "{}: the direct engine did not decide within {} boxes; the certificate of the structural engine \
+                         stands without it",
+                        scenario.name, undecided.spent
+                    );
+                    Some((problem("undecided", message, "raise --budget, or lower --speed"), false))
+                }
+                _ => self.limits(scenario),
+            },
+            Verdict::Refuted(witness) => {
+                let message = format!(
+                    "{}: the closed loop does not contract fast enough: {} has {:.6} 1/s in one direction",
+                    scenario.name,
+                    witness.block.name(),
+                    witness.rate
+                );
+                Some((
+                    problem("refuted", message, "ask for less, raise the gains, or name a smaller region"),
+                    true,
+                ))
+            }
+            Verdict::Undecided(undecided) => {
+                let message = format!("{}: not decided: {}", scenario.name, undecided.at);
+                Some((problem("undecided", message, "name a smaller region, or ask for less"), false))
+            }
+        }
+    }
+
+    /// What to say of the robot's limits where the tube may exceed them; one that it does exceed comes first.
+    fn limits(&self, scenario: &Scenario) -> Option<(Problem, bool)> {
+        let limits = &self.along.as_ref()?.limits;
+        let refuted = limits.iter().find(|limit| matches!(limit.verdict, Verdict::Refuted(_)));
+        let limit = refuted.or_else(|| limits.iter().find(|limit| limit.verdict.proved().is_none()))?;
+        let Limit { joint, key, limit, verdict } = limit;
+        let name = &scenario.robot.joints[*joint].name;
+        let (code, message) = match verdict {
+            Verdict::Proved(_) => return None,
+            Verdict::Refuted(state) => (
+                "limit",
+                format!(
+                    "{key} of {name} is {limit}; at t = {:.4} s a state in the tube has {:.4}",
+                    state.t, state.value
+                ),
+            ),
+            Verdict::Undecided(undecided) => {
+                ("limit", format!("{key} of {name} is not decided: {}", undecided.at))
+            }
+        };
+        let help = "take a slower or smoother reference, lower gains, or a smaller disturbance";
+        let at = format!("joints.{key}");
+        Some((scenario.robot.places.problem(&at, code, message, help), refuted.is_some()))
+    }
+}

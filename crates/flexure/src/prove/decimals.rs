@@ -1,0 +1,72 @@
+//! Robot and gains of a scenario in decimals, as certificates write them.
+
+use flexure_core::scalar::Interval;
+
+use crate::prove::engine::certificate::{Body, Gains, JointKind, Links, Robot};
+use crate::prove::engine::number::Number;
+use crate::scenario::Scenario;
+use crate::{laws, robot};
+
+/// The gains of a side.
+pub(crate) fn gains(scenario: &Scenario, gains: &laws::SideGains) -> Gains {
+    let numbers = |values: &[f64]| values.iter().map(|&x| Number::read(x, scenario.bounds(x))).collect();
+    Gains {
+        metric: numbers(&gains.metric),
+        shaping: numbers(&gains.shaping),
+        damping: numbers(&gains.damping),
+        kappa: gains.kappa.as_deref().map(numbers),
+    }
+}
+
+/// The robot.
+pub(crate) fn robot(data: &robot::Robot) -> Robot {
+    let numbers = |values: &[f64]| values.iter().map(|&x| Number::read(x, data.bounds(x))).collect();
+    Robot {
+        name: data.name.clone(),
+        joints: data.joint_count(),
+        links: links(data),
+        stiffness: numbers(&data.stiffness),
+        motor_inertia: numbers(&data.motor_inertia),
+        link_damping: numbers(&data.link_damping),
+        motor_damping: numbers(&data.motor_damping),
+    }
+}
+
+fn links(data: &robot::Robot) -> Links {
+    let number = |x: f64| Number::read(x, data.bounds(x));
+    match (&data.links, &data.enclosed) {
+        (robot::Links::PlanarTwoLink { mass, length, com, inertia }, _) => Links::PlanarTwoLink {
+            mass: mass.map(number),
+            length: number(length[0]),
+            com: com.map(number),
+            inertia: inertia.map(number),
+        },
+        (robot::Links::Pendulum { mass, com, inertia }, _) => {
+            Links::Pendulum { mass: number(*mass), com: number(*com), inertia: number(*inertia) }
+        }
+        (_, robot::Links::Tree(bodies)) => {
+            let bodies = bodies.iter().enumerate().map(|(i, enclosed)| body(data, i, enclosed));
+            Links::Tree { bodies: bodies.collect() }
+        }
+        _ => unreachable!("enclosed links are of the same kind"),
+    }
+}
+
+fn body(data: &robot::Robot, joint: usize, body: &robot::Body<Interval>) -> Body {
+    let computed = Number::computed;
+    let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = body.inertia;
+    let (lower, upper) = (data.limits.lower[joint], data.limits.upper[joint]);
+    let number = |x: f64| Number::read(x, data.bounds(x));
+    let prismatic = body.kind == robot::JointKind::Prismatic;
+    Body {
+        parent: body.parent,
+        kind: if prismatic { JointKind::Prismatic } else { JointKind::Revolute },
+        axis: body.axis.map(computed),
+        rotation: body.rotation.map(|row| row.map(computed)),
+        translation: body.translation.map(computed),
+        mass: computed(body.mass),
+        com: body.com.map(computed),
+        inertia: [xx, xy, xz, yy, yz, zz].map(computed),
+        travel: (prismatic && lower.is_finite() && upper.is_finite()).then(|| [number(lower), number(upper)]),
+    }
+}

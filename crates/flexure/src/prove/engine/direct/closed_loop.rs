@@ -1,0 +1,163 @@
+//! The closed loop of the v-CBC law as the core computes it.
+
+use flexure_core::control::{Input, Shaping, Vcbc};
+use flexure_core::linalg::{Matrix, Vector};
+use flexure_core::model::{Fjr, LinkMatrices, Links};
+use flexure_core::scalar::{Dual, Interval, Over, Scalar};
+use flexure_core::virtual_system::{ErrorState, VelocityErrors, velocity_error_rates};
+
+use crate::prove::engine::direct::flow::{Coordinate, System, Twins, VcbcFlow};
+use crate::prove::engine::direct::form::{Balance, Form};
+use crate::prove::engine::direct::jacobian::{jacobian, symmetric_part};
+
+/// A robot under the v-CBC law, constants of type `C`.
+///
+/// Coordinates, `N` each: q̃_l, q̃_m in rad, s_l, s_m [rad/s] (errors), q_l in rad and q̇_l [rad/s] (real motion). Variations are
+/// those of the errors, δz = (δq̃_l, δq̃_m, δs_l, δs_m) with δs = M⁻¹ δσ at the real motion, which needs no inverse of M:
+/// W = ½ δzᵀ diag(Π_l, Π_m, M_l, M_m) δz.
+#[derive(Clone, Debug)]
+pub struct ClosedLoop<C, L, Pl, Pm, const N: usize> {
+    /// The robot.
+    pub robot: Fjr<C, L, N>,
+    /// The law.
+    pub law: Vcbc<C, Pl, Pm, N>,
+}
+
+/// A box of states of the closed loop; what is not said is unbounded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Region<const N: usize> {
+    /// Link position errors q̃_l in rad.
+    pub error_l: [Interval; N],
+    /// Motor position errors q̃_m in rad.
+    pub error_m: [Interval; N],
+    /// Link velocity errors s_l [rad/s]: they matter only where the metric depends on q̃_l.
+    pub velocity_error_l: [Interval; N],
+    /// Motor velocity errors s_m [rad/s].
+    pub velocity_error_m: [Interval; N],
+    /// Link positions q_l in rad; [`full_turn`] is every angle.
+    pub position: [Interval; N],
+    /// Link velocities q̇_l [rad/s].
+    pub velocity: [Interval; N],
+}
+
+/// Every angle in rad: [−π, π], rounded outwards.
+pub fn full_turn() -> Interval {
+    // The float nearest to π is below it.
+    let turn = core::f64::consts::PI.next_up();
+    Interval::point(-turn).hull(Interval::point(turn))
+}
+
+impl<const N: usize> Region<N> {
+    /// Position errors within ±`error` in rad on both sides, link velocities within ±`velocity` [rad/s], all angles, all
+    /// velocity errors.
+    pub fn within(error: f64, velocity: f64) -> Self {
+        let around = |x: f64| [Interval::point(-x).hull(Interval::point(x)); N];
+        Self {
+            error_l: around(error),
+            error_m: around(error),
+            velocity_error_l: [Interval::ENTIRE; N],
+            velocity_error_m: [Interval::ENTIRE; N],
+            position: [full_turn(); N],
+            velocity: around(velocity),
+        }
+    }
+
+    /// The coordinates in the order of [`ClosedLoop`].
+    pub fn coordinates(&self) -> Vec<Coordinate> {
+        let blocks = [
+            ("e_l", "rad", &self.error_l),
+            ("e_m", "rad", &self.error_m),
+            ("s_l", "rad/s", &self.velocity_error_l),
+            ("s_m", "rad/s", &self.velocity_error_m),
+            ("q_l", "rad", &self.position),
+            ("v_l", "rad/s", &self.velocity),
+        ];
+        let named = |(name, unit, ranges): (&str, &'static str, &[Interval; N])| {
+            let coordinate =
+                |(i, &range): (usize, &Interval)| Coordinate { name: format!("{name}[{i}]"), unit, range };
+            ranges.iter().enumerate().map(coordinate).collect::<Vec<_>>()
+        };
+        blocks.into_iter().flat_map(named).collect()
+    }
+}
+
+/// The v-CBC law's closed loop over a region: robot and law with constants enclosed, and again in `f64`.
+pub fn vcbc<LI, PlI, PmI, L, Pl, Pm, const N: usize>(
+    bounds: ClosedLoop<Interval, LI, PlI, PmI, N>,
+    point: ClosedLoop<f64, L, Pl, Pm, N>,
+    region: &Region<N>,
+) -> VcbcFlow<LI, PlI, PmI, L, Pl, Pm, N> {
+    Twins { bounds, point, coordinates: region.coordinates() }
+}
+
+impl<C, L, Pl, Pm, const N: usize> System<C> for ClosedLoop<C, L, Pl, Pm, N>
+where
+    C: Scalar + Over<C>,
+    L: Links<C, N>,
+    Pl: Shaping<C, N>,
+    Pm: Shaping<C, N>,
+{
+    /// Ẇ = δzᵀ G δz, G = diag(Π_l, Π_m, 1, 1) F + diag(½ Π̇_l, 0, −½ Ṁ_l, 0), F the Jacobian of the rates of
+    /// (q̃_l, q̃_m, σ_l, σ_m): d/dt ½ δσᵀ M⁻¹ δσ = δsᵀ δσ̇ − ½ δsᵀ Ṁ δs.
+    fn balance(&self, at: &[C]) -> Balance<C> {
+        let block = |k: usize| Vector::from_fn(|i| at[k * N + i]);
+        let (q_l, v_l): (Vector<C, N>, Vector<C, N>) = (block(4), block(5));
+        let model = LinkMatrices::new(&self.robot.links, &q_l, &v_l);
+        let E_l = model.workless();
+
+        let columns = jacobian(&at[..4 * N], 4 * N, |z| self.rates(z, &E_l));
+        let (Pi_l, Pi_l_rate) = self.link_metric(at, &E_l);
+        let half = C::from_f64(0.5);
+        let carried = |i: usize, j: usize| match i / N {
+            0 => Pi_l[i] * columns[j][i],
+            1 => self.law.motor.metric[i - N] * columns[j][i],
+            _ => columns[j][i],
+        };
+        let inside = |i: usize, j: usize, k: usize| i / N == k && j / N == k;
+        let dissipation = Form::from_fn(4 * N, |i, j| {
+            let metric_rate = if i == j && inside(i, j, 0) {
+                half * Pi_l_rate[i]
+            } else if inside(i, j, 2) {
+                -half * model.mass_rate[(i - 2 * N, j - 2 * N)]
+            } else {
+                C::ZERO
+            };
+            -(symmetric_part(carried, i, j) + metric_rate)
+        });
+        let weight = Form::from_fn(4 * N, |i, j| match i / N {
+            2 if inside(i, j, 2) => model.mass[(i - 2 * N, j - 2 * N)],
+            _ if i != j => C::ZERO,
+            0 => Pi_l[i],
+            1 => self.law.motor.metric[i - N],
+            _ => self.robot.motor_inertia[i - 3 * N],
+        });
+        Balance { dissipation, weight }
+    }
+}
+
+impl<C, L, Pl, Pm, const N: usize> ClosedLoop<C, L, Pl, Pm, N>
+where
+    C: Scalar + Over<C>,
+    L: Links<C, N>,
+    Pl: Shaping<C, N>,
+    Pm: Shaping<C, N>,
+{
+    /// The rates of (q̃_l, q̃_m, σ_l, σ_m) at z, along a real motion with the workless matrix `E_l`.
+    fn rates(&self, z: &[Dual<C, 1>], E_l: &Matrix<C, N, N>) -> Vec<Dual<C, 1>> {
+        let block = |k: usize| Vector::from_fn(|i| z[k * N + i]);
+        let errors = VelocityErrors { e_l: block(0), e_m: block(1), s_l: block(2), s_m: block(3) };
+        let lifted = E_l.map(Dual::constant);
+        let ErrorState { e_l, e_m, sigma_l, sigma_m } =
+            velocity_error_rates(&self.robot, &self.law, &errors, &lifted, &Input::ZERO);
+        [e_l, e_m, sigma_l, sigma_m].into_iter().flat_map(|part| part.0).collect()
+    }
+
+    /// Π_l and its rate: it moves with q̃_l.
+    fn link_metric(&self, at: &[C], E_l: &Matrix<C, N, N>) -> (Vector<C, N>, Vector<C, N>) {
+        let z: Vec<Dual<C, 1>> = at.iter().map(|&x| Dual::constant(x)).collect();
+        let rates = self.rates(&z, E_l);
+        let moving = Vector::from_fn(|i| Dual { value: at[i], gradient: [rates[i].value] });
+        let metric: Vector<Dual<C, 1>, N> = self.law.link.metric.at(&moving);
+        (metric.map(|x| x.value), metric.map(|x| x.gradient[0]))
+    }
+}

@@ -1,0 +1,66 @@
+//! What the engine proves about.
+
+use flexure_core::scalar::Interval;
+
+use crate::prove::engine::direct::closed_loop::ClosedLoop;
+use crate::prove::engine::direct::form::Balance;
+
+/// One coordinate of a region.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coordinate {
+    /// Its name, for messages.
+    pub name: String,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Its range; an infinite end means no bound.
+    pub range: Interval,
+}
+
+/// Variations δz of a dynamical system over a box of coordinates: its states and whatever else it depends on.
+///
+/// Sizes are known at run time only, so that the engine is compiled once.
+pub trait Flow {
+    /// The coordinates and their ranges.
+    fn coordinates(&self) -> &[Coordinate];
+
+    /// Encloses the balance at every point of the box `at`, and for every value of constants that are intervals.
+    fn enclosure(&self, at: &[Interval]) -> Balance<Interval>;
+
+    /// The balance at a point in plain `f64`: for samples. No proof depends on it.
+    fn value(&self, at: &[f64]) -> Balance<f64>;
+}
+
+/// A system written once over its number type, constants included.
+pub trait System<C> {
+    /// The balance at the coordinates `at`.
+    fn balance(&self, at: &[C]) -> Balance<C>;
+}
+
+/// The same system twice: with constants enclosed, for proofs, and with `f64` constants inside those, for samples.
+#[derive(Clone, Debug)]
+pub struct Twins<A, B> {
+    /// Over intervals.
+    pub bounds: A,
+    /// Over floats.
+    pub point: B,
+    /// Coordinates of both.
+    pub coordinates: Vec<Coordinate>,
+}
+
+/// [`Twins`] of the v-CBC law's closed loop.
+pub type VcbcFlow<LI, PlI, PmI, L, Pl, Pm, const N: usize> =
+    Twins<ClosedLoop<Interval, LI, PlI, PmI, N>, ClosedLoop<f64, L, Pl, Pm, N>>;
+
+impl<A: System<Interval>, B: System<f64>> Flow for Twins<A, B> {
+    fn coordinates(&self) -> &[Coordinate] {
+        &self.coordinates
+    }
+
+    fn enclosure(&self, at: &[Interval]) -> Balance<Interval> {
+        self.bounds.balance(at)
+    }
+
+    fn value(&self, at: &[f64]) -> Balance<f64> {
+        self.point.balance(at)
+    }
+}

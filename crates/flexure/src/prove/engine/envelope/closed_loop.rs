@@ -1,0 +1,161 @@
+//! A robot under its law along a reference, over intervals with derivatives, for callers that know its size only when
+//! they run.
+
+use flexure_core::control::{Command, Input, Metric, Shaping, Vcbc};
+use flexure_core::linalg::Vector;
+use flexure_core::model::{Fjr, Links, MassFactor, Motion};
+use flexure_core::reference::Reference;
+use flexure_core::scalar::{Interval, Jet, Scalar};
+
+use crate::prove::engine::matrix::Symmetric;
+
+/// A number over a box as a series in one direction: its value, its first derivative and half its second.
+pub type Slope = Jet<Interval, 3>;
+
+/// A motion, one number per joint each: positions in rad, velocities [rad/s].
+#[derive(Clone, Debug)]
+pub struct Place {
+    /// Link positions.
+    pub q_l: Vec<Slope>,
+    /// Motor positions.
+    pub q_m: Vec<Slope>,
+    /// Link velocities.
+    pub v_l: Vec<Slope>,
+    /// Motor velocities.
+    pub v_m: Vec<Slope>,
+}
+
+/// What the law says at a place; see [`Command`].
+#[derive(Clone, Debug)]
+pub struct Answer {
+    /// Motor torque [N m].
+    pub u_m: Vec<Slope>,
+    /// Desired motor position in rad.
+    pub q_md: Vec<Slope>,
+    /// Link position error in rad.
+    pub e_l: Vec<Slope>,
+    /// Motor position error in rad.
+    pub e_m: Vec<Slope>,
+    /// Link velocity error [rad/s].
+    pub s_l: Vec<Slope>,
+    /// Motor velocity error [rad/s].
+    pub s_m: Vec<Slope>,
+}
+
+/// A robot under its law along a reference.
+pub trait ClosedLoop: Sync {
+    /// Number of joints.
+    fn joints(&self) -> usize;
+    /// Taylor coefficients of the reference in rad/sᵏ over the times `t` in s.
+    fn reference(&self, t: Interval) -> Vec<[Interval; 7]>;
+    /// Times in s at which the reference's fourth derivative may jump.
+    fn breaks(&self) -> &[Interval];
+    /// Times in s at which its fifth derivative may jump, beside those.
+    fn kinks(&self) -> &[Interval];
+    /// φ_l [rad/s] at the link position errors `e_l` in rad.
+    fn approach(&self, e_l: &[Slope]) -> Vec<Slope>;
+    /// What the law says at `x`, with the Taylor coefficients `q_ld` of the reference in rad/sᵏ.
+    fn command(&self, x: &Place, q_ld: &[[Slope; 5]]) -> Answer;
+    /// M_l⁻¹ [1/(kg m²)] at `q_l` in rad.
+    fn inverse_mass(&self, q_l: &[Interval]) -> Symmetric;
+    /// s_lᵀ M_l s_l in J at `q_l` in rad.
+    fn link_energy(&self, q_l: &[Interval], s_l: &[Interval]) -> Interval;
+    /// The diagonals of Π_l, Π_m [N m/rad] and M_m [kg m²].
+    fn metrics(&self) -> [Vec<Interval>; 3];
+}
+
+/// A robot, its law with a constant Π_l, a reference and the times where its derivatives may jump.
+#[derive(Clone, Debug)]
+pub struct Enclosed<L, Pl, Pm, R, const N: usize> {
+    /// The robot.
+    pub robot: Fjr<Interval, L, N>,
+    /// The law.
+    pub law: Vcbc<Interval, Pl, Pm, N>,
+    /// The reference in rad.
+    pub reference: R,
+    /// Times in s at which its fourth derivative may jump.
+    pub breaks: Vec<Interval>,
+    /// Times in s at which its fifth derivative may.
+    pub kinks: Vec<Interval>,
+}
+
+impl<L, Pl, Pm, R, const N: usize> ClosedLoop for Enclosed<L, Pl, Pm, R, N>
+where
+    L: Links<Interval, N> + Sync,
+    Pl: Shaping<Interval, N> + Sync,
+    Pm: Shaping<Interval, N> + Sync,
+    R: Reference<Interval, N> + Sync,
+{
+    fn joints(&self) -> usize {
+        N
+    }
+
+    fn reference(&self, t: Interval) -> Vec<[Interval; 7]> {
+        let jets: Vector<Jet<Interval, 7>, N> = self.reference.at(t);
+        jets.iter().map(|jet| std::array::from_fn(|k| jet.coefficient(k))).collect()
+    }
+
+    fn breaks(&self) -> &[Interval] {
+        &self.breaks
+    }
+
+    fn kinks(&self) -> &[Interval] {
+        &self.kinks
+    }
+
+    fn approach(&self, e_l: &[Slope]) -> Vec<Slope> {
+        list(&self.law.link.shaping.eval(&vector(e_l)))
+    }
+
+    fn command(&self, x: &Place, q_ld: &[[Slope; 5]]) -> Answer {
+        let motion =
+            Motion { q_l: vector(&x.q_l), q_m: vector(&x.q_m), v_l: vector(&x.v_l), v_m: vector(&x.v_m) };
+        let Command { u_m, q_md, e_l, e_m, s_l, s_m, .. } =
+            command(&self.law, &self.robot, &motion, &Vector::from_fn(|i| Jet::new(q_ld[i])));
+        let [u_m, q_md, e_l, e_m, s_l, s_m] = [u_m, q_md, e_l, e_m, s_l, s_m].map(|v| list(&v));
+        Answer { u_m, q_md, e_l, e_m, s_l, s_m }
+    }
+
+    fn inverse_mass(&self, q_l: &[Interval]) -> Symmetric {
+        let factor = self.robot.links.factor(&vector(q_l));
+        let unit = |j: usize| Vector::from_fn(|i| if i == j { Interval::ONE } else { Interval::ZERO });
+        let columns: Vec<Vector<Interval, N>> = (0..N).map(|j| factor.solve(&unit(j))).collect();
+        // Entry and mirror image enclose the same number.
+        Symmetric::from_fn(N, |i, j| columns[j][i].intersection(columns[i][j]).unwrap_or(columns[j][i]))
+    }
+
+    fn link_energy(&self, q_l: &[Interval], s_l: &[Interval]) -> Interval {
+        let s_l = vector(s_l);
+        s_l.dot(&self.robot.links.mass_mul(&vector(q_l), &s_l))
+    }
+
+    fn metrics(&self) -> [Vec<Interval>; 3] {
+        let (Metric::Constant(link) | Metric::Hardening { base: link, .. }) = &self.law.link.metric;
+        [list(link), list(&self.law.motor.metric), list(&self.robot.motor_inertia)]
+    }
+}
+
+/// The law over intervals with two derivatives. Compiled once per robot, out of line: it is much code.
+#[inline(never)]
+fn command<L, Pl, Pm, const N: usize>(
+    law: &Vcbc<Interval, Pl, Pm, N>,
+    robot: &Fjr<Interval, L, N>,
+    x: &Motion<Slope, N>,
+    q_ld: &Vector<Jet<Slope, 5>, N>,
+) -> Command<Slope, N>
+where
+    L: Links<Interval, N>,
+    Pl: Shaping<Interval, N>,
+    Pm: Shaping<Interval, N>,
+{
+    law.command(robot, x, q_ld, &Input::ZERO)
+}
+
+/// Per-joint numbers as a vector.
+fn vector<T: Copy, const N: usize>(values: &[T]) -> Vector<T, N> {
+    Vector::from_fn(|i| values[i])
+}
+
+fn list<T: Copy, const N: usize>(values: &Vector<T, N>) -> Vec<T> {
+    values.iter().collect()
+}

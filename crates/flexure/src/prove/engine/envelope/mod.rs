@@ -1,0 +1,150 @@
+//! Bounds along a reference: how fast the links move, how far the springs give and what the motors are asked for at any time
+//! and at any error in the tube {W ≤ c}.
+//!
+//! Time is cut into slabs ([`slab`]); those that decide a bound are cut again, until they are tight or the budget is spent.
+
+pub mod closed_loop;
+pub mod slab;
+pub mod tube;
+pub mod witness;
+
+use std::collections::BTreeSet;
+
+use closed_loop::ClosedLoop;
+use flexure_core::scalar::Interval;
+use rayon::prelude::*;
+use slab::Slab;
+
+/// What to bound.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Request {
+    /// c in J.
+    pub level: f64,
+    /// End of the reference in s; it begins at 0.
+    pub duration: f64,
+    /// What must not be exceeded, one per quantity and joint in the order of [`slab::QUANTITIES`]; infinite for no limit.
+    pub limits: Vec<Interval>,
+    /// Largest number of slabs to look at.
+    pub budget: usize,
+}
+
+/// Slabs from 0 to the end, and how many were looked at.
+#[derive(Clone, Debug)]
+pub struct Course {
+    /// In the order of time.
+    pub slabs: Vec<Slab>,
+    /// Number of slabs looked at.
+    pub spent: usize,
+}
+
+/// Slabs to begin with.
+const FIRST: usize = 32;
+
+/// A bound this much, relatively, above what is about taken is tight.
+const TIGHT: f64 = 0.01;
+
+/// Halving a slab is worth while as long as the last time lowered its bound by this share.
+const GAIN: f64 = 0.002;
+
+/// Bounds everything that `request` asks for.
+pub fn course(system: &dyn ClosedLoop, request: &Request) -> Course {
+    let first = request.budget.clamp(1, FIRST);
+    let cut =
+        |i: usize| if i == first { request.duration } else { request.duration * (i as f64 / first as f64) };
+    let slab = |(from, to): (f64, f64)| {
+        let time = Interval::new(from, to).unwrap_or(Interval::ENTIRE);
+        Slab::new(system, request.level, time)
+    };
+    // In parallel, but in the order of time: the outcome does not depend on the number of cores.
+    let begin: Vec<_> = (0..first).map(|i| (cut(i), cut(i + 1))).collect();
+    let mut pieces: Vec<Piece> = begin.into_par_iter().map(|times| Piece::new(slab(times), None)).collect();
+    let mut spent = first;
+    loop {
+        let marked = marked(&pieces, request, (request.budget - spent.min(request.budget)) / 2);
+        if marked.is_empty() {
+            break;
+        }
+        spent += 2 * marked.len();
+        let halves = |(i, piece): (usize, Piece)| {
+            if !marked.contains(&i) {
+                return vec![piece];
+            }
+            let (left, right) = piece.slab.time.split();
+            [left, right].map(|half| Piece::new(slab((half.lo(), half.hi())), Some(&piece))).into()
+        };
+        pieces = pieces.into_par_iter().enumerate().flat_map_iter(halves).collect();
+    }
+    Course { slabs: pieces.into_iter().map(|piece| piece.slab).collect(), spent }
+}
+
+/// Which pieces to cut next: those that are farthest above their goals, at most `most`.
+fn marked(pieces: &[Piece], request: &Request, most: usize) -> BTreeSet<usize> {
+    let goals = goals(pieces, &request.limits);
+    let excess = pieces.iter().map(|piece| piece.excess(&goals)).enumerate();
+    let mut marked: Vec<(usize, f64)> = excess.filter(|(_, excess)| *excess > 1.0).collect();
+    marked.sort_by(|a, b| b.1.total_cmp(&a.1));
+    marked.into_iter().take(most).map(|(i, _)| i).collect()
+}
+
+impl Course {
+    /// Upper bound of the absolute value of quantity `k`, and the middle of the slab that it comes from in s.
+    pub fn bound(&self, k: usize) -> (f64, f64) {
+        largest(&self.slabs, |slab| slab.bound(k))
+    }
+
+    /// About the largest absolute value of quantity `k` on the reference, and when in s.
+    pub fn nominal(&self, k: usize) -> (f64, f64) {
+        largest(&self.slabs, |slab| slab.nominal[k].midpoint().abs())
+    }
+
+    /// About the largest absolute value of quantity `k` in the tube, and when in s.
+    pub fn seen(&self, k: usize) -> (f64, f64) {
+        largest(&self.slabs, |slab| slab.seen(k))
+    }
+}
+
+fn largest(slabs: &[Slab], value: impl Fn(&Slab) -> f64) -> (f64, f64) {
+    slabs.iter().map(|slab| (value(slab), slab.time.midpoint())).fold(
+        (f64::NEG_INFINITY, 0.0),
+        |best, next| {
+            if next.0 > best.0 { next } else { best }
+        },
+    )
+}
+
+/// A slab with its bounds, and those of the one it was cut from.
+struct Piece {
+    slab: Slab,
+    bounds: Vec<f64>,
+    seen: Vec<f64>,
+    before: Vec<f64>,
+}
+
+impl Piece {
+    fn new(slab: Slab, parent: Option<&Self>) -> Self {
+        let all = 0..slab.ranges.len();
+        let bounds: Vec<f64> = all.clone().map(|k| slab.bound(k)).collect();
+        let before = parent.map_or_else(|| vec![f64::INFINITY; bounds.len()], |parent| parent.bounds.clone());
+        Self { bounds, before, seen: all.map(|k| slab.seen(k)).collect(), slab }
+    }
+
+    /// How far it is above its goals where halving it can help: above 1 if it is.
+    fn excess(&self, goals: &[f64]) -> f64 {
+        let ratios = self.bounds.iter().zip(&self.before).zip(goals).map(|((&bound, &before), &goal)| {
+            let helps = !bound.is_finite() || bound < before * (1.0 - GAIN);
+            if helps { bound / goal } else { 0.0 }
+        });
+        ratios.fold(0.0, f64::max)
+    }
+}
+
+/// What each bound is to come down to: nearly the largest value seen, or the limit where that lies in between.
+fn goals(pieces: &[Piece], limits: &[Interval]) -> Vec<f64> {
+    let goal = |(k, limit): (usize, &Interval)| {
+        let finite = pieces.iter().map(|piece| piece.seen[k]).filter(|seen| seen.is_finite());
+        let seen = finite.fold(0.0, f64::max);
+        let tight = (1.0 + TIGHT) * seen;
+        if limit.lo() > seen { tight.min(limit.lo()) } else { tight }
+    };
+    limits.iter().enumerate().map(goal).collect()
+}

@@ -1,0 +1,262 @@
+//! What the robot may do in the tube over a slab of time, by Taylor's theorem.
+//!
+//! On the reference, what is asked for at a time t of the slab follows from value and slope at its middle and from the second
+//! derivative over all of it. From there to any error x̃ in the tube it changes by g·x̃, with derivatives g taken somewhere
+//! on the way. Positions and velocities of the motors, which the law's derivatives depend on, are enclosed in the same manner
+//! first.
+
+use flexure_core::scalar::{Interval, Jet, Scalar};
+
+use crate::prove::engine::envelope::closed_loop::{Answer, ClosedLoop, Place, Slope};
+use crate::prove::engine::envelope::tube::Tube;
+
+/// Quantities per joint that are bounded, in the order of a slab's ranges: those of all joints, one quantity after the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Link velocity q̇_l [rad/s].
+    Velocity,
+    /// Deflection of the spring q_m − q_l in rad.
+    Deflection,
+    /// Motor torque u_m [N m].
+    Torque,
+}
+
+/// All of them.
+pub const QUANTITIES: [Quantity; 3] = [Quantity::Velocity, Quantity::Deflection, Quantity::Torque];
+
+/// The tube over a slab of time.
+#[derive(Clone, Debug)]
+pub struct Slab {
+    /// Its times in s.
+    pub time: Interval,
+    /// The errors and the metric of W.
+    pub tube: Tube,
+    /// The quantities on the reference at the middle.
+    pub nominal: Vec<Interval>,
+    /// Their derivatives by the errors q̃_l, q̃_m, s_l, s_m.
+    pub gradients: Vec<Vec<Interval>>,
+    /// The quantities.
+    pub ranges: Vec<Interval>,
+}
+
+impl Slab {
+    /// The tube of level `level` in J over the times `time` in s.
+    pub fn new(system: &dyn ClosedLoop, level: f64, time: Interval) -> Self {
+        let jets = system.reference(time);
+        let tube = Tube::new(system, level, &jets.iter().map(|jet| jet[0]).collect::<Vec<_>>());
+        let middle = Interval::point(time.midpoint());
+        let way = Way {
+            n: system.joints(),
+            smooth: Smooth::over(system, time),
+            middle: system.reference(middle),
+            all: jets,
+            offset: time - middle,
+            errors: tube.errors(),
+            tube: &tube,
+        };
+        // The law wants motor positions and velocities where it tells what they should be: what it tells does not depend
+        // on them, so that any will do.
+        let nothing = vec![Slope::ZERO; way.n];
+        let q_m = way.along(&|seed| {
+            let answer = seed.answer(system, &nothing, &nothing);
+            sums(&answer.q_md, seed.part(1))
+        });
+        let v_m = way.along(&|seed| {
+            let answer = seed.answer(system, &q_m.at(seed), &nothing);
+            sums(&differences(&nothing, &answer.s_m), seed.part(3))
+        });
+        let all = way.along(&|seed| {
+            let (q_m, v_m) = (q_m.at(seed), v_m.at(seed));
+            let (q_l, v_l) = seed.links(system);
+            [v_l, differences(&q_m, &q_l), seed.answer(system, &q_m, &v_m).u_m].concat()
+        });
+        let nominal = all.middle.iter().map(|x| x.coefficient(0)).collect();
+        Self { time, nominal, gradients: all.gradients, ranges: all.ranges, tube }
+    }
+
+    /// Upper bound of the absolute value of quantity `k`.
+    pub fn bound(&self, k: usize) -> f64 {
+        self.ranges[k].magnitude()
+    }
+
+    /// About the largest absolute value that quantity `k` takes at the slab's middle, as far as its derivatives are known.
+    pub fn seen(&self, k: usize) -> f64 {
+        let near_zero = |g: &Interval| Interval::point(g.lo().max(0.0) + g.hi().min(0.0));
+        let gradient: Vec<_> = self.gradients[k].iter().map(near_zero).collect();
+        self.nominal[k].midpoint().abs() + self.tube.reach(&gradient).hi()
+    }
+}
+
+/// How smooth the reference is over a slab.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Smooth {
+    /// The torque may jump.
+    Not,
+    /// Its rate may.
+    Once,
+    /// Neither.
+    Twice,
+}
+
+impl Smooth {
+    fn over(system: &dyn ClosedLoop, time: Interval) -> Self {
+        let meets = |times: &[Interval]| times.iter().any(|at| at.intersection(time).is_some());
+        match (meets(system.breaks()), meets(system.kinks())) {
+            (true, _) => Self::Not,
+            (_, true) => Self::Once,
+            _ => Self::Twice,
+        }
+    }
+}
+
+/// Where numbers are looked at, and by what they are differentiated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum View {
+    /// On the reference at the middle of the slab, by time.
+    Middle,
+    /// On the reference over the slab, by time.
+    Track,
+    /// Over slab and tube, by this error.
+    Tube(usize),
+}
+
+/// Reference and errors in a view.
+struct Seeded {
+    q_ld: Vec<[Slope; 5]>,
+    errors: Vec<Slope>,
+    view: View,
+}
+
+impl Seeded {
+    /// q̃_l, q̃_m, s_l or s_m.
+    fn part(&self, which: usize) -> &[Slope] {
+        let n = self.q_ld.len();
+        &self.errors[which * n..(which + 1) * n]
+    }
+
+    /// q_l = q_ld + q̃_l and q̇_l = q̇_ld − φ_l(q̃_l) + s_l.
+    fn links(&self, system: &dyn ClosedLoop) -> (Vec<Slope>, Vec<Slope>) {
+        let order = |k: usize| self.q_ld.iter().map(|jet| jet[k]).collect::<Vec<_>>();
+        let v_lr = differences(&order(1), &system.approach(self.part(0)));
+        (sums(&order(0), self.part(0)), sums(&v_lr, self.part(2)))
+    }
+
+    fn answer(&self, system: &dyn ClosedLoop, q_m: &[Slope], v_m: &[Slope]) -> Answer {
+        let (q_l, v_l) = self.links(system);
+        system.command(&Place { q_l, q_m: q_m.to_vec(), v_l, v_m: v_m.to_vec() }, &self.q_ld)
+    }
+}
+
+/// From the reference to everywhere in the slab's tube.
+struct Way<'a> {
+    n: usize,
+    smooth: Smooth,
+    /// The reference at the middle.
+    middle: Vec<[Interval; 7]>,
+    /// The reference over the slab.
+    all: Vec<[Interval; 7]>,
+    /// t − t_c in s.
+    offset: Interval,
+    /// The box around the tube.
+    errors: Vec<Interval>,
+    tube: &'a Tube,
+}
+
+/// Numbers in all views.
+struct Spread {
+    middle: Vec<Slope>,
+    track: Vec<Slope>,
+    /// Over slab and tube.
+    ranges: Vec<Interval>,
+    /// Their derivatives by the errors.
+    gradients: Vec<Vec<Interval>>,
+}
+
+impl Way<'_> {
+    fn seeded(&self, view: View) -> Seeded {
+        let jets = if view == View::Middle { &self.middle } else { &self.all };
+        // Coefficient k at t + τ is Σ_j C(k + j, j) c_(k+j) τʲ.
+        let in_time = |jet: &[Interval; 7], k: usize| match view {
+            View::Tube(_) => Slope::value(jet[k]),
+            _ => Jet::new([
+                jet[k],
+                jet[k + 1] * Interval::point((k + 1) as f64),
+                jet[k + 2] * Interval::point(((k + 1) * (k + 2) / 2) as f64),
+            ]),
+        };
+        let error = |(i, &error): (usize, &Interval)| match view {
+            View::Tube(direction) if i == direction => Slope::variable(error),
+            View::Tube(_) => Slope::value(error),
+            _ => Slope::ZERO,
+        };
+        Seeded {
+            q_ld: jets.iter().map(|jet| std::array::from_fn(|k| in_time(jet, k))).collect(),
+            errors: self.errors.iter().enumerate().map(error).collect(),
+            view,
+        }
+    }
+
+    /// The numbers that `f` makes, over the tube and the slab.
+    fn along(&self, f: &dyn Fn(&Seeded) -> Vec<Slope>) -> Spread {
+        let middle = f(&self.seeded(View::Middle));
+        let track: Vec<_> = f(&self.seeded(View::Track));
+        let track: Vec<_> =
+            middle.iter().zip(track).map(|(middle, track)| self.expanded(middle, &track)).collect();
+        let passes: Vec<Vec<Slope>> = (0..4 * self.n).map(|i| f(&self.seeded(View::Tube(i)))).collect();
+        let gradients: Vec<Vec<_>> =
+            (0..track.len()).map(|k| passes.iter().map(|pass| pass[k].coefficient(1)).collect()).collect();
+        let range = |(k, gradient): (usize, &Vec<Interval>)| {
+            let mean = track[k].coefficient(0) + self.tube.reach(gradient);
+            // Both enclose it.
+            mean.intersection(passes[0][k].coefficient(0)).unwrap_or(mean)
+        };
+        let ranges = gradients.iter().enumerate().map(range).collect();
+        Spread { middle, track, ranges, gradients }
+    }
+
+    /// A number on the reference over the slab: what its evaluation there says, and what follows from the middle.
+    fn expanded(&self, middle: &Slope, track: &Slope) -> Slope {
+        let both = |a: Interval, b: Interval| a.intersection(b).unwrap_or(a);
+        let [value, slope, curvature] = [0, 1, 2].map(|k| track.coefficient(k));
+        let [at, rate] = [0, 1].map(|k| middle.coefficient(k));
+        match self.smooth {
+            Smooth::Not => *track,
+            Smooth::Once => Jet::new([both(at + slope * self.offset, value), slope, curvature]),
+            Smooth::Twice => {
+                let linear = rate + curvature * self.offset * Interval::point(2.0);
+                let slope = both(linear, slope);
+                let first = both(
+                    at + rate * self.offset + curvature * self.offset.square(),
+                    at + slope * self.offset,
+                );
+                Jet::new([both(first, value), slope, curvature])
+            }
+        }
+    }
+}
+
+impl Spread {
+    /// The numbers in the view of `seed`.
+    fn at(&self, seed: &Seeded) -> Vec<Slope> {
+        match seed.view {
+            View::Middle => self.middle.clone(),
+            View::Track => self.track.clone(),
+            View::Tube(i) => {
+                let slopes = self.gradients.iter().map(|gradient| gradient[i]);
+                self.ranges
+                    .iter()
+                    .zip(slopes)
+                    .map(|(&x, slope)| Jet::new([x, slope, Interval::ZERO]))
+                    .collect()
+            }
+        }
+    }
+}
+
+fn sums(a: &[Slope], b: &[Slope]) -> Vec<Slope> {
+    a.iter().zip(b).map(|(&a, &b)| a + b).collect()
+}
+
+fn differences(a: &[Slope], b: &[Slope]) -> Vec<Slope> {
+    a.iter().zip(b).map(|(&a, &b)| a - b).collect()
+}

@@ -1,0 +1,86 @@
+//! The error tube {W ≤ c} around a reference, at the link positions that it reaches.
+
+use flexure_core::scalar::{Interval, Scalar};
+
+use crate::prove::engine::envelope::closed_loop::ClosedLoop;
+use crate::prove::engine::matrix::Symmetric;
+
+/// Errors q̃_l, q̃_m, s_l, s_m with W ≤ c, W = ½ (q̃_lᵀ Π_l q̃_l + q̃_mᵀ Π_m q̃_m + s_lᵀ M_l s_l + s_mᵀ M_m s_m), and what the
+/// inverse of diag(Π_l, Π_m, M_l, M_m) is there.
+#[derive(Clone, Debug)]
+pub struct Tube {
+    /// 2 c in J.
+    twice_level: Interval,
+    /// Π_l⁻¹, Π_m⁻¹, M_m⁻¹.
+    inverses: [Vec<Interval>; 3],
+    /// M_l⁻¹ over the tube's link positions.
+    inverse_mass: Symmetric,
+}
+
+impl Tube {
+    /// The tube of level `level` in J around the link positions `q_ld` in rad.
+    pub fn new(system: &dyn ClosedLoop, level: f64, q_ld: &[Interval]) -> Self {
+        let twice_level = Interval::point(2.0) * Interval::point(level);
+        let inverses = system.metrics().map(|metric| metric.into_iter().map(Interval::recip).collect());
+        let [link, ..]: &[Vec<Interval>; 3] = &inverses;
+        let q_l: Vec<_> =
+            q_ld.iter().zip(link).map(|(&q, &inverse)| q + ball(twice_level * inverse)).collect();
+        let inverse_mass = system.inverse_mass(&q_l);
+        Self { twice_level, inverses, inverse_mass }
+    }
+
+    /// The box that the tube lies in: |x̃_i| ≤ √(2 c (P⁻¹)_ii) for q̃_l, q̃_m in rad and s_l, s_m [rad/s].
+    pub fn errors(&self) -> Vec<Interval> {
+        let n = self.inverse_mass.size();
+        let [link, motor, inertia] = &self.inverses;
+        let mass = (0..n).map(|i| self.inverse_mass.at(i, i));
+        let all = link.iter().chain(motor).copied().chain(mass).chain(inertia.iter().copied());
+        all.map(|inverse| ball(self.twice_level * inverse)).collect()
+    }
+
+    /// The values of g·x̃ over the tube, g the 4n derivatives `gradient` in the order of [`errors`](Self::errors): at
+    /// most √(2 c gᵀ P⁻¹ g), the norm dual to W's.
+    pub fn reach(&self, gradient: &[Interval]) -> Interval {
+        let sum = gradient.iter().zip(self.pull(gradient)).enumerate().fold(
+            Interval::ZERO,
+            |sum, (i, (&g, pull))| {
+                sum + if self.is_link_velocity(i) { g * pull } else { g.square() * self.diagonal(i) }
+            },
+        );
+        ball(self.twice_level * sum)
+    }
+
+    /// P⁻¹ g: the direction of the error at which g·x̃ is largest.
+    pub fn pull(&self, gradient: &[Interval]) -> Vec<Interval> {
+        let n = self.inverse_mass.size();
+        let row = |i: usize| {
+            (0..n).fold(Interval::ZERO, |sum, j| sum + self.inverse_mass.at(i, j) * gradient[2 * n + j])
+        };
+        let entry = |i: usize| {
+            if self.is_link_velocity(i) { row(i - 2 * n) } else { gradient[i] * self.diagonal(i) }
+        };
+        (0..4 * n).map(entry).collect()
+    }
+
+    fn is_link_velocity(&self, i: usize) -> bool {
+        let n = self.inverse_mass.size();
+        (2 * n..3 * n).contains(&i)
+    }
+
+    /// Entry i of the diagonal of P⁻¹.
+    fn diagonal(&self, i: usize) -> Interval {
+        let n = self.inverse_mass.size();
+        match i / n {
+            0 => self.inverses[0][i],
+            1 => self.inverses[1][i - n],
+            2 => self.inverse_mass.at(i - 2 * n, i - 2 * n),
+            _ => self.inverses[2][i - 3 * n],
+        }
+    }
+}
+
+/// The numbers x with x² ≤ `square`.
+fn ball(square: Interval) -> Interval {
+    let radius = square.sqrt().hi();
+    Interval::new(-radius, radius).unwrap_or(Interval::ENTIRE)
+}

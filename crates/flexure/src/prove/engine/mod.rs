@@ -1,0 +1,30 @@
+//! Proofs in floating point: contraction rates of the closed loop, with everything rounded outwards.
+//!
+//! Two engines. [`structural`] uses that the coupling between the blocks cancels ([`coupling`]) and needs finitely many small
+//! matrices; its proof is a [`certificate`] that others can check. The direct one knows nothing of that: it takes the whole
+//! inequality from the closed loop's Jacobian, by branch and bound.
+//!
+//! Trusted base: the interval type, the core, and this module; it knows of no files and no simulation.
+
+pub mod certificate;
+pub mod coupling;
+pub mod direct;
+pub mod envelope;
+pub mod matrix;
+pub mod momentum;
+pub mod number;
+pub mod position;
+pub mod rate;
+pub mod reach;
+pub mod region;
+pub mod structural;
+pub mod structure;
+pub mod verdict;
+pub mod witness;
+
+pub use certificate::Certificate;
+pub use number::Number;
+pub use region::Request;
+pub use structural::{Problem, certify};
+pub use verdict::{Undecided, Verdict};
+pub use witness::{RateWitness, State};

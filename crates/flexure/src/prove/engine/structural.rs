@@ -1,0 +1,213 @@
+//! The structural engine: the coupling cancels, so that the four blocks decide, and each of them needs finitely many
+//! matrices.
+
+use flexure_core::scalar::Interval;
+
+use crate::prove::engine::certificate::{
+    Block, BlockName, Case, Certificate, ClosedLoop, Controller, MassMatrix, Measure, Norm, Robot, Side,
+    VERSION, bounds,
+};
+use crate::prove::engine::coupling::{DISSIPATION, ROWS, coupling_cancels};
+use crate::prove::engine::momentum;
+use crate::prove::engine::number::Number;
+use crate::prove::engine::position::{Ends, Position};
+use crate::prove::engine::rate::{Claim, Inequality, largest};
+use crate::prove::engine::region::{Request, region, tube};
+use crate::prove::engine::structure::{self, SideOf};
+use crate::prove::engine::verdict::{Undecided, Verdict};
+use crate::prove::engine::witness::{RateWitness, State, against};
+
+/// By how much the bound of a measure stays above what was found, relative to it: others may round differently.
+const RESERVE: f64 = 1e-13;
+
+/// What is to be proved of a closed loop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Problem {
+    /// The scenario.
+    pub name: String,
+    /// What no source vouches for.
+    pub assumptions: Vec<String>,
+    /// The robot.
+    pub robot: Robot,
+    /// The law.
+    pub controller: Controller,
+    /// Where.
+    pub region: Request,
+    /// Largest disturbance torque of each motor [N m], if tubes are asked for.
+    pub disturbance: Option<Vec<Number>>,
+}
+
+/// Proves contraction and convergence rates of the closed loop, and what follows from them.
+pub fn certify(problem: &Problem) -> Verdict<Certificate, RateWitness> {
+    match attempt(problem) {
+        Ok(certificate) => Verdict::Proved(certificate),
+        Err(Failure::Witness(witness)) => Verdict::Refuted(*witness),
+        Err(Failure::Reason(at)) => Verdict::Undecided(Undecided { at, spent: 1 }),
+    }
+}
+
+/// Why there is no certificate.
+enum Failure {
+    Witness(Box<RateWitness>),
+    Reason(String),
+}
+
+impl From<String> for Failure {
+    fn from(reason: String) -> Self {
+        Self::Reason(reason)
+    }
+}
+
+/// The position blocks of links and motors over the errors of the region.
+pub fn positions(controller: &Controller, errors: &[Option<Number>]) -> [Position; 2] {
+    let errors: Vec<_> = errors.iter().map(|error| error.as_ref().map(Number::bounds)).collect();
+    let (links, motors) = errors.split_at(controller.link.joints());
+    [
+        Position::new(controller.phi, &controller.link, links),
+        Position::new(controller.phi, &controller.motor, motors),
+    ]
+}
+
+fn attempt(problem: &Problem) -> Result<Certificate, Failure> {
+    let Problem { robot, controller, .. } = problem;
+    if !coupling_cancels() {
+        return Err(Failure::Reason("the coupling does not cancel".to_owned()));
+    }
+    let metric: Vec<Interval> =
+        bounds(&controller.link.metric).into_iter().chain(bounds(&controller.motor.metric)).collect();
+    let region = region(&problem.region, &metric);
+    let sides = positions(controller, &region.error);
+    let [links, motors] = &sides;
+
+    let damping_l = momentum::damping(&robot.link_damping, &controller.link.damping);
+    let damping_m = momentum::damping(&robot.motor_damping, &controller.motor.damping);
+    let sigma_l = momentum_block(
+        BlockName::SigmaL,
+        &momentum::links(robot, &damping_l)?,
+        &momentum::cases(&robot.links),
+    )?;
+    let sigma_m =
+        momentum_block(BlockName::SigmaM, &[momentum::motors(robot, &damping_m)], &[String::new()])?;
+    let blocks = vec![
+        position_block(BlockName::PhiL, links)?,
+        position_block(BlockName::PhiM, motors)?,
+        sigma_l,
+        sigma_m,
+    ];
+
+    let smallest = |rate: fn(&Block) -> &Number, blocks: &[Block]| {
+        let first = |best: Number, block: &Block| {
+            if rate(block).bounds().lo() < best.bounds().lo() { rate(block).clone() } else { best }
+        };
+        blocks.iter().fold(rate(&blocks[0]).clone(), first)
+    };
+    let tube = match &problem.disturbance {
+        None => None,
+        Some(disturbance) => {
+            let others = smallest(|block| &block.convergence, &blocks[..3]);
+            let rates = (blocks[3].convergence.bounds(), others.bounds());
+            Some(tube(robot, disturbance, rates, &metric, &region)?)
+        }
+    };
+    let sided = |side, gains, position| SideOf { side, gains, position };
+    let structure = structure::claims(
+        controller.phi,
+        &[sided(Side::Link, &controller.link, links), sided(Side::Motor, &controller.motor, motors)],
+    )?;
+    Ok(Certificate {
+        format: "flexure-certificate".to_owned(),
+        version: VERSION,
+        name: problem.name.clone(),
+        made_by: format!("flexure {}", env!("CARGO_PKG_VERSION")),
+        assumptions: problem.assumptions.clone(),
+        robot: robot.clone(),
+        controller: controller.clone(),
+        region,
+        closed_loop: ClosedLoop {
+            rows: ROWS.map(|row| row.map(str::to_owned)),
+            dissipation: DISSIPATION.map(str::to_owned),
+        },
+        contraction_rate: smallest(|block| &block.contraction, &blocks),
+        convergence_rate: smallest(|block| &block.convergence, &blocks),
+        mass_matrix: mass_matrix(robot)?,
+        measures: measures(&[links, motors], &blocks),
+        structure,
+        blocks,
+        tube,
+    })
+}
+
+fn mass_matrix(robot: &Robot) -> Result<MassMatrix, Failure> {
+    let pivots = momentum::pivots(&robot.links);
+    if let Some(k) = pivots.iter().position(|&pivot| pivot <= 0.0) {
+        return Err(Failure::Reason(format!(
+            "body {} has no inertia of its own about its joint: the mass matrix may be singular somewhere",
+            k + 1
+        )));
+    }
+    Ok(MassMatrix { margins: pivots.iter().map(|&pivot| Number::decimal(0.5 * pivot)).collect() })
+}
+
+fn measures(sides: &[&Position; 2], blocks: &[Block]) -> Vec<Measure> {
+    let entries = [Side::Link, Side::Motor].into_iter().zip(sides).zip(blocks);
+    entries
+        .flat_map(|((side, position), block)| {
+            let up = |x: f64| Number::decimal(x + RESERVE * x.abs());
+            let negative = |rate: &Number| match rate {
+                Number::Decimal(text) | Number::Between([text, _]) => Number::Decimal(format!("-{text}")),
+            };
+            [
+                (Norm::One, up(position.measure(true))),
+                (Norm::Two, negative(&block.contraction)),
+                (Norm::Infinity, up(position.measure(false))),
+            ]
+            .map(|(norm, bound)| Measure { side, norm, bound })
+        })
+        .collect()
+}
+
+fn momentum_block(block: BlockName, inequalities: &[Inequality], cases: &[String]) -> Result<Block, Failure> {
+    let claim = largest(inequalities)
+        .ok_or_else(|| Failure::Reason(format!("no positive rate of {} could be shown", block.name())))?;
+    let margins = claim.margins.iter().map(|&margin| Number::decimal(0.5 * margin));
+    let cases = cases.iter().zip(margins).map(|(case, margin)| Case {
+        case: case.clone(),
+        contraction: margin.clone(),
+        convergence: margin,
+    });
+    Ok(Block { block, cases: cases.collect(), contraction: claim.rate.clone(), convergence: claim.rate })
+}
+
+fn position_block(block: BlockName, position: &Position) -> Result<Block, Failure> {
+    let cases = position.cases();
+    let claimed = |a: &dyn Fn(&Ends) -> Vec<Interval>| -> Result<Claim, Failure> {
+        let inequalities: Vec<Inequality> = cases.iter().map(|case| position.inequality(&a(case))).collect();
+        largest(&inequalities).ok_or_else(|| {
+            let refuted = cases.iter().zip(&inequalities).find_map(|(case, inequality)| {
+                let (direction, value) = against(inequality, 0.0)?;
+                // Slopes are 1 at no error and smallest at the largest.
+                let far: Vec<bool> = case.iter().map(|high| !high).collect();
+                // A slope that is only approached, where errors have no bound, has no state.
+                let state = State::Error(position.bounded(&far).then(|| position.error_at(&far))?);
+                Some(RateWitness { block, state, direction, rate: value })
+            });
+            match refuted {
+                Some(witness) => Failure::Witness(Box::new(witness)),
+                None => Failure::Reason(format!(
+                    "no positive rate of {} on the region: slopes of φ come arbitrarily close to 0 where errors are \
+                     large",
+                    block.name()
+                )),
+            }
+        })
+    };
+    let contraction = claimed(&|case| position.slopes(case))?;
+    let convergence = claimed(&|case| position.chords(case))?;
+    let margins = contraction.margins.iter().zip(&convergence.margins);
+    let cases = cases.iter().zip(margins).map(|(case, (&contraction, &convergence))| Case {
+        case: case.iter().map(|&high| if high { 'H' } else { 'L' }).collect(),
+        contraction: Number::decimal(0.5 * contraction),
+        convergence: Number::decimal(0.5 * convergence),
+    });
+    Ok(Block { block, cases: cases.collect(), contraction: contraction.rate, convergence: convergence.rate })
+}

@@ -1,0 +1,11 @@
+//! Proving: a scenario file as a question, the engines that answer it, and what an answer is compared with.
+
+pub mod along;
+mod complaint;
+pub mod confirmation;
+mod decimals;
+pub mod engine;
+pub mod paper;
+pub mod question;
+pub mod sampling;
+pub mod summary;

@@ -1,0 +1,306 @@
+//! A scenario file as a proof: its numbers enclosed, its region chosen, its rates certified.
+
+use std::time::Instant as Clock;
+
+use flexure_core::scalar::Interval;
+
+use crate::files::Problems;
+use crate::prove::along::{Along, along, start_level, uneven_metric};
+use crate::prove::confirmation::{Confirmation, confirm};
+use crate::prove::decimals::{gains, robot};
+use crate::prove::engine::certificate::{BlockName, Certificate, Controller, Phi};
+use crate::prove::engine::matrix::Symmetric;
+use crate::prove::engine::momentum;
+use crate::prove::engine::number::Number;
+use crate::prove::engine::rate::Inequality;
+use crate::prove::engine::region::{Request, level_that_holds, region};
+use crate::prove::engine::structural::{self, certify, positions};
+use crate::prove::engine::verdict::{Undecided, Verdict};
+use crate::prove::engine::witness::{RateWitness, State, against};
+use crate::prove::paper::paper_rate;
+use crate::prove::sampling::{Sampled, sample};
+use crate::scenario::{self, Scenario};
+use crate::{laws, robot};
+
+/// What to prove of a scenario.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Question {
+    /// Where.
+    pub region: Region,
+    /// The contraction rate to prove [1/s]; the largest if none is given.
+    pub rate: Option<f64>,
+    /// Largest unknown torque on each motor [N m].
+    pub disturbance: Option<Vec<f64>>,
+    /// Whether the direct engine shall prove the rate once more, and how hard it may try.
+    pub direct: Option<Direct>,
+}
+
+/// How hard the direct engine may try.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Direct {
+    /// Largest speed of the links in its region [rad/s].
+    pub speed: f64,
+    /// Boxes that it may look at.
+    pub budget: usize,
+}
+
+/// Smallest error that a region can be made of \[rad\]: with smaller ones the slopes of tanh are 1 to rounding.
+pub const SMALLEST_ERROR: f64 = 1e-6;
+
+/// Where a claim shall hold.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Region {
+    /// Everywhere if φ allows it; else errors of up to 1 rad, as an assumption.
+    #[default]
+    Chosen,
+    /// |q̃_i| up to these, links then motors, in rad.
+    Errors(Vec<f64>),
+    /// The smallest level of W that holds these position errors, links then motors, in rad, with no momentum errors.
+    Start(Vec<f64>),
+}
+
+/// Slabs of time that bounds along the reference of `joints` joints may look at: one costs the more the more joints there
+/// are, 40 ms for seven.
+fn slabs(joints: usize) -> usize {
+    8000 / joints.pow(3)
+}
+
+/// Largest error where none is named and φ has no rate everywhere \[rad\].
+const ASSUMED_ERROR: f64 = 1.0;
+
+/// What came of it.
+#[derive(Clone, Debug)]
+pub struct Proof {
+    /// The verdict.
+    pub verdict: Verdict<Certificate, RateWitness>,
+    /// The rate by the paper's formula [1/s].
+    pub paper_rate: f64,
+    /// The links' momentum block sampled over all configurations.
+    pub sampled: Sampled,
+    /// What the direct engine says, if it was asked.
+    pub confirmation: Option<Confirmation>,
+    /// An upper bound of W at the scenario's start, in J; none where W is not defined or jumps.
+    pub start: Option<f64>,
+    /// Bounds along the reference inside the tube, if a disturbance was named.
+    pub along: Option<Along>,
+    /// Options that were not given, and numbers that no source vouches for.
+    pub assumptions: Vec<String>,
+    /// Time that it took in s.
+    pub wall_seconds: f64,
+}
+
+/// The closed loop of `scenario` as the prover takes it; `start` is W where the run begins, from above, if it is known.
+///
+/// # Errors
+/// Where no certificate can speak of it: with the place and the reason.
+pub fn problem(
+    scenario: &Scenario,
+    question: &Question,
+    start: Option<f64>,
+) -> Result<structural::Problem, Problems> {
+    let laws::VcbcGains { phi, link, motor } = scenario.vcbc()?;
+    if let Some(problem) = uneven_metric(scenario) {
+        return Err(problem.into());
+    }
+    let phi = match phi {
+        laws::Phi::Tanh => Phi::Tanh,
+        laws::Phi::Linear => Phi::Linear,
+        laws::Phi::CoupledTanh => Phi::CoupledTanh,
+    };
+    let controller = Controller { phi, link: gains(scenario, link), motor: gains(scenario, motor) };
+    let mut assumptions: Vec<String> = scenario
+        .assumptions
+        .iter()
+        .map(|assumed| format!("{}: {} = {}: {}", assumed.file, assumed.key, assumed.value, assumed.note))
+        .chain(beyond_the_model(scenario))
+        .collect();
+    let errors = |errors: &[f64]| errors.iter().map(|&e| Number::decimal(e)).collect::<Vec<_>>();
+    let metric: Vec<_> =
+        controller.link.metric.iter().chain(&controller.motor.metric).map(Number::bounds).collect();
+    let region = match &question.region {
+        Region::Errors(largest) => Request::Box(errors(largest)),
+        Region::Start(start) => Request::Level(level_that_holds(&errors(start), &metric)),
+        Region::Chosen if phi == Phi::Tanh => {
+            let (request, note) = chosen(&metric, start);
+            assumptions.push(format!("no region was named and tanh has no rate everywhere: {note} is taken"));
+            request
+        }
+        Region::Chosen => Request::Everywhere,
+    };
+    let disturbance =
+        question.disturbance.as_ref().map(|torques| torques.iter().map(|&d| Number::decimal(d)).collect());
+    Ok(structural::Problem {
+        name: scenario.name.clone(),
+        assumptions,
+        robot: robot(&scenario.robot),
+        controller,
+        region,
+        disturbance,
+    })
+}
+
+/// What the scenario has and a certificate does not speak of.
+fn beyond_the_model(scenario: &Scenario) -> Vec<String> {
+    let mut notes = Vec::new();
+    if scenario.hold == scenario::Hold::ZeroOrder {
+        let period = scenario.control_period;
+        notes.push(format!("continuous time: the torque of this scenario is held for {period} s"));
+    }
+    for option in scenario.plant.options() {
+        notes.push(format!("the model of the law: plant.{option} of this scenario is left out"));
+    }
+    for imperfection in &scenario.imperfections {
+        notes.push(format!("the ideal loop: {} of this scenario is left out", imperfection.kind()));
+    }
+    if scenario.estimator.is_some() {
+        notes.push("true states: the estimator of this scenario is left out".to_owned());
+    }
+    if scenario.guard.is_some() {
+        notes.push(
+            "the torque of the law: while the guard of this scenario limits or stops, nothing is said"
+                .to_owned(),
+        );
+    }
+    let robot = &scenario.robot;
+    for (i, joint) in robot.joints.iter().enumerate() {
+        if joint.kind == robot::JointKind::Prismatic {
+            let (lower, upper) = (robot.limits.lower[i], robot.limits.upper[i]);
+            notes
+                .push(format!("{} slides between {lower} and {upper} m: nothing is said beyond", joint.name));
+        }
+    }
+    notes
+}
+
+/// Whether a sliding joint starts outside its travel.
+fn outside_travel(scenario: &Scenario) -> bool {
+    let robot = &scenario.robot;
+    robot.joints.iter().enumerate().any(|(i, joint)| {
+        let q = scenario.initial.q_l[i];
+        joint.kind == robot::JointKind::Prismatic
+            && !(robot.limits.lower[i]..=robot.limits.upper[i]).contains(&q)
+    })
+}
+
+/// The smallest level of W that holds the start, or errors of up to [`ASSUMED_ERROR`] if that is more.
+fn chosen(metric: &[Interval], start: Option<f64>) -> (Request, String) {
+    let errors = vec![Number::decimal(ASSUMED_ERROR); metric.len()];
+    let inside = region(&Request::Box(errors.clone()), metric).level.map_or(0.0, |level| level.bounds().lo());
+    match start.filter(|&start| start > inside) {
+        Some(start) => (Request::Level(start), "the level of W at the scenario's start".to_owned()),
+        None => (Request::Box(errors), format!("|q̃_i| up to {ASSUMED_ERROR} rad")),
+    }
+}
+
+/// Proves what `question` asks of `scenario`.
+///
+/// # Errors
+/// Where no certificate can speak of it: with the place and the reason.
+pub fn prove(scenario: &Scenario, question: &Question) -> Result<Proof, Problems> {
+    let started = Clock::now();
+    let start = start_level(scenario).ok().filter(|_| !outside_travel(scenario));
+    let problem = problem(scenario, question, start)?;
+    let gains = scenario.vcbc()?;
+    let damping: Vec<f64> =
+        scenario.robot.link_damping.iter().zip(&gains.link.damping).map(|(a, b)| a + b).collect();
+    let sampled = sample(&scenario.robot, &damping)?;
+    let verdict = match (certify(&problem), question.rate) {
+        (Verdict::Proved(certificate), Some(rate)) => at_rate(rate, certificate, &sampled, &damping),
+        (verdict, _) => verdict,
+    };
+    let confirmation = match (verdict.proved(), question.direct) {
+        (Some(certificate), Some(Direct { speed, budget })) => {
+            Some(confirm(scenario, certificate, speed, budget)?)
+        }
+        _ => None,
+    };
+    let along = match verdict.proved().and_then(|certificate| level_of_the_run(certificate, start)) {
+        Some(level) => Some(along(scenario, &level, slabs(scenario.robot.joint_count()))?),
+        None => None,
+    };
+    Ok(Proof {
+        confirmation,
+        start,
+        along,
+        paper_rate: paper_rate(&scenario.robot, gains, &problem, sampled.largest_inertia),
+        verdict,
+        sampled,
+        assumptions: problem.assumptions,
+        wall_seconds: started.elapsed().as_secs_f64(),
+    })
+}
+
+/// The level of W that a run from `start` never leaves under the certificate's disturbance: that of the tube, or of the start
+/// where that is more. None without a disturbance, and for a start that is not known to lie in the region.
+fn level_of_the_run(certificate: &Certificate, start: Option<f64>) -> Option<Number> {
+    let tube = certificate.tube.as_ref()?.level.clone();
+    let start = start.filter(|&start| inside(certificate, start))?;
+    // Its decimal may lie a step below.
+    Some(if start <= tube.bounds().lo() { tube } else { Number::decimal(start.next_up()) })
+}
+
+/// Whether {W ≤ `level`} lies in the certificate's invariant set.
+pub(crate) fn inside(certificate: &Certificate, level: f64) -> bool {
+    certificate.region.level.as_ref().is_none_or(|c| level <= c.bounds().lo())
+}
+
+/// The verdict on a contraction rate of `rate`, from the largest one that was proved.
+fn at_rate(
+    rate: f64,
+    certificate: Certificate,
+    sampled: &Sampled,
+    damping: &[f64],
+) -> Verdict<Certificate, RateWitness> {
+    if rate <= certificate.contraction_rate.bounds().lo() {
+        return Verdict::Proved(certificate);
+    }
+    match slower(rate, &certificate, sampled, damping) {
+        Some(witness) => Verdict::Refuted(witness),
+        None => Verdict::Undecided(Undecided {
+            at: format!(
+                "{rate} 1/s is above the proved rate, {} 1/s, and no sample is slower",
+                certificate.contraction_rate.approximate()
+            ),
+            spent: 1,
+        }),
+    }
+}
+
+/// A state at which some block contracts more slowly than `rate`.
+fn slower(rate: f64, certificate: &Certificate, sampled: &Sampled, damping: &[f64]) -> Option<RateWitness> {
+    let sides = positions(&certificate.controller, &certificate.region.error);
+    let position = [BlockName::PhiL, BlockName::PhiM].into_iter().zip(&sides).find_map(|(block, side)| {
+        side.cases().iter().find_map(|case| {
+            let (direction, rate) = against(&side.inequality(&side.slopes(case)), rate)?;
+            let far: Vec<bool> = case.iter().map(|high| !high).collect();
+            let error = if far.is_empty() { vec![0.0; side.joints()] } else { side.error_at(&far) };
+            Some(RateWitness { block, state: State::Error(error), direction, rate })
+        })
+    });
+    let links = || {
+        let damping: Vec<_> = damping.iter().map(|&d| Interval::point(d)).collect();
+        let weight = Symmetric::from_fn(damping.len(), |i, j| Interval::point(sampled.mass_matrix[i][j]));
+        let (direction, rate) = against(&Inequality { form: Symmetric::diagonal(&damping), weight }, rate)?;
+        let state = State::Configuration(sampled.configuration.clone());
+        Some(RateWitness { block: BlockName::SigmaL, state, direction, rate })
+    };
+    let motors = || {
+        let robot = &certificate.robot;
+        let damping = momentum::damping(&robot.motor_damping, &certificate.controller.motor.damping);
+        let (direction, rate) = against(&momentum::motors(robot, &damping), rate)?;
+        Some(RateWitness { block: BlockName::SigmaM, state: State::Any, direction, rate })
+    };
+    position.or_else(links).or_else(motors)
+}
+
+/// The contraction rate that is proved of `scenario` without further options [1/s]; none if none is.
+///
+/// # Errors
+/// If its level set cannot be found.
+pub fn certified_rate(scenario: &Scenario) -> Result<Option<f64>, Problems> {
+    if scenario.vcbc().is_err() || uneven_metric(scenario).is_some() {
+        return Ok(None);
+    }
+    let problem = problem(scenario, &Question::default(), start_level(scenario).ok())?;
+    Ok(certify(&problem).proved().map(|certificate| certificate.contraction_rate.approximate()))
+}

@@ -1,0 +1,271 @@
+//! A proof at a glance: the contract of `certify --json`.
+
+use serde::Serialize;
+
+use crate::prove::along::Along;
+use crate::prove::confirmation::Confirmation;
+use crate::prove::engine::certificate::{
+    Block, BlockName, Certificate, Norm, Side, Structure, StructureName,
+};
+use crate::prove::engine::number::Number;
+use crate::prove::engine::verdict::Verdict;
+use crate::prove::engine::witness::State;
+use crate::prove::question::{Proof, inside};
+use crate::prove::sampling::Sampled;
+use crate::scenario::Scenario;
+
+/// What was proved, as numbers.
+#[derive(Clone, Debug, Serialize)]
+pub struct ProofSummary {
+    /// The scenario.
+    pub name: String,
+    /// `proved`, `refuted` or `undecided`: on everything that was asked. Rates stand where they were proved.
+    pub verdict: &'static str,
+    /// Proved contraction rate [1/s].
+    pub contraction_rate: Option<f64>,
+    /// Proved convergence rate [1/s].
+    pub convergence_rate: Option<f64>,
+    /// The rate by the paper's formula [1/s].
+    pub paper_rate: f64,
+    /// Contraction rate of each block [1/s].
+    pub blocks: Option<BlockRates>,
+    /// Convergence rate of each block [1/s].
+    pub convergence_blocks: Option<BlockRates>,
+    /// Where it holds.
+    pub region: Option<RegionSummary>,
+    /// Upper bounds of the matrix measures of −Θ ∂φ Θ⁻¹ [1/s].
+    pub measures: Vec<MeasureSummary>,
+    /// Which structures are kept.
+    pub structure: Vec<StructureSummary>,
+    /// True where the mass matrix was proved to be positive definite at every configuration.
+    pub mass_matrix_positive_definite: Option<bool>,
+    /// The links' momentum block, sampled over all configurations.
+    pub sampled: Sampled,
+    /// Proved rate of the links' momentum block over the sampled one.
+    pub tightness: Option<f64>,
+    /// Where the scenario starts; none where W is not defined or jumps.
+    pub start: Option<StartSummary>,
+    /// Bounds along the reference inside the tube; none without a disturbance.
+    pub along: Option<Along>,
+    /// What the direct engine says of the contraction rate; none if it was not asked.
+    pub direct: Option<DirectSummary>,
+    /// Error tube under a disturbance.
+    pub tube: Option<TubeSummary>,
+    /// Where a claim fails.
+    pub witness: Option<WitnessSummary>,
+    /// Why nothing was decided.
+    pub undecided: Option<UndecidedSummary>,
+    /// What was assumed.
+    pub assumptions: Vec<String>,
+    /// Time in s.
+    pub wall_seconds: f64,
+}
+
+/// A rate of each block [1/s].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct BlockRates {
+    /// Link positions.
+    pub phi_l: f64,
+    /// Motor positions.
+    pub phi_m: f64,
+    /// Link momenta.
+    pub sigma_l: f64,
+    /// Motor momenta.
+    pub sigma_m: f64,
+}
+
+/// Where a proof holds.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RegionSummary {
+    /// Largest |q̃_i| in rad, links then motors; none for every error.
+    pub error: Option<Vec<f64>>,
+    /// The level of W inside, in J.
+    pub level: Option<f64>,
+    /// What |q̃_i| ≤ for W up to that level, in rad.
+    pub error_at_level: Option<Vec<f64>>,
+}
+
+/// A matrix measure.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct MeasureSummary {
+    /// Links or motors.
+    pub side: Side,
+    /// The norm.
+    pub norm: Norm,
+    /// Its bound [1/s].
+    pub bound: f64,
+}
+
+/// A structural claim.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct StructureSummary {
+    /// Which.
+    pub name: StructureName,
+    /// Whether it is kept.
+    pub holds: bool,
+}
+
+/// W at the scenario's start.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct StartSummary {
+    /// An upper bound in J.
+    pub level: f64,
+    /// Whether the start lies in the invariant set.
+    pub inside: bool,
+}
+
+/// What the direct engine says.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DirectSummary {
+    /// `proved`, `refuted` or `undecided`.
+    pub verdict: &'static str,
+    /// The rate that it proved [1/s].
+    pub rate: Option<f64>,
+    /// Boxes looked at; none if it found a state that speaks against it.
+    pub boxes: Option<usize>,
+    /// Where it got stuck.
+    pub at: Option<String>,
+}
+
+/// An error tube.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TubeSummary {
+    /// Largest disturbance torques of the motors [N m].
+    pub disturbance: Vec<f64>,
+    /// Level of W in J.
+    pub level: f64,
+    /// Bounds of |q̃_i| in rad, links then motors.
+    pub error: Vec<f64>,
+}
+
+/// Where a claim fails.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WitnessSummary {
+    /// The block.
+    pub block: BlockName,
+    /// Position errors of the block's side in rad.
+    pub error: Option<Vec<f64>>,
+    /// Joint positions in rad.
+    pub configuration: Option<Vec<f64>>,
+    /// Direction of the variation.
+    pub direction: Vec<f64>,
+    /// The rate there [1/s].
+    pub rate: f64,
+}
+
+/// Why nothing was decided.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct UndecidedSummary {
+    /// The place, or the reason.
+    pub at: String,
+    /// Boxes looked at.
+    pub spent: usize,
+}
+
+fn floats(numbers: &[Number]) -> Vec<f64> {
+    numbers.iter().map(Number::approximate).collect()
+}
+
+impl BlockRates {
+    fn of(blocks: &[Block], rate: impl Fn(&Block) -> &Number) -> Self {
+        let of = |name| {
+            blocks
+                .iter()
+                .find(|block| block.block == name)
+                .map_or(f64::NAN, |block| rate(block).approximate())
+        };
+        Self {
+            phi_l: of(BlockName::PhiL),
+            phi_m: of(BlockName::PhiM),
+            sigma_l: of(BlockName::SigmaL),
+            sigma_m: of(BlockName::SigmaM),
+        }
+    }
+}
+
+impl ProofSummary {
+    /// Of a proof of `scenario`.
+    pub fn new(scenario: &Scenario, proof: &Proof) -> Self {
+        let certificate = proof.verdict.proved();
+        let sigma_l = |c: &Certificate| BlockRates::of(&c.blocks, |block| &block.contraction).sigma_l;
+        let (witness, undecided) = match &proof.verdict {
+            Verdict::Proved(_) => (None, None),
+            Verdict::Refuted(witness) => {
+                let (error, configuration) = match &witness.state {
+                    State::Error(error) => (Some(error.clone()), None),
+                    State::Configuration(q) => (None, Some(q.clone())),
+                    State::Any => (None, None),
+                };
+                let (direction, rate) = (witness.direction.clone(), witness.rate);
+                (Some(WitnessSummary { block: witness.block, error, configuration, direction, rate }), None)
+            }
+            Verdict::Undecided(reason) => {
+                (None, Some(UndecidedSummary { at: reason.at.clone(), spent: reason.spent }))
+            }
+        };
+        Self {
+            name: scenario.name.clone(),
+            verdict: proof.word(scenario),
+            contraction_rate: certificate.map(|c| c.contraction_rate.approximate()),
+            convergence_rate: certificate.map(|c| c.convergence_rate.approximate()),
+            paper_rate: proof.paper_rate,
+            blocks: certificate.map(|c| BlockRates::of(&c.blocks, |block| &block.contraction)),
+            convergence_blocks: certificate.map(|c| BlockRates::of(&c.blocks, |block| &block.convergence)),
+            region: certificate.map(region),
+            measures: certificate.map_or_else(Vec::new, measures),
+            structure: certificate.map_or_else(Vec::new, |c| {
+                c.structure
+                    .iter()
+                    .map(|&Structure { name, holds, .. }| StructureSummary { name, holds })
+                    .collect()
+            }),
+            mass_matrix_positive_definite: certificate.map(|_| true),
+            sampled: proof.sampled.clone(),
+            tightness: certificate.map(|c| sigma_l(c) / proof.sampled.rate),
+            start: proof
+                .start
+                .zip(certificate)
+                .map(|(level, certificate)| StartSummary { level, inside: inside(certificate, level) }),
+            along: proof.along.clone(),
+            direct: proof.confirmation.as_ref().map(direct),
+            tube: certificate.and_then(|c| c.tube.as_ref()).map(|tube| TubeSummary {
+                disturbance: floats(&tube.disturbance),
+                level: tube.level.approximate(),
+                error: floats(&tube.error),
+            }),
+            witness,
+            undecided,
+            assumptions: proof.assumptions.clone(),
+            wall_seconds: proof.wall_seconds,
+        }
+    }
+}
+
+fn direct(confirmation: &Confirmation) -> DirectSummary {
+    let verdict = confirmation.word();
+    let (rate, boxes, at) = match confirmation {
+        Verdict::Proved(proved) => (Some(proved.rate), Some(proved.boxes), None),
+        Verdict::Refuted(witness) => (None, None, Some(witness.at.to_string())),
+        Verdict::Undecided(undecided) => (None, Some(undecided.spent), Some(undecided.at.clone())),
+    };
+    DirectSummary { verdict, rate, boxes, at }
+}
+
+fn region(certificate: &Certificate) -> RegionSummary {
+    let error: Option<Vec<f64>> =
+        certificate.region.error.iter().map(|e| e.as_ref().map(Number::approximate)).collect();
+    let level = certificate.region.level.as_ref().map(Number::approximate);
+    let metric = certificate.controller.link.metric.iter().chain(&certificate.controller.motor.metric);
+    let error_at_level =
+        level.map(|c| metric.map(|metric| (2.0 * c / metric.approximate()).sqrt()).collect());
+    RegionSummary { error, level, error_at_level }
+}
+
+fn measures(certificate: &Certificate) -> Vec<MeasureSummary> {
+    let summary = |m: &crate::prove::engine::certificate::Measure| MeasureSummary {
+        side: m.side,
+        norm: m.norm,
+        bound: m.bound.approximate(),
+    };
+    certificate.measures.iter().map(summary).collect()
+}

@@ -1,0 +1,89 @@
+//! Comparisons and certificates as files.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::compare::{Leaderboard, Task};
+use crate::files::{WriteError, create_folder, write_atomic};
+use crate::prove::engine::Certificate;
+use crate::report::{assumptions, chatter_figure, effort_figure, leaderboard_page, png};
+
+/// Writes a comparison into `folder`, which is created if missing: `compare.html`, its figures and `compare.csv`; returns
+/// the paths.
+///
+/// # Errors
+/// If a file cannot be written; none is ever half written.
+pub fn write_leaderboard(
+    folder: &Path,
+    board: &Leaderboard,
+    tasks: &[Task],
+) -> Result<Vec<PathBuf>, WriteError> {
+    create_folder(folder)?;
+    let mut paths = vec![folder.join("compare.html"), folder.join("compare.csv")];
+    let page = leaderboard_page(board, &assumptions(tasks.iter().map(|task| &task.scenario)));
+    write_atomic(&paths[0], |out| out.write_all(page.as_bytes()))?;
+    write_scores(&paths[1], board)?;
+    for (name, figure) in [("effort", effort_figure(board)), ("chatter", chatter_figure(board))] {
+        let path = |ending: &str| folder.join(format!("compare-{name}.{ending}"));
+        let (svg, picture) = (path("svg"), path("png"));
+        write_atomic(&svg, |out| out.write_all(figure.as_bytes()))?;
+        write_atomic(&picture, |out| out.write_all(&png(&figure).map_err(io::Error::other)?))?;
+        paths.extend([svg, picture]);
+    }
+    Ok(paths)
+}
+
+/// Writes the scores as CSV: a row a task and law; errors in rad, torques in N m, nothing for numbers that there are not.
+fn write_scores(path: &Path, board: &Leaderboard) -> Result<(), WriteError> {
+    const HEADER: [&str; 11] = [
+        "task",
+        "law",
+        "rank",
+        "penalised_error",
+        "rms_error",
+        "max_error",
+        "rms_torque",
+        "needed_torque",
+        "chatter",
+        "saturated_fraction",
+        "diverged_at",
+    ];
+    write_atomic(path, |out| {
+        let mut csv = csv::Writer::from_writer(out);
+        csv.write_record(HEADER)?;
+        for (task, score) in
+            board.tasks.iter().flat_map(|task| task.scores.iter().map(move |score| (task, score)))
+        {
+            let numbers = [
+                score.rank,
+                score.penalised_error,
+                score.rms_error,
+                score.max_error,
+                score.rms_torque,
+                task.needed_torque,
+                score.chatter,
+                score.saturated_fraction,
+                score.diverged_at.unwrap_or(f64::NAN),
+            ];
+            let text = |x: f64| if x.is_nan() { String::new() } else { x.to_string() };
+            csv.write_record(
+                [task.scenario.clone(), score.law.clone()].into_iter().chain(numbers.map(text)),
+            )?;
+        }
+        csv.flush()
+    })
+}
+
+/// Writes a certificate as JSON, its folder created if missing.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn write_certificate(path: &Path, certificate: &Certificate) -> Result<(), WriteError> {
+    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        create_folder(folder)?;
+    }
+    write_atomic(path, |out| {
+        serde_json::to_writer_pretty(&mut *out, certificate).map_err(io::Error::from)?;
+        writeln!(out)
+    })
+}

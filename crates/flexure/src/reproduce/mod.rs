@@ -1,0 +1,195 @@
+//! A scenario with everything that comes out of it, and the experiments of the paper.
+
+mod outputs;
+
+use rayon::prelude::*;
+
+use crate::files::Problems;
+use crate::files::number::engineering;
+use crate::prove::question::{Direct, Proof, Question, Region, certified_rate, prove};
+use crate::prove::summary::ProofSummary;
+use crate::report::{
+    CertificateReport, FigureOptions, Report, RunReport, assumptions, comparison, four_panel,
+};
+use crate::scenario::{Hold, Scenario, load_scenario};
+use crate::simulate::{Run, Summary, run};
+
+pub use outputs::{write_certificates, write_experiment, write_report};
+
+/// The experiments of the paper: each shaping function from rest off the reference, and from a smooth start.
+pub const REPRODUCED: [&str; 6] = [
+    "two-link-tanh",
+    "two-link-linear",
+    "two-link-coupled-tanh",
+    "two-link-tanh-smooth",
+    "two-link-linear-smooth",
+    "two-link-coupled-tanh-smooth",
+];
+
+/// A scenario that was run.
+#[derive(Clone, Debug)]
+pub struct Experiment {
+    /// What was run.
+    pub scenario: Scenario,
+    /// What came of it.
+    pub run: Run,
+    /// The four-panel figure, as SVG.
+    pub figure: String,
+}
+
+impl Experiment {
+    /// Runs `scenario`; `progress` is told the fraction done.
+    ///
+    /// # Errors
+    /// If the robot has too many joints or the reference is no path.
+    pub fn new(scenario: Scenario, progress: &(dyn Fn(f64) + Sync)) -> Result<Self, Problems> {
+        let mut run = run(&scenario, progress)?;
+        run.summary.rate_certified = certified_rate(&scenario)?;
+        let ended = run.divergence.map(|divergence| format!("; diverged at t = {:.3} s", divergence.time));
+        let subtitle = describe(&scenario) + &ended.unwrap_or_default();
+        let options = FigureOptions { title: scenario.name.clone(), subtitle };
+        let figure = four_panel(&run.trace, &options);
+        Ok(Self { scenario, run, figure })
+    }
+}
+
+/// The experiments whose rates are proved in the report: one for each shaping function.
+pub const CERTIFIED: [&str; 3] = ["two-link-tanh", "two-link-linear", "two-link-coupled-tanh"];
+
+/// What is asked of them: position errors of up to 3 rad, as far as the arm turns, and both engines.
+fn question(scenario: &Scenario) -> Question {
+    let errors = vec![3.0; 2 * scenario.robot.joint_count()];
+    Question {
+        region: Region::Errors(errors),
+        direct: Some(Direct { speed: 5.0, budget: 1000 }),
+        ..Question::default()
+    }
+}
+
+/// A proof, and what it is about.
+#[derive(Clone, Debug)]
+pub struct Certified {
+    /// The scenario.
+    pub scenario: Scenario,
+    /// What was proved of it.
+    pub proof: Proof,
+}
+
+/// Proves the rates of the paper's experiments.
+///
+/// # Errors
+/// Only if a built-in file is broken.
+pub fn certificates() -> Result<Vec<Certified>, Problems> {
+    CERTIFIED
+        .par_iter()
+        .map(|name| {
+            let scenario = load_scenario(name)?;
+            let proof = prove(&scenario, &question(&scenario))?;
+            Ok(Certified { scenario, proof })
+        })
+        .collect()
+}
+
+/// One line about a scenario.
+fn describe(scenario: &Scenario) -> String {
+    let start = match scenario.smooth_start {
+        Some(start) => format!("smooth start over {} s", start.duration),
+        None => "no smooth start".to_owned(),
+    };
+    let hold = match scenario.hold {
+        Hold::ZeroOrder => format!("torque held for {} ms", 1e3 * scenario.control_period),
+        Hold::Continuous => "continuous control".to_owned(),
+    };
+    let conditions = scenario.conditions();
+    let unknown =
+        if conditions.is_empty() { String::new() } else { format!("; with {}", conditions.join(", ")) };
+    let law = law_name(scenario.controller.kind(), scenario.controller.phi());
+    format!("{} under {law}; {start}; {hold}{}", scenario.robot.name, unknown.replace('_', " "))
+}
+
+/// A law in words.
+fn law_name(kind: &str, phi: Option<&str>) -> String {
+    phi.map_or_else(|| kind.to_owned(), |phi| format!("v-CBC with φ = {phi}"))
+}
+
+/// What the plant has that the law does not know, from the keys of `[plant]`.
+fn unknown(options: &[&str]) -> Option<String> {
+    (!options.is_empty()).then(|| format!("unknown to the law: {}", options.join(", ").replace('_', " ")))
+}
+
+/// Runs the experiments of the paper, on all cores. `progress` is told the number of the experiment and the fraction of
+/// it that is done.
+///
+/// # Errors
+/// Only if a built-in file is broken.
+pub fn reproduce(progress: &(dyn Fn(usize, f64) + Sync)) -> Result<Vec<Experiment>, Problems> {
+    REPRODUCED
+        .par_iter()
+        .enumerate()
+        .map(|(i, name)| Experiment::new(load_scenario(name)?, &|fraction| progress(i, fraction)))
+        .collect()
+}
+
+/// The report of some experiments.
+pub fn report(experiments: &[Experiment], certificates: &[Certified]) -> Report {
+    let traces: Vec<_> = experiments.iter().map(|e| (e.scenario.name.as_str(), &e.run.trace)).collect();
+    Report {
+        title: "Virtual-contraction control of a flexible-joint robot".to_owned(),
+        introduction: INTRODUCTION.to_owned(),
+        runs: experiments.iter().map(run_report).collect(),
+        comparison_svg: Some(comparison(&traces)),
+        certificates: certificates.iter().map(certificate_report).collect(),
+        assumptions: assumptions(experiments.iter().map(|experiment| &experiment.scenario)),
+        provenance: vec![
+            format!("flexure {}", env!("CARGO_PKG_VERSION")),
+            "No random numbers: the same build writes the same page, byte for byte, on any number of threads."
+                .to_owned(),
+        ],
+    }
+}
+
+const INTRODUCTION: &str = "The experiments of Reyes-Báez, van der Schaft, Jayawardhana and Pan, “A family of virtual \
+    contraction based controllers for tracking of flexible-joints port-Hamiltonian robots: theory and experiments”, \
+    in simulation: a planar two-link arm with elastic joints follows sin t on both joints under the three shaping \
+    functions of the paper. Each runs twice: from rest at zero, where the reference already moves at 1 rad/s, and \
+    with a reference that joins the sine smoothly from rest.";
+
+fn certificate_report(certified: &Certified) -> CertificateReport {
+    let Certified { scenario, proof } = certified;
+    CertificateReport {
+        summary: ProofSummary::new(scenario, proof),
+        phi: scenario.controller.phi().unwrap_or_default().to_owned(),
+        file: certificate_name(&scenario.name),
+    }
+}
+
+/// Name of the certificate file of a scenario.
+pub fn certificate_name(scenario: &str) -> String {
+    format!("{scenario}.certificate.json")
+}
+
+fn run_report(experiment: &Experiment) -> RunReport {
+    RunReport {
+        summary: experiment.run.summary.clone(),
+        figure_svg: experiment.figure.clone(),
+        description: outcome(&experiment.run.summary),
+    }
+}
+
+/// What a run came to, in a sentence.
+fn outcome(summary: &Summary) -> String {
+    let settled = match summary.settling_time {
+        Some(0.0) => "every link stays within 1 mrad of the reference".to_owned(),
+        Some(time) => {
+            format!("every link stays within 1 mrad of the reference after {} s", engineering(time))
+        }
+        None => "the links do not settle within 1 mrad of the reference".to_owned(),
+    };
+    let law = summary.phi.as_ref().map_or_else(|| summary.controller.clone(), |phi| format!("φ = {phi}"));
+    let unknown = unknown(&summary.plant).map(|unknown| format!("; {unknown}")).unwrap_or_default();
+    format!(
+        "{law}: {settled}; largest motor torque {} N m, root mean square {} N m{unknown}.",
+        engineering(summary.max_abs_u_m),
+        engineering(summary.rms_u_m)
+    )
+}

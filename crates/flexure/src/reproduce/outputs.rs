@@ -1,0 +1,55 @@
+//! What runs and experiments leave behind.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::files::{WriteError, create_folder, write_atomic};
+use crate::report::{html, png, write_certificate};
+use crate::reproduce::{Certified, Experiment, certificate_name, report};
+use crate::simulate::write_trace;
+
+/// Writes trace and figure of an experiment into `folder`, which is created if missing; returns the paths.
+///
+/// # Errors
+/// If a file cannot be written; none is ever half written.
+pub fn write_experiment(folder: &Path, experiment: &Experiment) -> Result<Vec<PathBuf>, WriteError> {
+    create_folder(folder)?;
+    let path = |ending: &str| folder.join(format!("{}.{ending}", experiment.scenario.name));
+    let (trace, svg, picture) = (path("csv"), path("svg"), path("png"));
+    write_trace(&trace, &experiment.run.trace)?;
+    write_atomic(&svg, |out| out.write_all(experiment.figure.as_bytes()))?;
+    write_atomic(&picture, |out| out.write_all(&png(&experiment.figure).map_err(io::Error::other)?))?;
+    Ok(vec![trace, svg, picture])
+}
+
+/// Writes the certificates into `folder`, which is created if missing; returns their paths.
+///
+/// # Errors
+/// If one cannot be written.
+pub fn write_certificates(folder: &Path, certificates: &[Certified]) -> Result<Vec<PathBuf>, WriteError> {
+    let mut paths = Vec::new();
+    for Certified { scenario, proof } in certificates {
+        if let Some(certificate) = proof.verdict.proved() {
+            let path = folder.join(certificate_name(&scenario.name));
+            write_certificate(&path, certificate)?;
+            paths.push(path);
+        }
+    }
+    Ok(paths)
+}
+
+/// Writes `report.html` into `folder`, which is created if missing; returns its path.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn write_report(
+    folder: &Path,
+    experiments: &[Experiment],
+    certificates: &[Certified],
+) -> Result<PathBuf, WriteError> {
+    create_folder(folder)?;
+    let path = folder.join("report.html");
+    let page = html(&report(experiments, certificates));
+    write_atomic(&path, |out| out.write_all(page.as_bytes()))?;
+    Ok(path)
+}

@@ -1,0 +1,94 @@
+//! The assembled robot at a glance: a row per moving joint.
+
+use std::f64::consts::TAU;
+
+use flexure_core::linalg::Vector;
+use flexure_core::model::{Fjr, Links};
+use serde::Serialize;
+
+use crate::files::Problems;
+use crate::robot::{self, JointKind, Robot, RobotVisitor, with_robot};
+
+/// A moving joint of a robot. For a prismatic one read m for rad, N for N m and kg for kg m².
+#[derive(Clone, Debug, Serialize)]
+pub struct JointRow {
+    /// Name.
+    pub name: String,
+    /// `revolute` or `prismatic`.
+    pub kind: &'static str,
+    /// Name of the moving joint that carries it; none for the base.
+    pub parent: Option<String>,
+    /// Joint stiffness K [N m/rad].
+    pub stiffness: f64,
+    /// Motor inertia M_m [kg m²].
+    pub motor_inertia: f64,
+    /// Inertia that the joint moves at q = 0 with the others held, the diagonal of M_l [kg m²].
+    pub link_inertia: f64,
+    /// Frequency at which link and motor swing against each other at q = 0 with the other joints held, in Hz.
+    pub resonance: f64,
+    /// Link damping D_l [N m s/rad].
+    pub link_damping: f64,
+    /// Motor damping D_m [N m s/rad].
+    pub motor_damping: f64,
+    /// Gear ratio.
+    pub gear_ratio: Option<f64>,
+    /// Largest motor torque [N m].
+    pub torque_limit: Option<f64>,
+    /// Largest velocity [rad/s].
+    pub velocity_limit: Option<f64>,
+    /// Largest deflection of the spring in rad.
+    pub deflection_limit: Option<f64>,
+    /// Smallest link position in rad.
+    pub position_lower: Option<f64>,
+    /// Largest link position in rad.
+    pub position_upper: Option<f64>,
+}
+
+/// A row per moving joint of `robot`, in their order.
+///
+/// # Errors
+/// If the robot has more joints than this program was built for.
+pub fn overview(robot: &Robot) -> Result<Vec<JointRow>, Problems> {
+    let link_inertia = with_robot(robot, Diagonal)?;
+    let parents: Vec<Option<usize>> = match &robot.links {
+        robot::Links::Tree(bodies) => bodies.iter().map(|body| body.parent).collect(),
+        _ => (0..robot.joint_count()).map(|i| i.checked_sub(1)).collect(),
+    };
+    let limit = |limits: &[f64], i: usize| Some(limits[i]).filter(|limit| limit.is_finite());
+    let row = |(i, joint): (usize, &robot::MovingJoint)| {
+        let (stiffness, motor_inertia) = (robot.stiffness[i], robot.motor_inertia[i]);
+        JointRow {
+            name: joint.name.clone(),
+            kind: match joint.kind {
+                JointKind::Revolute => "revolute",
+                JointKind::Prismatic => "prismatic",
+            },
+            parent: parents[i].map(|parent| robot.joints[parent].name.clone()),
+            stiffness,
+            motor_inertia,
+            link_inertia: link_inertia[i],
+            resonance: (stiffness * (motor_inertia.recip() + link_inertia[i].recip())).sqrt() / TAU,
+            link_damping: robot.link_damping[i],
+            motor_damping: robot.motor_damping[i],
+            gear_ratio: robot.gear_ratio.as_ref().map(|ratios| ratios[i]),
+            torque_limit: limit(&robot.limits.torque, i),
+            velocity_limit: limit(&robot.limits.velocity, i),
+            deflection_limit: limit(&robot.limits.deflection, i),
+            position_lower: limit(&robot.limits.lower, i),
+            position_upper: limit(&robot.limits.upper, i),
+        }
+    };
+    Ok(robot.joints.iter().enumerate().map(row).collect())
+}
+
+/// The diagonal of the mass matrix at q = 0.
+struct Diagonal;
+
+impl RobotVisitor for Diagonal {
+    type Output = Vec<f64>;
+
+    fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) -> Vec<f64> {
+        let mass = robot.links.mass_matrix::<f64>(&Vector::ZERO);
+        (0..N).map(|i| mass[(i, i)]).collect()
+    }
+}

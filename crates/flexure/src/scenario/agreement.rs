@@ -1,0 +1,291 @@
+//! Whether the parts of a real loop can be meant together.
+
+use crate::estimators::{Encoders, Estimator};
+use crate::files::table::Table;
+use crate::imperfections::document::{Context, Found};
+use crate::imperfections::{Imperfection, Outage, Side};
+use crate::scenario::document::Hold;
+use crate::scenario::guard::GuardSettings;
+use crate::scenario::plant::Plant;
+
+/// The parts of a scenario that a real loop is made of.
+pub(crate) struct Loop<'a> {
+    pub root: &'a Table<'a>,
+    pub context: &'a Context<'a>,
+    pub found: &'a [Found<'a>],
+    pub hold: Hold,
+    pub plant: &'a Plant,
+    pub estimator: Option<&'a Estimator>,
+    pub guard: Option<&'a GuardSettings>,
+}
+
+/// Notes an error for all that contradicts itself, and warnings for what is hardly meant.
+pub(crate) fn agree(real: &Loop<'_>) {
+    real.repeated();
+    real.continuous();
+    real.velocities();
+    real.placement();
+    real.bandwidth();
+    real.hardening();
+    real.limits();
+    real.ages();
+    real.unguarded();
+}
+
+impl<'a> Loop<'a> {
+    fn first(&self, is: impl Fn(&Imperfection) -> bool) -> Option<&'a Found<'a>> {
+        self.found.iter().find(|found| is(&found.what))
+    }
+
+    /// Each kind once, or once a side; what comes and goes as often as wanted.
+    fn repeated(&self) {
+        for (i, second) in self.found.iter().enumerate() {
+            let mut earlier = self.found.iter().take(i);
+            let clash = earlier.find_map(|first| Some((first, collision(&first.what, &second.what)?)));
+            let Some((first, what)) = clash else { continue };
+            let kind = second.what.kind();
+            let message = format!("a second {kind}{what}; the first is in line {}", first.field.line());
+            second.field.error(
+                "contradiction",
+                message,
+                format!("put both into one entry of kind \"{kind}\", or remove one"),
+            );
+        }
+    }
+
+    /// Devices sample: there is no continuous time in them.
+    fn continuous(&self) {
+        if self.hold != Hold::Continuous {
+            return;
+        }
+        let device =
+            self.first(Imperfection::is_of_devices).map(|found| (found.field.clone(), found.what.kind()));
+        let tables = ["estimator", "disturbance_observer", "guard"];
+        let table = tables.iter().find_map(|&key| Some((self.root.get(key)?, key)));
+        if let (Some((field, what)), Some(hold)) = (device.or(table), self.root.get("hold")) {
+            let message = format!(
+                "{what}, but hold is \"continuous\" in line {}: the law runs at every instant",
+                hold.line()
+            );
+            field.error(
+                "contradiction",
+                message,
+                "remove hold: the torque is then held between control instants",
+            );
+        }
+    }
+
+    /// One source of velocities; what is measured of them is used.
+    fn velocities(&self) {
+        let filter = self.first(|what| matches!(what, Imperfection::VelocityFilter(_)));
+        let estimator = self.root.get("estimator");
+        if let (Some(filter), Some(estimator)) = (filter, &estimator) {
+            let message =
+                format!("velocity-filter, but [estimator] in line {} gives velocities too", estimator.line());
+            filter.field.error("contradiction", message, "remove one of them");
+        }
+        let source = match (filter, &estimator) {
+            (Some(filter), _) => Some(&filter.field),
+            (_, estimator) => estimator.as_ref(),
+        };
+        for found in self.found {
+            match (&found.what, source) {
+                (Imperfection::Noise(noise), Some(source))
+                    if noise.link_velocity.iter().chain(&noise.motor_velocity).any(|&x| x != 0.0) =>
+                {
+                    let message = format!(
+                        "noise on velocities, but they are computed from positions, as line {} says",
+                        source.line()
+                    );
+                    found.field.error("contradiction", message, "remove link_velocity and motor_velocity");
+                }
+                (Imperfection::Encoder(_), None) => found.field.warn(
+                    "exact-velocity",
+                    "encoder, but velocities stay exact",
+                    "add [[imperfection]] kind = \"velocity-filter\", or [estimator]",
+                ),
+                _ => {}
+            }
+        }
+    }
+
+    /// What is needed is measured.
+    fn placement(&self) {
+        let encoders = || {
+            self.found.iter().filter_map(|found| match &found.what {
+                Imperfection::Encoder(encoder) => Some((found, encoder)),
+                _ => None,
+            })
+        };
+        let Some((entry, _)) = encoders().next() else { return };
+        let placed = |side| encoders().any(|(_, encoder)| encoder.resolution(side).is_some());
+        let (need, hint): (&[Side], _) = match self.estimator {
+            Some(Estimator::Observer { encoders: Encoders::Motor, .. }) => {
+                (&[Side::Motor], "add an encoder with placement = \"motor\"")
+            }
+            Some(_) => (&Side::ALL, "add the other encoder, or let [estimator] use encoders = \"motor\""),
+            None => (
+                &Side::ALL,
+                "add the other encoder, or [estimator] kind = \"observer\" with encoders = \"motor\"",
+            ),
+        };
+        if let Some(missing) = need.iter().find(|&&side| !placed(side)) {
+            let who = match (
+                self.root.get("estimator"),
+                self.first(|what| matches!(what, Imperfection::VelocityFilter(_))),
+            ) {
+                (Some(field), _) => format!("[estimator] in line {}", field.line()),
+                (_, Some(filter)) => format!("velocity-filter in line {}", filter.field.line()),
+                _ => "the law without [estimator]".to_owned(),
+            };
+            let message = format!("no encoder on the {} side, but {who} needs one", missing.name());
+            entry.field.error("contradiction", message, hint);
+        }
+    }
+
+    /// The gains of an observer with motor encoders only assume that it is slower than its period.
+    fn bandwidth(&self) {
+        let Some(Estimator::Observer { encoders: Encoders::Motor, bandwidth }) = self.estimator else {
+            return;
+        };
+        let (Some((_, period)), Some(field)) = (self.context.times, self.root.get("estimator")) else {
+            return;
+        };
+        if let Some(fast) = bandwidth.iter().find(|&&bandwidth| bandwidth * period >= 1.0) {
+            let message = format!(
+                "estimator.bandwidth is {fast} rad/s, must be < {} rad/s, one over the control period",
+                1.0 / period
+            );
+            field.error("range", message, "with encoders = \"motor\"; a tenth of that is a good start");
+        }
+    }
+
+    /// One place for the hardening of springs.
+    fn hardening(&self) {
+        let Some(spring) = self.first(|what| matches!(what, Imperfection::Spring(_))) else { return };
+        if let (Some(own), Some(field), true) = (
+            spring.table.get("hardening"),
+            self.root.get("plant").and_then(|plant| plant.any_table()?.get("spring_hardening")),
+            self.plant.spring_hardening.is_some(),
+        ) {
+            let message = format!(
+                "{} and {} in line {} both say how springs harden",
+                own.path,
+                field.path,
+                field.line()
+            );
+            own.error("contradiction", message, "remove one of them");
+        }
+    }
+
+    /// Limits that do not undo each other.
+    fn limits(&self) {
+        let saturation = self.found.iter().find_map(|found| match &found.what {
+            Imperfection::Saturation(limit) => Some((found, limit)),
+            _ => None,
+        });
+        let torque =
+            saturation.map(|(_, limit)| limit).or(self.context.robot.map(|robot| &robot.limits.torque));
+        let rates = self.found.iter().find_map(|found| match &found.what {
+            Imperfection::TorqueRate(rate) => Some((found, rate)),
+            _ => None,
+        });
+        if let Some(guard) = self.guard {
+            self.keeps_to(("torque_limit", "N m"), &guard.torque_limit, saturation);
+            // A guard need not know of rates at all.
+            let rates = rates.filter(|_| guard.torque_rate_limit.iter().all(|rate| rate.is_finite()));
+            self.keeps_to(("torque_rate_limit", "N m/s"), &guard.torque_rate_limit, rates);
+        }
+        if let (Some(torque), Some((found, rate)), Some((duration, _))) = (torque, rates, self.context.times)
+        {
+            let slow = torque.iter().zip(rate).position(|(t, r)| t.is_finite() && t / r > duration);
+            if let Some((i, torque, rate)) = slow.and_then(|i| Some((i, torque.get(i)?, rate.get(i)?))) {
+                let message = format!(
+                    "at {rate} N m/s joint {} takes {:.4} s to its torque limit, {torque} N m, must be <= duration, {duration} s",
+                    i + 1,
+                    torque / rate
+                );
+                found.field.error("range", message, "drives do it in milliseconds; is the rate in N m/ms?");
+            }
+        }
+    }
+
+    /// A limit of the guard is not above that of the drive.
+    fn keeps_to(&self, (key, unit): (&str, &str), guard: &[f64], drive: Option<(&Found<'_>, &Vec<f64>)>) {
+        let (Some((found, drive)), Some(field)) = (drive, self.root.get("guard")) else { return };
+        let Some((i, (low, high))) = larger(guard, drive) else { return };
+        let given = field.any_table().and_then(|table| table.get(key));
+        let message = format!(
+            "the guard lets {high} {unit} through for joint {}, must be <= {low} {unit}, the {} in line {}",
+            i + 1,
+            found.what.kind(),
+            found.field.line()
+        );
+        let hint =
+            format!("a guard knows of limits that it keeps to: set guard.{key} to the drive's or less");
+        given.unwrap_or(field).error("contradiction", message, hint);
+    }
+
+    /// A guard must not take for dead what is only slow.
+    fn ages(&self) {
+        let Some(guard) = self.guard else { return };
+        for found in self.found {
+            if let Imperfection::Sampling(sampling) = &found.what
+                && sampling.periods - 1 > guard.max_age
+            {
+                let needed = sampling.periods - 1;
+                let message = format!(
+                    "readings become {needed} control periods old, guard.max_age is {}",
+                    guard.max_age
+                );
+                found.field.error(
+                    "contradiction",
+                    message,
+                    format!("set guard.max_age to {needed} or more: the guard would stop the robot at once"),
+                );
+            }
+        }
+    }
+
+    /// A robot whose sensors fail is stopped by somebody.
+    fn unguarded(&self) {
+        if self.guard.is_some() {
+            return;
+        }
+        if let Some(found) = self.first(|what| {
+            matches!(what, Imperfection::Dropout(dropout)
+            if !matches!(dropout.outage, Outage::Random { probability, .. } if probability == 0.0))
+        }) {
+            found.field.warn(
+                "unguarded",
+                "dropout, but there is no guard: the law goes on with what it reads",
+                "add [guard] with stop_damping",
+            );
+        }
+    }
+}
+
+/// Where the entries are about the same thing, in words, if they are.
+fn collision(first: &Imperfection, second: &Imperfection) -> Option<String> {
+    let sides = |meet: &dyn Fn(Side) -> bool| {
+        Side::ALL.into_iter().find(|&side| meet(side)).map(|side| format!(" on the {} side", side.name()))
+    };
+    match (first, second) {
+        (Imperfection::Push(_) | Imperfection::Dropout(_), _) => None,
+        (Imperfection::Encoder(a), Imperfection::Encoder(b)) => {
+            sides(&|side| a.resolution(side).is_some() && b.resolution(side).is_some())
+        }
+        (Imperfection::Sampling(a), Imperfection::Sampling(b)) => {
+            sides(&|side| a.sides.contain(side) && b.sides.contain(side))
+        }
+        (Imperfection::Friction(a), Imperfection::Friction(b)) => {
+            sides(&|side| a.side == side && b.side == side)
+        }
+        (a, b) => (a.kind() == b.kind()).then(String::new),
+    }
+}
+
+/// The first entry of `a` that is larger than that of `b`: index, and (of b, of a).
+fn larger(a: &[f64], b: &[f64]) -> Option<(usize, (f64, f64))> {
+    b.iter().copied().zip(a.iter().copied()).enumerate().find(|(_, (b, a))| a > b)
+}

@@ -1,0 +1,37 @@
+//! Loading a scenario by name or path.
+
+use std::path::Path;
+
+use crate::files::base::Base;
+use crate::files::source::{self, Source};
+use crate::files::{Problems, SCENARIOS, TASKS, builtin};
+use crate::scenario::document::{self, Scenario};
+
+/// Loads the scenario file at a path, or the built-in scenario of that name.
+///
+/// A bare word without ending or folder is a name; anything else is a path.
+///
+/// # Errors
+/// With everything that is wrong, in the robot's file as well.
+pub fn load_scenario(path_or_name: &str) -> Result<Scenario, Problems> {
+    if builtin::is_name(path_or_name) {
+        let known = [SCENARIOS, TASKS].concat();
+        let text = builtin::find(path_or_name, &known, "scenario")?;
+        return document::read(&Source::new(path_or_name, text), &Base::BuiltIn);
+    }
+    let path = Path::new(path_or_name);
+    document::read(&source::read(path, source::LIMIT)?, &Base::of(path))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{SCENARIOS, TASKS, load_scenario};
+
+    #[test]
+    fn every_scenario_loads() {
+        for (name, _) in SCENARIOS.iter().chain(TASKS) {
+            let scenario = load_scenario(name).unwrap_or_else(|problems| panic!("{problems}"));
+            assert_eq!(scenario.name, *name);
+        }
+    }
+}

@@ -1,0 +1,28 @@
+//! Scenario files: a robot, a law, a reference and everything between them, as data.
+//!
+//! Nothing is defaulted in silence that changes physics: what was assumed is in [`Scenario::assumptions`].
+//!
+//! ```
+//! let scenario = flexure::scenario::load_scenario("two-link-tanh")?;
+//! assert_eq!(scenario.robot.joint_count(), 2);
+//! assert!(scenario.assumptions.iter().any(|assumed| assumed.key == "joints.stiffness"));
+//!
+//! let problems = flexure::robot::robot_from_text("arm.toml", "nam = 'arm'", ".".as_ref()).unwrap_err();
+//! assert!(problems.to_string().contains("nam"));
+//! # Ok::<(), flexure::files::Problems>(())
+//! ```
+
+mod agreement;
+mod any;
+mod document;
+mod guard;
+mod initial;
+mod load;
+mod plant;
+
+pub use any::{Checked, check};
+pub use document::{Hold, Scenario, scenario_from_text};
+pub use guard::GuardSettings;
+pub use initial::Initial;
+pub use load::load_scenario;
+pub use plant::Plant;

@@ -1,0 +1,181 @@
+//! From a scenario to what is simulated: plant, controller and everything in between.
+
+use flexure_core::estimate::DisturbanceObserver;
+use flexure_core::guard::{Guard, Settings};
+use flexure_core::linalg::Vector;
+use flexure_core::model::{Fjr, Links, Motion, RotorCoupling};
+use flexure_core::reference::Reference;
+use flexure_core::scalar::Jet;
+
+use crate::estimators::{AnyEstimator, estimator};
+use crate::imperfections::{self, Imperfection, PushShape, Side, actuator, sensors};
+use crate::plant::{Friction, Hysteresis, Plant, Push, Shape};
+use crate::robot::{Robot, vector};
+use crate::scenario::{self, Scenario};
+use crate::simulate::{ClosedLoop, Compensation, Controller, Guarded, Hold};
+
+/// Tolerated local error of the plant integrator, relative to the joint speeds.
+pub const TOLERANCE: f64 = 1e-10;
+
+/// Longest step in s of the integrator of plants with dry friction, play or hysteresis.
+const LONGEST_STEP: f64 = 2.5e-4;
+
+/// Times and tolerances of the loop.
+pub(crate) fn settings(scenario: &Scenario) -> ClosedLoop {
+    ClosedLoop {
+        duration: scenario.duration,
+        period: scenario.control_period,
+        hold: match scenario.hold {
+            scenario::Hold::ZeroOrder => Hold::ZeroOrder,
+            scenario::Hold::Continuous => Hold::Continuous,
+        },
+        tolerance: TOLERANCE,
+        longest_step: LONGEST_STEP,
+    }
+}
+
+/// The initial motion of the scenario.
+pub(crate) fn initial<const N: usize>(scenario: &Scenario) -> Motion<f64, N> {
+    let initial = &scenario.initial;
+    Motion {
+        q_l: vector(&initial.q_l),
+        q_m: vector(&initial.q_m),
+        v_l: vector(&initial.dq_l),
+        v_m: vector(&initial.dq_m),
+    }
+}
+
+/// The robot that is simulated: the scenario's, but for its model errors.
+pub(crate) fn simulated(scenario: &Scenario) -> Robot {
+    let error = scenario.imperfections.iter().find_map(|imperfection| match imperfection {
+        Imperfection::ModelError(error) => Some(error),
+        _ => None,
+    });
+    error.map_or_else(|| scenario.robot.clone(), |error| error.apply(&scenario.robot))
+}
+
+/// The simulated robot with what the law does not know of its joints.
+pub(crate) fn plant<L, const N: usize>(scenario: &Scenario, robot: Fjr<f64, L, N>) -> Plant<L, N> {
+    let scenario::Plant { rotor_coupling, spring_hardening } = &scenario.plant;
+    let mut plant = Plant {
+        spring_hardening: spring_hardening.as_deref().map_or(Vector::ZERO, vector),
+        rotor_coupling: rotor_coupling
+            .as_deref()
+            .map(|gears| RotorCoupling::new(&robot.motor_inertia, &vector(gears))),
+        ..Plant::from(robot)
+    };
+    for imperfection in &scenario.imperfections {
+        match imperfection {
+            Imperfection::Friction(friction) => {
+                let side = match friction.side {
+                    Side::Link => &mut plant.link_friction,
+                    Side::Motor => &mut plant.motor_friction,
+                };
+                *side = dry(friction);
+            }
+            Imperfection::TorqueGain(factor) => plant.torque_gain = vector(factor),
+            Imperfection::Spring(spring) => {
+                plant.spring_hardening += vector(&spring.hardening);
+                // The file gives it to either side.
+                plant.spring_gap = vector(&spring.dead_zone).scaled(2.0);
+                plant.hysteresis = Hysteresis {
+                    stiffness: vector(&spring.hysteresis_stiffness),
+                    yield_torque: vector(&spring.hysteresis_torque),
+                };
+            }
+            _ => {}
+        }
+    }
+    plant
+}
+
+fn dry<const N: usize>(friction: &imperfections::Friction) -> Friction<N> {
+    let coulomb = vector(&friction.coulomb);
+    match &friction.stribeck {
+        None => Friction::coulomb(coulomb),
+        Some(stribeck) => Friction {
+            coulomb,
+            stiction: vector(&stribeck.breakaway),
+            stribeck_velocity: vector(&stribeck.velocity),
+        },
+    }
+}
+
+/// What pushes the links.
+pub(crate) fn pushes<const N: usize>(scenario: &Scenario) -> Vec<Push<N>> {
+    let push = |imperfection: &Imperfection| match imperfection {
+        Imperfection::Push(push) => Some(Push {
+            torque: vector(&push.torque),
+            from: push.from,
+            duration: push.duration,
+            shape: match push.shape {
+                PushShape::Rectangle => Shape::Rectangle,
+                PushShape::HalfSine => Shape::HalfSine,
+            },
+        }),
+        _ => None,
+    };
+    scenario.imperfections.iter().filter_map(push).collect()
+}
+
+/// The law with everything between it and the robot, started at `x` with the springs holding the links.
+pub(crate) fn controller<'a, L, R, F, const N: usize>(
+    scenario: &Scenario,
+    robot: &'a Fjr<f64, L, N>,
+    reference: &'a R,
+    law: F,
+    x: &Motion<f64, N>,
+) -> Controller<'a, L, R, F, AnyEstimator<N>, N>
+where
+    L: Links<f64, N>,
+    R: Reference<f64, N>,
+    F: Fn(f64, &Motion<f64, N>, &Vector<Jet<f64, 5>, N>) -> Vector<f64, N>,
+{
+    let Scenario { imperfections, seed, control_period: period, .. } = scenario;
+    // Until the first command arrives the motors are held where they are.
+    let before = robot.spring_torque(&x.q_l, &x.q_m);
+    let mut controller = Controller::new(robot, reference, law);
+    controller.sensors = sensors(imperfections, *seed);
+    controller.actuator = actuator(imperfections, *seed, *period, before);
+    controller.estimator = estimator(scenario.estimator.as_ref(), imperfections, *period);
+    controller.disturbance = scenario.disturbance_observer.as_ref().map(|settings| Compensation {
+        observer: DisturbanceObserver::new(&vector(&settings.bandwidth), *period)
+            .expect("bandwidths are above 0"),
+        compensate: settings.compensate,
+    });
+    controller.guard = scenario.guard.as_ref().map(|settings| guard(settings, *period, before));
+    controller.start(x, before);
+    controller
+}
+
+fn guard<const N: usize>(
+    settings: &scenario::GuardSettings,
+    period: f64,
+    applied: Vector<f64, N>,
+) -> Guarded<N> {
+    let unbounded = Vector([f64::INFINITY; N]);
+    let guard = Guard::new(Settings {
+        period,
+        torque_limit: vector(&settings.torque_limit),
+        torque_rate_limit: vector(&settings.torque_rate_limit),
+        stop_damping: vector(&settings.stop_damping),
+        allowed_age: settings.max_age,
+        rejoin_after: settings.rejoin_after,
+        position_bound: unbounded,
+        speed_bound: unbounded,
+    });
+    let guard = guard.expect("the reader takes sound settings only").applying(&applied);
+    Guarded { guard, rejoin: settings.rejoin_duration }
+}
+
+/// The smallest of the torque limits that are known, per joint [N m]: the robot's, the guard's, the drive's.
+pub(crate) fn torque_limit<const N: usize>(scenario: &Scenario) -> Vector<f64, N> {
+    let robot = &scenario.robot.limits.torque;
+    let guard = scenario.guard.as_ref().map(|guard| &guard.torque_limit);
+    let drive = scenario.imperfections.iter().find_map(|imperfection| match imperfection {
+        Imperfection::Saturation(limit) => Some(limit),
+        _ => None,
+    });
+    let known = [Some(robot), guard, drive];
+    Vector::from_fn(|i| known.iter().flatten().fold(f64::INFINITY, |least, limit| least.min(limit[i])))
+}

@@ -1,0 +1,194 @@
+//! What stands between the motion of the robot and the torque on its motors: sensors, estimator, law, guard and drive.
+
+use flexure_core::estimate::{DisturbanceObserver, Estimator, FilteredDifference};
+use flexure_core::guard::{Age, Guard, Phase, Status};
+use flexure_core::linalg::Vector;
+use flexure_core::model::{Fjr, Links, Motion};
+use flexure_core::reference::{Reference, SmoothStart, Stop};
+use flexure_core::scalar::Jet;
+
+use crate::imperfections::stages::{Actuator, Measured, Pieces, Sensors, Tick};
+
+/// A law with everything between it and the robot; without any of that, an ideal loop.
+///
+/// `robot` is the model that law, estimator and guard go by: the simulated robot may be another. `law(t, x, q_ld)` gives the
+/// motor torque [N m].
+pub struct Controller<'a, L, R, F, E, const N: usize> {
+    /// The robot as the controller knows it.
+    pub robot: &'a Fjr<f64, L, N>,
+    /// Where the links shall be.
+    pub reference: &'a R,
+    /// The law.
+    pub law: F,
+    /// From motion to readings.
+    pub sensors: Sensors<N>,
+    /// From readings to motion; without one the law sees the readings, velocities included.
+    pub estimator: Option<E>,
+    /// Torque that the model does not explain.
+    pub disturbance: Option<Compensation<N>>,
+    /// Limits and safe stops.
+    pub guard: Option<Guarded<N>>,
+    /// From command to torque.
+    pub actuator: Actuator<N>,
+    state: State<N>,
+}
+
+/// A disturbance observer and what is made of its estimate.
+#[derive(Clone, Debug)]
+pub struct Compensation<const N: usize> {
+    /// The observer.
+    pub observer: DisturbanceObserver<f64, N>,
+    /// Whether its estimate of the torque on the motors is taken from the command; or it is only recorded.
+    pub compensate: bool,
+}
+
+/// A guard and how the reference is joined again after a stop.
+#[derive(Clone, Debug)]
+pub struct Guarded<const N: usize> {
+    /// The guard.
+    pub guard: Guard<f64, N>,
+    /// Time in which the reference is joined in s.
+    pub rejoin: f64,
+}
+
+/// What the controller remembers from one instant to the next.
+#[derive(Clone, Debug)]
+struct State<const N: usize> {
+    /// Mean motor torque since the last instant, as the drive reports it: after its delays and limits, with the torque constant that
+    /// it believes in [N m].
+    applied: Vector<f64, N>,
+    /// Where the robot was when the law took over from the guard.
+    rejoined: Option<Stop<f64, N>>,
+}
+
+/// What a controller does at an instant.
+#[derive(Clone, Copy, Debug)]
+pub struct Action<const N: usize> {
+    /// Where the links shall be, q_ld in rad to order 4.
+    pub reference: Vector<Jet<f64, 5>, N>,
+    /// The motion that the law goes by; not a number where nothing was read.
+    pub seen: Motion<f64, N>,
+    /// Torque on the motors that the model does not explain, as estimated [N m]; zero without an observer.
+    pub disturbance: Vector<f64, N>,
+    /// Torque that leaves the controller [N m].
+    pub u_m: Vector<f64, N>,
+    /// Torque on the motors until the next instant [N m]: what the drive believes to give when it comes from
+    /// [`step`](Controller::step), what the motors give when a loop shows it.
+    pub applied: Pieces<N>,
+    /// What the guard says; none without one.
+    pub status: Option<Status<N>>,
+}
+
+impl<'a, L, R, F, const N: usize> Controller<'a, L, R, F, FilteredDifference<f64, N>, N>
+where
+    L: Links<f64, N>,
+    R: Reference<f64, N>,
+    F: Fn(f64, &Motion<f64, N>, &Vector<Jet<f64, 5>, N>) -> Vector<f64, N>,
+{
+    /// The law on true states, its torque on the motors at once.
+    pub fn ideal(robot: &'a Fjr<f64, L, N>, reference: &'a R, law: F) -> Self {
+        Self::new(robot, reference, law)
+    }
+}
+
+impl<'a, L, R, F, E, const N: usize> Controller<'a, L, R, F, E, N>
+where
+    L: Links<f64, N>,
+    R: Reference<f64, N>,
+    F: Fn(f64, &Motion<f64, N>, &Vector<Jet<f64, 5>, N>) -> Vector<f64, N>,
+    E: Estimator<f64, N>,
+{
+    /// The law with nothing between it and the robot yet.
+    pub fn new(robot: &'a Fjr<f64, L, N>, reference: &'a R, law: F) -> Self {
+        let state = State { applied: Vector::ZERO, rejoined: None };
+        let (sensors, actuator) = (Sensors::default(), Actuator::default());
+        Self {
+            robot,
+            reference,
+            law,
+            sensors,
+            estimator: None,
+            disturbance: None,
+            guard: None,
+            actuator,
+            state,
+        }
+    }
+
+    /// Starts estimator and disturbance observer at the motion `x`, held by the motor torque `applied` [N m] until now. Sensors,
+    /// guard and drive start when they are made.
+    pub fn start(&mut self, x: &Motion<f64, N>, applied: Vector<f64, N>) {
+        self.state = State { applied, rejoined: None };
+        if let Some(estimator) = &mut self.estimator {
+            estimator.start(x);
+        }
+        if let Some(disturbance) = &mut self.disturbance {
+            disturbance.observer.restart();
+        }
+    }
+
+    /// What happens at a control instant at which the robot moves as `x`. Nothing is allocated.
+    pub fn step(&mut self, tick: &Tick, x: &Motion<f64, N>) -> Action<N> {
+        let measured = self.sensors.sense(tick, x);
+        let applied = self.state.applied;
+        let seen = match &mut self.estimator {
+            None => measured.motion,
+            Some(estimator) => {
+                estimator.update(self.robot, &measured.motion.q_l, &measured.motion.q_m, &applied)
+            }
+        };
+        let disturbance = self.disturbance.as_mut().map(|disturbance| {
+            (disturbance.observer.update(self.robot, &seen, &applied).motor, disturbance.compensate)
+        });
+        let reference = self.reference_at(tick.t);
+        let compensated = match disturbance {
+            Some((torque, true)) => torque,
+            _ => Vector::ZERO,
+        };
+        let law = |x: &Motion<f64, N>| (self.law)(tick.t, x, &reference) - compensated;
+        let (u_m, status) = match &mut self.guard {
+            None => (law(&seen), None),
+            Some(Guarded { guard, .. }) => {
+                let links = &self.robot.links;
+                let decision = guard.step(&seen, age(&measured), law, |q_l| links.gravity_torque(q_l));
+                (decision.torque, Some(decision.status))
+            }
+        };
+        if status.is_some_and(|status| status.phase == Phase::Rejoined) {
+            self.rejoin(tick.t, &seen);
+        }
+        let pieces = self.actuator.actuate(tick, u_m);
+        self.state.applied = pieces.mean(tick.period);
+        let disturbance = disturbance.map_or(Vector::ZERO, |(torque, _)| torque);
+        Action { reference, seen, disturbance, u_m, applied: pieces, status }
+    }
+
+    /// Torque of the law [N m] at any time, for loops in continuous time: no device stands in between.
+    pub fn torque(&self, t: f64, x: &Motion<f64, N>) -> Vector<f64, N> {
+        (self.law)(t, x, &self.reference.at(t))
+    }
+
+    /// The reference; after a stop it is joined from where the robot was left.
+    fn reference_at(&self, t: f64) -> Vector<Jet<f64, 5>, N> {
+        match (&self.state.rejoined, &self.guard) {
+            (Some(from), Some(guarded)) => {
+                SmoothStart { from: *from, duration: guarded.rejoin, then: self.reference }.at(t)
+            }
+            _ => self.reference.at(t),
+        }
+    }
+
+    /// The law takes over from the next instant on: from rest at the posture that is seen now.
+    fn rejoin(&mut self, t: f64, seen: &Motion<f64, N>) {
+        if let Some(Guarded { rejoin, .. }) = self.guard {
+            let from = seen.q_l.map(Jet::value);
+            self.state.rejoined = Some(Stop { from, start: t, duration: rejoin });
+        }
+    }
+}
+
+/// How old the readings are; what no encoder delivers never grows old.
+fn age<const N: usize>(measured: &Measured<N>) -> Age {
+    let [link, motor] = [0, 1].map(|side| if measured.placed[side] { measured.age[side] } else { 0 });
+    Age { link, motor }
+}
