@@ -1,6 +1,7 @@
 //! One joint of a tree and the coordinate changes across it.
 
 use super::JointKind;
+use crate::linalg::Matrix;
 use crate::scalar::{Over, Scalar};
 use crate::spatial::{Force, Motion, RigidInertia, Rotation, Vec3};
 
@@ -17,6 +18,18 @@ pub(super) struct Joint<C> {
 }
 
 impl<C: Scalar> Joint<C> {
+    /// A joint on the base with unit inertia and no mass: what fills a tree up to its capacity.
+    pub(super) fn phantom() -> Self {
+        let (zero, one) = (C::ZERO, C::ONE);
+        Self {
+            parent: usize::MAX,
+            kind: JointKind::Revolute,
+            rotation: Rotation::from_matrix(&Matrix::identity()),
+            translation: Vec3::ZERO,
+            inertia: RigidInertia::new(zero, [zero; 3], [one, zero, zero, one, zero, one]),
+        }
+    }
+
     pub(super) fn map<D: Scalar>(&self, f: impl Fn(C) -> D) -> Joint<D> {
         Joint {
             parent: self.parent,
