@@ -4,13 +4,13 @@
 //! matrices; its proof is a [`certificate`] that others can check. The direct one knows nothing of that: it takes the whole
 //! inequality from the closed loop's Jacobian, by branch and bound.
 //!
-//! Trusted base: the interval type, the core, and this module; it imports neither `sim` nor `io`.
+//! Trusted base: the interval type, the core, [`Symmetric`](crate::linalg::Symmetric) and this module; it imports neither `sim` nor
+//! `io`.
 
 pub mod along;
 pub mod certificate;
 pub mod coupling;
 pub mod direct;
-pub mod matrix;
 pub mod momentum;
 pub mod number;
 pub mod position;

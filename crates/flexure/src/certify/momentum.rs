@@ -6,10 +6,10 @@ use flexure_core::robots::{Pendulum, PlanarTwoLink};
 use flexure_core::scalar::{Interval, Scalar};
 
 use super::certificate::{Links, Robot, bounds};
-use super::matrix::Symmetric;
 use super::number::Number;
 use super::rate::Inequality;
 use super::reach;
+use crate::linalg::Symmetric;
 
 /// D + K_d, enclosed.
 pub fn damping(plant: &[Number], injected: &[Number]) -> Vec<Interval> {
@@ -53,7 +53,7 @@ pub fn pivots(links: &Links) -> Vec<f64> {
     }
 }
 
-fn masses(links: &Links) -> Result<Vec<Symmetric>, String> {
+fn masses(links: &Links) -> Result<Vec<Symmetric<Interval>>, String> {
     match links {
         Links::PlanarTwoLink { mass, length, com, inertia } => {
             let two = |numbers: &[Number; 2]| numbers.each_ref().map(Number::bounds);
@@ -73,6 +73,6 @@ fn masses(links: &Links) -> Result<Vec<Symmetric>, String> {
     }
 }
 
-fn symmetric<const N: usize>(matrix: &Matrix<Interval, N, N>) -> Symmetric {
+fn symmetric<const N: usize>(matrix: &Matrix<Interval, N, N>) -> Symmetric<Interval> {
     Symmetric::from_fn(N, |i, j| matrix[(i, j)])
 }

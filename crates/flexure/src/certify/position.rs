@@ -4,8 +4,8 @@
 use flexure_core::scalar::{Interval, Scalar};
 
 use super::certificate::{Gains, Phi, bounds};
-use super::matrix::Symmetric;
 use super::rate::Inequality;
+use crate::linalg::Symmetric;
 
 /// φ and Π of one side, enclosed.
 #[derive(Clone, Debug)]

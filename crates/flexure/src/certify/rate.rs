@@ -2,16 +2,16 @@
 
 use flexure_core::scalar::Interval;
 
-use super::matrix::Symmetric;
 use super::number::Number;
+use crate::linalg::Symmetric;
 
 /// A − β W has to be positive definite.
 #[derive(Clone, Debug)]
 pub struct Inequality {
     /// What dissipates.
-    pub form: Symmetric,
+    pub form: Symmetric<Interval>,
     /// What the rate is relative to.
-    pub weight: Symmetric,
+    pub weight: Symmetric<Interval>,
 }
 
 impl Inequality {

@@ -9,7 +9,6 @@ use flexure_core::scalar::Interval;
 
 use crate::along::{Along, along, start_level, uneven_metric};
 use crate::certify::certificate::{BlockName, Controller, Phi};
-use crate::certify::matrix::Symmetric;
 use crate::certify::rate::Inequality;
 use crate::certify::region::{level_that_holds, region};
 use crate::certify::structural::positions;
@@ -19,6 +18,7 @@ use crate::certify::{
 };
 use crate::confirmation::{Confirmation, confirm};
 use crate::io::{self, Problems, Scenario};
+use crate::linalg::Symmetric;
 use crate::paper::paper_rate;
 use crate::sampling::{Sampled, sample};
 use decimals::{gains, robot};
@@ -280,7 +280,7 @@ fn slower(rate: f64, certificate: &Certificate, sampled: &Sampled, damping: &[f6
     });
     let links = || {
         let damping: Vec<_> = damping.iter().map(|&d| Interval::point(d)).collect();
-        let weight = Symmetric::from_fn(damping.len(), |i, j| Interval::point(sampled.mass_matrix[i][j]));
+        let weight = sampled.mass_matrix.map(Interval::point);
         let (direction, rate) = against(&Inequality { form: Symmetric::diagonal(&damping), weight }, rate)?;
         let state = State::Configuration(sampled.configuration.clone());
         Some(RateWitness { block: BlockName::SigmaL, state, direction, rate })

@@ -2,8 +2,9 @@
 
 use flexure::certify::Verdict;
 use flexure::certify::direct::{
-    Balance, Coordinate, Form, Region, System, Twins, best_rate, jacobian, prove, symmetric_part, vcbc,
+    Balance, Coordinate, Region, System, Twins, best_rate, jacobian, prove, symmetric_part, vcbc,
 };
+use flexure::linalg::Symmetric;
 use flexure_core::control::{Shaping, Tanh};
 use flexure_core::linalg::Vector;
 use flexure_core::robots::PlanarTwoLink;
@@ -42,7 +43,7 @@ impl<C: Decimal> System<C> for Flipped<C> {
     fn balance(&self, at: &[C]) -> Balance<C> {
         let Balance { dissipation, weight } = self.0.balance(at);
         let stiffness = self.0.robot.stiffness;
-        let dissipation = Form::from_fn(8, |i, j| {
+        let dissipation = Symmetric::from_fn(8, |i, j| {
             // Rows s_l, columns q̃_m: −½ (K − K) becomes −½ (K + K).
             let more = if i / 2 == 2 && j / 2 == 1 && i % 2 == j % 2 { stiffness[i % 2] } else { C::ZERO };
             dissipation.at(i, j) - more
@@ -125,12 +126,12 @@ impl<C: Decimal> Regulated<C> {
 
 impl<C: Decimal> System<C> for Regulated<C> {
     fn balance(&self, at: &[C]) -> Balance<C> {
-        let columns = jacobian(at, 4, |x| self.rates(x));
+        let slopes = jacobian(at, 4, |x| self.rates(x));
         let product =
-            |i: usize, j: usize| (0..4).fold(C::ZERO, |sum, k| sum + self.metric[i][k] * columns[j][k]);
+            |i: usize, j: usize| (0..4).fold(C::ZERO, |sum, k| sum + self.metric[i][k] * slopes[(k, j)]);
         Balance {
-            dissipation: Form::from_fn(4, |i, j| -symmetric_part(product, i, j)),
-            weight: Form::from_fn(4, |i, j| self.metric[i][j]),
+            dissipation: Symmetric::from_fn(4, |i, j| -symmetric_part(product, i, j)),
+            weight: Symmetric::from_fn(4, |i, j| self.metric[i][j]),
         }
     }
 }
@@ -164,7 +165,10 @@ impl<C: Scalar> System<C> for NoMetric {
     fn balance(&self, at: &[C]) -> Balance<C> {
         let square = at[0].square();
         let weight = C::ONE - (square + square);
-        Balance { dissipation: Form::from_fn(1, |_, _| C::ONE), weight: Form::from_fn(1, |_, _| weight) }
+        Balance {
+            dissipation: Symmetric::from_fn(1, |_, _| C::ONE),
+            weight: Symmetric::from_fn(1, |_, _| weight),
+        }
     }
 }
 

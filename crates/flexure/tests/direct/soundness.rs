@@ -2,8 +2,9 @@
 
 use flexure::certify::Verdict;
 use flexure::certify::direct::{
-    Balance, ClosedLoop, Coordinate, Flow, Form, Region, System, Twins, best_rate, prove, vcbc,
+    Balance, ClosedLoop, Coordinate, Flow, Region, System, Twins, best_rate, prove, vcbc,
 };
+use flexure::linalg::Symmetric;
 use flexure_core::control::{LinkGains, Metric, MotorGains, Tanh, Vcbc};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links};
@@ -207,8 +208,8 @@ impl<C: Scalar> System<C> for Dip {
         let far = (at[0] - C::from_f64(self.place)) * C::from_f64(1e4);
         let dip = C::from_f64(1.5) * (-far.square()).exp();
         Balance {
-            dissipation: Form::from_fn(1, |_, _| C::ONE - dip),
-            weight: Form::from_fn(1, |_, _| C::ONE),
+            dissipation: Symmetric::from_fn(1, |_, _| C::ONE - dip),
+            weight: Symmetric::from_fn(1, |_, _| C::ONE),
         }
     }
 }

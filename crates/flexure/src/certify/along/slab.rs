@@ -9,6 +9,7 @@ use flexure_core::scalar::{Interval, Jet, Scalar};
 
 use super::closed_loop::{Answer, ClosedLoop, Place, Slope};
 use super::tube::Tube;
+use crate::linalg::Dense;
 
 /// Quantities per joint that are bounded, in the order of a slab's ranges: those of all joints, one quantity after the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,8 +34,8 @@ pub struct Slab {
     pub tube: Tube,
     /// The quantities on the reference at the middle.
     pub nominal: Vec<Interval>,
-    /// Their derivatives by the errors q̃_l, q̃_m, s_l, s_m.
-    pub gradients: Vec<Vec<Interval>>,
+    /// Their derivatives by the errors q̃_l, q̃_m, s_l, s_m: a row per quantity, a column per error.
+    pub gradients: Dense<Interval>,
     /// The quantities.
     pub ranges: Vec<Interval>,
 }
@@ -82,7 +83,7 @@ impl Slab {
     /// About the largest absolute value that quantity `k` takes at the slab's middle, as far as its derivatives are known.
     pub fn seen(&self, k: usize) -> f64 {
         let near_zero = |g: &Interval| Interval::point(g.lo().max(0.0) + g.hi().min(0.0));
-        let gradient: Vec<_> = self.gradients[k].iter().map(near_zero).collect();
+        let gradient: Vec<_> = self.gradients.row(k).iter().map(near_zero).collect();
         self.nominal[k].midpoint().abs() + self.tube.reach(&gradient).hi()
     }
 }
@@ -168,8 +169,8 @@ struct Spread {
     track: Vec<Slope>,
     /// Over slab and tube.
     ranges: Vec<Interval>,
-    /// Their derivatives by the errors.
-    gradients: Vec<Vec<Interval>>,
+    /// Their derivatives by the errors: a row per number.
+    gradients: Dense<Interval>,
 }
 
 impl Way<'_> {
@@ -203,14 +204,13 @@ impl Way<'_> {
         let track: Vec<_> =
             middle.iter().zip(track).map(|(middle, track)| self.expanded(middle, &track)).collect();
         let passes: Vec<Vec<Slope>> = (0..4 * self.n).map(|i| f(&self.seeded(View::Tube(i)))).collect();
-        let gradients: Vec<Vec<_>> =
-            (0..track.len()).map(|k| passes.iter().map(|pass| pass[k].coefficient(1)).collect()).collect();
-        let range = |(k, gradient): (usize, &Vec<Interval>)| {
+        let gradients = Dense::from_fn(track.len(), passes.len(), |k, i| passes[i][k].coefficient(1));
+        let range = |(k, gradient): (usize, &[Interval])| {
             let mean = track[k].coefficient(0) + self.tube.reach(gradient);
             // Both enclose it.
             mean.intersection(passes[0][k].coefficient(0)).unwrap_or(mean)
         };
-        let ranges = gradients.iter().enumerate().map(range).collect();
+        let ranges = gradients.rows().enumerate().map(range).collect();
         Spread { middle, track, ranges, gradients }
     }
 
@@ -242,7 +242,7 @@ impl Spread {
             View::Middle => self.middle.clone(),
             View::Track => self.track.clone(),
             View::Tube(i) => {
-                let slopes = self.gradients.iter().map(|gradient| gradient[i]);
+                let slopes = self.gradients.rows().map(|gradient| gradient[i]);
                 self.ranges
                     .iter()
                     .zip(slopes)

@@ -3,7 +3,7 @@
 use flexure_core::scalar::{Interval, Scalar};
 
 use super::closed_loop::ClosedLoop;
-use crate::certify::matrix::Symmetric;
+use crate::linalg::Symmetric;
 
 /// Errors q̃_l, q̃_m, s_l, s_m with W ≤ c, W = ½ (q̃_lᵀ Π_l q̃_l + q̃_mᵀ Π_m q̃_m + s_lᵀ M_l s_l + s_mᵀ M_m s_m), and what the
 /// inverse of diag(Π_l, Π_m, M_l, M_m) is there.
@@ -14,7 +14,7 @@ pub struct Tube {
     /// Π_l⁻¹, Π_m⁻¹, M_m⁻¹.
     inverses: [Vec<Interval>; 3],
     /// M_l⁻¹ over the tube's link positions.
-    inverse_mass: Symmetric,
+    inverse_mass: Symmetric<Interval>,
 }
 
 impl Tube {

@@ -38,7 +38,7 @@ pub fn candidates(system: &dyn ClosedLoop, level: f64, course: &Course, k: usize
 /// √(2c) P⁻¹ g / √(gᵀ P⁻¹ g), away from zero, for the derivatives g of quantity `k` at `time` in s.
 fn corner(system: &dyn ClosedLoop, level: f64, time: f64, k: usize) -> Candidate {
     let slab = Slab::new(system, level, Interval::point(time));
-    let gradient: Vec<_> = slab.gradients[k].iter().map(|g| Interval::point(g.midpoint())).collect();
+    let gradient: Vec<_> = slab.gradients.row(k).iter().map(|g| Interval::point(g.midpoint())).collect();
     let pull: Vec<f64> = slab.tube.pull(&gradient).iter().map(|x| x.midpoint()).collect();
     let length = gradient.iter().zip(&pull).map(|(g, x)| g.midpoint() * x).sum::<f64>().sqrt();
     let scale = if length > 0.0 { INSIDE * (2.0 * level).sqrt() / length } else { 0.0 };

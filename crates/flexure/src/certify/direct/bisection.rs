@@ -4,9 +4,9 @@ use flexure_core::scalar::Interval;
 
 use super::definite::{Definite, definite};
 use super::witness::Sample;
-use super::{Flow, Witness, samples, split};
-use crate::certify::matrix::Symmetric;
+use super::{Balance, Flow, Witness, samples, split};
 use crate::certify::{Undecided, Verdict};
+use crate::linalg::Symmetric;
 
 /// A rate that holds at every state of the region.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,12 +83,11 @@ enum About {
 }
 
 impl About {
-    fn matrix(self, flow: &dyn Flow, at: &[Interval], beta: f64) -> Symmetric {
+    fn matrix(self, flow: &dyn Flow, at: &[Interval], beta: f64) -> Symmetric<Interval> {
         let balance = flow.enclosure(at);
-        let weight = balance.weight.symmetric();
         match self {
-            Self::Rate => balance.dissipation.symmetric().minus(&weight, Interval::point(beta)),
-            Self::Weight => weight,
+            Self::Rate => balance.dissipation.minus(&balance.weight, Interval::point(beta)),
+            Self::Weight => balance.weight,
         }
     }
 }
@@ -101,11 +100,10 @@ struct Doubt {
 
 /// `None` where both inequalities hold on the whole box `at`.
 fn decide(flow: &dyn Flow, at: &[Interval], beta: f64) -> Option<Doubt> {
-    let balance = flow.enclosure(at);
-    let weight = balance.weight.symmetric();
-    let rate = balance.dissipation.symmetric().minus(&weight, Interval::point(beta));
+    let Balance { dissipation, weight } = flow.enclosure(at);
+    let rate = dissipation.minus(&weight, Interval::point(beta));
     // Before anything is known of a factor, rows count by the size of the metric.
-    let unit = |a: &Symmetric, i: usize| {
+    let unit = |a: &Symmetric<Interval>, i: usize| {
         let size = a.at(i, i).magnitude();
         if size.is_finite() && size > 0.0 { size.sqrt().recip() } else { 1.0 }
     };

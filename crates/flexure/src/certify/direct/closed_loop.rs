@@ -7,7 +7,8 @@ use flexure_core::scalar::{Dual, Interval, Over, Scalar};
 use flexure_core::virtual_system::{ErrorState, VelocityErrors, velocity_error_rates};
 
 use super::flow::VcbcFlow;
-use super::{Balance, Coordinate, Form, System, Twins, jacobian, symmetric_part};
+use super::{Balance, Coordinate, System, Twins, jacobian, symmetric_part};
+use crate::linalg::Symmetric;
 
 /// A robot under the v-CBC law, constants of type `C`.
 ///
@@ -104,16 +105,16 @@ where
         let model = LinkMatrices::new(&self.robot.links, &q_l, &v_l);
         let E_l = model.workless();
 
-        let columns = jacobian(&at[..4 * N], 4 * N, |z| self.rates(z, &E_l));
+        let F = jacobian(&at[..4 * N], 4 * N, |z| self.rates(z, &E_l));
         let (Pi_l, Pi_l_rate) = self.link_metric(at, &E_l);
         let half = C::from_f64(0.5);
         let carried = |i: usize, j: usize| match i / N {
-            0 => Pi_l[i] * columns[j][i],
-            1 => self.law.motor.metric[i - N] * columns[j][i],
-            _ => columns[j][i],
+            0 => Pi_l[i] * F[(i, j)],
+            1 => self.law.motor.metric[i - N] * F[(i, j)],
+            _ => F[(i, j)],
         };
         let inside = |i: usize, j: usize, k: usize| i / N == k && j / N == k;
-        let dissipation = Form::from_fn(4 * N, |i, j| {
+        let dissipation = Symmetric::from_fn(4 * N, |i, j| {
             let metric_rate = if i == j && inside(i, j, 0) {
                 half * Pi_l_rate[i]
             } else if inside(i, j, 2) {
@@ -123,7 +124,7 @@ where
             };
             -(symmetric_part(carried, i, j) + metric_rate)
         });
-        let weight = Form::from_fn(4 * N, |i, j| match i / N {
+        let weight = Symmetric::from_fn(4 * N, |i, j| match i / N {
             2 if inside(i, j, 2) => model.mass[(i - 2 * N, j - 2 * N)],
             _ if i != j => C::ZERO,
             0 => Pi_l[i],

@@ -2,7 +2,19 @@
 
 use flexure_core::scalar::Interval;
 
-use super::{Balance, ClosedLoop};
+use super::ClosedLoop;
+use crate::linalg::Symmetric;
+
+/// How a quadratic storage W = ½ δzᵀ `weight` δz balances: Ẇ = −δzᵀ `dissipation` δz.
+///
+/// √W decays at least at the rate β where `dissipation − β weight` and `weight` are positive definite.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Balance<T> {
+    /// What is lost.
+    pub dissipation: Symmetric<T>,
+    /// The metric P.
+    pub weight: Symmetric<T>,
+}
 
 /// One coordinate of a region.
 #[derive(Clone, Debug, PartialEq)]

@@ -13,7 +13,7 @@
 //! | [`prove`], [`best_rate`] | branch and bound |
 //! | [`law_agreement`] | whether the closed form is what the law's code gives |
 //!
-//! **Trusted:** intervals, dual numbers, [`Symmetric`](super::matrix::Symmetric), `definite`, `bisection` and the
+//! **Trusted:** intervals, dual numbers, [`Symmetric`](crate::linalg::Symmetric), `definite`, `bisection` and the
 //! [`Flow`]'s matrices on intervals. What runs in `f64` (samples, eigenvectors, preconditioners, the choice of what to bisect)
 //! only makes proofs quicker: a wrong number there costs time.
 //!
@@ -25,9 +25,7 @@ mod best;
 mod bisection;
 mod closed_loop;
 mod definite;
-mod dense;
 mod flow;
-mod form;
 mod jacobian;
 mod samples;
 mod split;
@@ -37,7 +35,6 @@ pub use agreement::{Agreement, law_agreement};
 pub use best::{Best, best_rate};
 pub use bisection::{Proved, prove};
 pub use closed_loop::{ClosedLoop, Region, full_turn, vcbc};
-pub use flow::{Coordinate, Flow, System, Twins};
-pub use form::{Balance, Form};
+pub use flow::{Balance, Coordinate, Flow, System, Twins};
 pub use jacobian::{jacobian, symmetric_part};
 pub use witness::{State, Witness};

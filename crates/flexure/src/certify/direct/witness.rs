@@ -2,7 +2,8 @@
 
 use flexure_core::scalar::Interval;
 
-use super::{Flow, dense};
+use super::Flow;
+use crate::linalg::weakest;
 
 /// A state: every coordinate by its name.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,7 +50,7 @@ impl Sample {
     /// At the point `at`; `None` where the metric is not one.
     pub(super) fn new(flow: &dyn Flow, at: Vec<f64>) -> Option<Self> {
         let balance = flow.value(&at);
-        let (rate, direction) = dense::weakest(&balance.dissipation, &balance.weight)?;
+        let (rate, direction) = weakest(&balance.dissipation, &balance.weight)?;
         Some(Self { at, rate, direction })
     }
 

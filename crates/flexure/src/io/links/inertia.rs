@@ -3,10 +3,10 @@
 use flexure_core::linalg::Matrix;
 
 use super::written::symmetric;
-use crate::eigenvalues::eigenvalues;
 use crate::io::quantity;
 use crate::io::site::Site;
 use crate::io::table::Table;
+use crate::linalg::{Leading, eigenvalues};
 
 /// What rounding in a file with few digits may take away, relative to the largest principal inertia.
 const SLACK: f64 = 1e-9;
@@ -50,7 +50,11 @@ pub(in crate::io) fn check(site: &Site<'_>, six: [f64; 6]) -> Option<()> {
 
 /// Principal inertias in ascending order.
 fn principal(inertia: &Matrix<f64, 3, 3>) -> [f64; 3] {
-    let mut values = eigenvalues(*inertia).0;
+    let mut axes = *inertia;
+    let mut values = [0.0; 3];
+    for (value, found) in values.iter_mut().zip(eigenvalues(Leading::of(&mut axes.0, 3))) {
+        *value = found;
+    }
     values.sort_by(f64::total_cmp);
     values
 }
