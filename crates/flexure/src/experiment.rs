@@ -11,6 +11,7 @@ use crate::report::{
 };
 use crate::run::{Run, run};
 use crate::summary::Summary;
+use crate::units::Unit;
 
 /// The experiments of the paper: each shaping function from rest off the reference, and from a smooth start.
 pub const REPRODUCED: [&str; 6] = [
@@ -198,24 +199,9 @@ fn value(assumed: &io::Assumption) -> String {
     format!("{}{}", assumed.value, unit(&assumed.key).replace(' ', "\u{a0}"))
 }
 
-/// Unit of the value at `key` of a robot or scenario file; empty for none and for whole tables.
-fn unit(key: &str) -> &'static str {
-    match key.rsplit('.').next().unwrap_or_default() {
-        "duration" | "control_period" | "settle" | "rise" => " s",
-        "gravity" => " m/s²",
-        "mass" => " kg",
-        "length" | "com" => " m",
-        "inertia" | "motor_inertia" => " kg m²",
-        "stiffness" | "metric" => " N m/rad",
-        "link_damping" | "motor_damping" | "damping" => " N m s/rad",
-        "torque_limit" => " N m",
-        "torque_rate_limit" => " N m/s",
-        "velocity_limit" => " rad/s",
-        "deflection_limit" => " rad",
-        "spring_hardening" | "metric_hardening" => " N m/rad³",
-        "kappa" => " 1/s",
-        _ => "",
-    }
+/// Unit of the value at `key` of a robot or scenario file, behind a blank; empty for none and for whole tables.
+fn unit(key: &str) -> String {
+    Unit::of_key(key).map(|unit| format!(" {}", unit.raised)).unwrap_or_default()
 }
 
 /// Every assumption of every file, once; a scenario's include its robot's.

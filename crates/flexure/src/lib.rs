@@ -26,6 +26,7 @@ pub mod sim;
 pub mod summary;
 pub mod trace;
 pub mod tune;
+pub mod units;
 pub mod verify;
 
 /// The program of the README, compiled and run with the tests of the documentation.

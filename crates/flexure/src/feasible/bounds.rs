@@ -3,6 +3,7 @@
 use super::Usage;
 use super::peaks::Peak;
 use crate::io::{JointKind, Robot};
+use crate::units::{self, Unit};
 
 /// What is limited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,15 +79,15 @@ pub fn is_position(key: &str) -> bool {
 }
 
 /// What a limit with this key is of, and the unit.
-pub fn words(key: &str, kind: JointKind) -> (&'static str, &'static str) {
-    let (what, [angle, distance]) = match key {
-        "torque_limit" => ("motor torque", ["N m", "N"]),
-        "torque_rate_limit" => ("rate of the motor torque", ["N m/s", "N/s"]),
-        "velocity_limit" => ("link velocity", ["rad/s", "m/s"]),
-        "deflection_limit" => ("deflection of the spring", ["rad", "m"]),
-        _ => ("link position", ["rad", "m"]),
+pub fn limit_words(key: &str, kind: JointKind) -> (&'static str, &'static str) {
+    let what = match key {
+        "torque_limit" => "motor torque",
+        "torque_rate_limit" => "rate of the motor torque",
+        "velocity_limit" => "link velocity",
+        "deflection_limit" => "deflection of the spring",
+        _ => "link position",
     };
-    (what, if kind == JointKind::Revolute { angle } else { distance })
+    (what, Unit::of_key(key).unwrap_or(units::ANGLE).of(kind).plain)
 }
 
 /// The limits that `robot` has, joint by joint.

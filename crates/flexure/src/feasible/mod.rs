@@ -15,6 +15,7 @@ mod track;
 use serde::Serialize;
 
 use self::bounds::bounds;
+pub(crate) use self::bounds::limit_words;
 pub use self::effort::effort;
 use self::peaks::{Course, peaks};
 pub use self::search::speed;
@@ -86,7 +87,7 @@ pub fn pinned(scenario: &Scenario) -> Result<Scenario, Problems> {
 fn described(scenario: &Scenario, usage: &Usage) -> String {
     let robot = &scenario.robot;
     let joint = &robot.joints[usage.joint];
-    let (what, unit) = bounds::words(usage.key, joint.kind);
+    let (what, unit) = limit_words(usage.key, joint.kind);
     let share = if usage.share.is_finite() { format!(", {:.3} of it", usage.share) } else { String::new() };
     format!(
         "joint {}: {what} of {:.4} {unit} at t = {:.4} s, where {} is {} {unit}{share}",

@@ -6,6 +6,7 @@ use super::certificates::{self, CertificateReport};
 use super::markdown::{ERRATA, body, subscripts};
 use super::number::{NONE, engineering};
 use crate::summary::Summary;
+use crate::units;
 
 /// Everything a report says. The same report gives the same page, byte for byte: no clock is read.
 #[derive(Clone, Debug, Default)]
@@ -117,15 +118,15 @@ fn contents(report: &Report) -> Markup {
 
 /// Heading and unit of each number in the summary table.
 const COLUMNS: [(&str, &str); 11] = [
-    ("max |e_l|", "rad"),
-    ("rms e_l", "rad"),
-    ("final |e_l|", "rad"),
-    ("settling time", "s"),
-    ("max |u_m|", "N m"),
-    ("rms u_m", "N m"),
+    ("max |e_l|", units::ANGLE.raised),
+    ("rms e_l", units::ANGLE.raised),
+    ("final |e_l|", units::ANGLE.raised),
+    ("settling time", units::TIME.raised),
+    ("max |u_m|", units::TORQUE.raised),
+    ("rms u_m", units::TORQUE.raised),
     ("saturated", "%"),
-    ("rate sampled", "1/s"),
-    ("rate certified", "1/s"),
+    ("rate sampled", units::RATE.raised),
+    ("rate certified", units::RATE.raised),
     ("energy drift", "–"),
     ("steps", "–"),
 ];

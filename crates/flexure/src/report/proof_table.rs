@@ -8,6 +8,7 @@ use crate::along::Along;
 use crate::certify::Verdict;
 use crate::certify::certificate::{Norm, Side, StructureName};
 use crate::proof_summary::{BlockRates, ProofSummary, WitnessSummary};
+use crate::units::{self, Unit};
 
 /// What was proved, refuted or left undecided, at most 100 columns wide.
 pub fn proof_table(summary: &ProofSummary) -> String {
@@ -159,11 +160,6 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
 
 /// What is bounded along the reference.
 fn bounds(along: &Along) -> Vec<String> {
-    let unit = |key: &str| match key {
-        "torque_limit" => "N m",
-        "velocity_limit" => "rad/s",
-        _ => "rad",
-    };
     let mut lines = vec![
         format!(
             "along        while W ≤ {} J: |q̇_l| ≤ {} rad/s",
@@ -178,7 +174,8 @@ fn bounds(along: &Along) -> Vec<String> {
         ),
     ];
     lines.extend(along.limits.iter().map(|limit| {
-        let (joint, key, unit) = (limit.joint + 1, limit.key, unit(limit.key));
+        let (joint, key, unit) =
+            (limit.joint + 1, limit.key, Unit::of_key(limit.key).unwrap_or(units::NONE).plain);
         let verdict = match &limit.verdict {
             Verdict::Proved(bound) => format!("never reached, at most {} {unit}", short(*bound, 3)),
             Verdict::Refuted(state) => {

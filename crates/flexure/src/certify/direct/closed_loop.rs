@@ -9,6 +9,7 @@ use flexure_core::virtual_system::{ErrorState, VelocityErrors, velocity_error_ra
 use super::flow::VcbcFlow;
 use super::{Balance, Coordinate, System, Twins, jacobian, symmetric_part};
 use crate::linalg::Symmetric;
+use crate::units::{self, Unit};
 
 /// A robot under the v-CBC law, constants of type `C`.
 ///
@@ -65,16 +66,19 @@ impl<const N: usize> Region<N> {
     /// The coordinates in the order of [`ClosedLoop`].
     pub fn coordinates(&self) -> Vec<Coordinate> {
         let blocks = [
-            ("e_l", "rad", &self.error_l),
-            ("e_m", "rad", &self.error_m),
-            ("s_l", "rad/s", &self.velocity_error_l),
-            ("s_m", "rad/s", &self.velocity_error_m),
-            ("q_l", "rad", &self.position),
-            ("v_l", "rad/s", &self.velocity),
+            ("e_l", units::ANGLE, &self.error_l),
+            ("e_m", units::ANGLE, &self.error_m),
+            ("s_l", units::SPEED, &self.velocity_error_l),
+            ("s_m", units::SPEED, &self.velocity_error_m),
+            ("q_l", units::ANGLE, &self.position),
+            ("v_l", units::SPEED, &self.velocity),
         ];
-        let named = |(name, unit, ranges): (&str, &'static str, &[Interval; N])| {
-            let coordinate =
-                |(i, &range): (usize, &Interval)| Coordinate { name: format!("{name}[{i}]"), unit, range };
+        let named = |(name, unit, ranges): (&str, Unit, &[Interval; N])| {
+            let coordinate = |(i, &range): (usize, &Interval)| Coordinate {
+                name: format!("{name}[{i}]"),
+                unit: unit.plain,
+                range,
+            };
             ranges.iter().enumerate().map(coordinate).collect::<Vec<_>>()
         };
         blocks.into_iter().flat_map(named).collect()
