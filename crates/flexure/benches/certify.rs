@@ -2,7 +2,7 @@
 
 use divan::{Bencher, black_box};
 use flexure::certify::direct::{self, Flow, best_rate};
-use flexure::certify::{Certificate, Number, Problem, certify};
+use flexure::certify::{Certificate, Number, Proposition, certify};
 use flexure::io::load_scenario;
 use flexure::proof::{Question, Region, prove};
 use flexure::verify::verify;
@@ -28,7 +28,7 @@ const SIGMA_M: f64 = 44.347_826_086_956_52;
 const TANH_CONVERGENCE: f64 = 9.950_547_536_867_305;
 
 /// A built-in scenario with errors of up to `error` rad.
-fn problem(scenario: &str, error: f64) -> Problem {
+fn problem(scenario: &str, error: f64) -> Proposition {
     let scenario = load_scenario(scenario).expect("built in");
     let region = Region::Errors(vec![error; 2 * scenario.robot.joint_count()]);
     flexure::proof::problem(&scenario, &Question { region, ..Question::default() }, None)

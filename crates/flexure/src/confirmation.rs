@@ -5,7 +5,7 @@ use flexure_core::scalar::Interval;
 
 use crate::certify::Verdict;
 use crate::certify::certificate::Certificate;
-use crate::certify::direct::{ClosedLoop, Proved, Region, Witness, full_turn, prove, vcbc};
+use crate::certify::direct::{DirectWitness, Proved, StateBox, VcbcLoop, full_turn, prove, vcbc};
 use crate::certify::number::Number;
 use crate::io::{JointKind, Problems, Robot, Scenario, VcbcGains};
 use crate::registry::{TwinVisitor, law, law_over, with_twins};
@@ -15,7 +15,7 @@ use crate::registry::{TwinVisitor, law, law_over, with_twins};
 const SHARE: f64 = 1.0 - 1e-9;
 
 /// What the direct engine says of a certified rate.
-pub type Confirmation = Verdict<Proved, Witness>;
+pub type Confirmation = Verdict<Proved, DirectWitness>;
 
 /// Proves the contraction rate of `certificate` again, on its region and for link speeds of up to `speed` [rad/s], from
 /// the full inequality, looking at no more than `budget` boxes.
@@ -53,7 +53,7 @@ impl TwinVisitor for Confirm<'_> {
         let around = |x: f64| Interval::point(-x).hull(Interval::point(x));
         let error =
             |i: usize| errors[i].as_ref().map_or(Interval::ENTIRE, |e: &Number| around(e.bounds().hi()));
-        let region = Region {
+        let region = StateBox {
             error_l: std::array::from_fn(error),
             error_m: std::array::from_fn(|i| error(N + i)),
             velocity_error_l: [Interval::ENTIRE; N],
@@ -61,8 +61,8 @@ impl TwinVisitor for Confirm<'_> {
             position: std::array::from_fn(|i| range(&scenario.robot, i)),
             velocity: [around(speed); N],
         };
-        let bounds = ClosedLoop { robot: enclosed, law: law_over(gains, |x| scenario.bounds(x)) };
-        let point = ClosedLoop { robot: point, law: law(gains) };
+        let bounds = VcbcLoop { robot: enclosed, law: law_over(gains, |x| scenario.bounds(x)) };
+        let point = VcbcLoop { robot: point, law: law(gains) };
         let rate = certificate.contraction_rate.bounds().lo() * SHARE;
         prove(&vcbc(bounds, point, &region), rate, budget)
     }

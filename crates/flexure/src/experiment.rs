@@ -7,7 +7,7 @@ use crate::proof::{Direct, Proof, Question, Region, certified_rate, prove};
 use crate::proof_summary::ProofSummary;
 use crate::report::number::engineering;
 use crate::report::{
-    Assumption, CertificateReport, FigureOptions, Report, RunReport, comparison, four_panel,
+    AssumedNumber, CertificateReport, FigureOptions, RunReport, RunsReport, comparison, four_panel,
 };
 use crate::run::{Run, run};
 use crate::summary::Summary;
@@ -128,9 +128,9 @@ pub fn reproduce(progress: &(dyn Fn(usize, f64) + Sync)) -> Result<Vec<Experimen
 }
 
 /// The report of some experiments.
-pub fn report(experiments: &[Experiment], certificates: &[Certified]) -> Report {
+pub fn report(experiments: &[Experiment], certificates: &[Certified]) -> RunsReport {
     let traces: Vec<_> = experiments.iter().map(|e| (e.scenario.name.as_str(), &e.run.trace)).collect();
-    Report {
+    RunsReport {
         title: "Virtual-contraction control of a flexible-joint robot".to_owned(),
         introduction: INTRODUCTION.to_owned(),
         runs: experiments.iter().map(run_report).collect(),
@@ -205,13 +205,13 @@ fn unit(key: &str) -> String {
 }
 
 /// Every assumption of every file, once; a scenario's include its robot's.
-pub fn assumptions<'a>(scenarios: impl Iterator<Item = &'a Scenario>) -> Vec<Assumption> {
-    let mut all: Vec<Assumption> = Vec::new();
+pub fn assumptions<'a>(scenarios: impl Iterator<Item = &'a Scenario>) -> Vec<AssumedNumber> {
+    let mut all: Vec<AssumedNumber> = Vec::new();
     for scenario in scenarios {
         for assumed in &scenario.assumptions {
             let seen = all.iter().any(|a| a.file == assumed.file && a.key == assumed.key);
             if !seen {
-                all.push(Assumption {
+                all.push(AssumedNumber {
                     file: assumed.file.clone(),
                     key: assumed.key.clone(),
                     value: value(assumed),

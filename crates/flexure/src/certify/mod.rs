@@ -24,7 +24,7 @@ pub mod witness;
 
 pub use certificate::Certificate;
 pub use number::Number;
-pub use region::Request;
-pub use structural::{Problem, certify};
+pub use region::RequestedRegion;
+pub use structural::{Proposition, certify};
 pub use verdict::{Undecided, Verdict};
-pub use witness::{RateWitness, State};
+pub use witness::{RateWitness, WitnessState};

@@ -1,5 +1,7 @@
 //! States and directions at which a rate is not reached, in plain `f64`.
 
+use flexure_core::scalar::Interval;
+
 use super::certificate::BlockName;
 use super::rate::Inequality;
 use crate::linalg::{Symmetric, direction_of_descent};
@@ -10,7 +12,7 @@ pub struct RateWitness {
     /// The block of the closed loop.
     pub block: BlockName,
     /// The state.
-    pub state: State,
+    pub state: WitnessState,
     /// A variation δz of the block there.
     pub direction: Vec<f64>,
     /// The rate in that direction, δzᵀ A δz / δzᵀ W δz [1/s].
@@ -19,7 +21,7 @@ pub struct RateWitness {
 
 /// What a block depends on.
 #[derive(Clone, Debug, PartialEq)]
-pub enum State {
+pub enum WitnessState {
     /// Position errors of its side in rad.
     Error(Vec<f64>),
     /// Joint positions in rad or m.
@@ -30,7 +32,7 @@ pub enum State {
 
 /// A direction in which A − β W is not positive, in `f64`, and the rate in it; none if there is no such direction.
 pub fn against(inequality: &Inequality, beta: f64) -> Option<(Vec<f64>, f64)> {
-    let [form, weight] = [&inequality.form, &inequality.weight].map(|matrix| matrix.map(|x| x.midpoint()));
+    let [form, weight] = [&inequality.form, &inequality.weight].map(|matrix| matrix.map(Interval::midpoint));
     let direction = direction_of_descent(&form.minus(&weight, beta))?;
     let rate = quadratic(&direction, &form) / quadratic(&direction, &weight);
     (rate <= beta).then_some((direction, rate))

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 pub use entrant::{Entrant, entrants};
 pub use leaderboard::{Leaderboard, Loss, TaskScores, is_vcbc};
 pub use ranking::{Standing, TIE, ranks, standings};
-pub use score::{CHATTERS, Gain, Score};
+pub use score::{CHATTERS, Score, TunedGain};
 pub use task::{Task, tasks};
 
 use crate::io::{Problem, Problems};

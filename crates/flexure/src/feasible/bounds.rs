@@ -7,7 +7,7 @@ use crate::units::{self, Unit};
 
 /// What is limited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
+pub enum LimitKind {
     /// Motor torque.
     Torque,
     /// Its rate.
@@ -26,7 +26,7 @@ pub struct Bound {
     /// Index of the joint.
     pub joint: usize,
     /// Of what.
-    pub quantity: Quantity,
+    pub quantity: LimitKind,
     /// Its key in robot files.
     key: &'static str,
     limit: f64,
@@ -54,7 +54,7 @@ impl Bound {
     /// The largest share that a speed may be chosen for, which need not be `margin`: nothing is gained by staying away from
     /// the ends of a range.
     pub fn allowed(&self, margin: f64) -> f64 {
-        if self.quantity == Quantity::Position { 1.0 } else { margin }
+        if self.quantity == LimitKind::Position { 1.0 } else { margin }
     }
 
     /// With what comes closest.
@@ -94,16 +94,16 @@ pub fn limit_words(key: &str, kind: JointKind) -> (&'static str, &'static str) {
 pub fn bounds(robot: &Robot) -> Vec<Bound> {
     let limits = &robot.limits;
     let symmetric = [
-        ("torque_limit", Quantity::Torque, &limits.torque),
-        ("torque_rate_limit", Quantity::TorqueRate, &limits.torque_rate),
-        ("velocity_limit", Quantity::Velocity, &limits.velocity),
-        ("deflection_limit", Quantity::Deflection, &limits.deflection),
+        ("torque_limit", LimitKind::Torque, &limits.torque),
+        ("torque_rate_limit", LimitKind::TorqueRate, &limits.torque_rate),
+        ("velocity_limit", LimitKind::Velocity, &limits.velocity),
+        ("deflection_limit", LimitKind::Deflection, &limits.deflection),
     ];
     let of_joint = |joint: usize| {
         let (lower, upper) = (limits.lower[joint], limits.upper[joint]);
         let half = if (upper - lower).is_finite() { 0.5 * (upper - lower) } else { 0.0 };
         let position = |key, limit: f64, side: f64| {
-            let quantity = Quantity::Position;
+            let quantity = LimitKind::Position;
             Bound { joint, quantity, key, limit, middle: limit - side * half, half, side }
         };
         let [lower_key, upper_key] = POSITIONS;

@@ -17,7 +17,7 @@ use serde::Serialize;
 use self::bounds::bounds;
 pub(crate) use self::bounds::limit_words;
 pub use self::effort::effort;
-use self::peaks::{Course, peaks};
+use self::peaks::{PacedReference, peaks};
 pub use self::search::speed;
 use self::track::with_track;
 use crate::io::{Problem, Problems, Scenario, Speed};
@@ -49,7 +49,7 @@ pub fn usage(scenario: &Scenario) -> Result<Vec<Usage>, Problems> {
     let speed = speed(scenario)?;
     with_track(scenario, |track| {
         let bounds = bounds(&scenario.robot);
-        let peaks = peaks(&Course::new(scenario, track, speed), &bounds, search::fine(scenario));
+        let peaks = peaks(&PacedReference::new(scenario, track, speed), &bounds, search::fine(scenario));
         bounds.iter().zip(peaks).map(|(bound, peak)| bound.usage(&peak)).collect()
     })
 }

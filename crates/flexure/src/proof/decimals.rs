@@ -3,13 +3,13 @@
 use flexure_core::scalar::Interval;
 
 use crate::certify::Number;
-use crate::certify::certificate::{Body, Gains, JointKind, Links, Robot};
+use crate::certify::certificate::{DecimalBody, DecimalGains, DecimalLinks, DecimalRobot, JointMotion};
 use crate::io::{self, Scenario};
 
 /// The gains of a side.
-pub(super) fn gains(scenario: &Scenario, gains: &io::SideGains) -> Gains {
+pub(super) fn gains(scenario: &Scenario, gains: &io::SideGains) -> DecimalGains {
     let numbers = |values: &[f64]| values.iter().map(|&x| Number::read(x, scenario.bounds(x))).collect();
-    Gains {
+    DecimalGains {
         metric: numbers(&gains.metric),
         shaping: numbers(&gains.shaping),
         damping: numbers(&gains.damping),
@@ -18,9 +18,9 @@ pub(super) fn gains(scenario: &Scenario, gains: &io::SideGains) -> Gains {
 }
 
 /// The robot.
-pub(super) fn robot(data: &io::Robot) -> Robot {
+pub(super) fn robot(data: &io::Robot) -> DecimalRobot {
     let numbers = |values: &[f64]| values.iter().map(|&x| Number::read(x, data.bounds(x))).collect();
-    Robot {
+    DecimalRobot {
         name: data.name.clone(),
         joints: data.joint_count(),
         links: links(data),
@@ -31,35 +31,35 @@ pub(super) fn robot(data: &io::Robot) -> Robot {
     }
 }
 
-fn links(data: &io::Robot) -> Links {
+fn links(data: &io::Robot) -> DecimalLinks {
     let number = |x: f64| Number::read(x, data.bounds(x));
     match (&data.links, &data.enclosed) {
-        (io::Links::PlanarTwoLink { mass, length, com, inertia }, _) => Links::PlanarTwoLink {
+        (io::Links::PlanarTwoLink { mass, length, com, inertia }, _) => DecimalLinks::PlanarTwoLink {
             mass: mass.map(number),
             length: number(length[0]),
             com: com.map(number),
             inertia: inertia.map(number),
         },
         (io::Links::Pendulum { mass, com, inertia }, _) => {
-            Links::Pendulum { mass: number(*mass), com: number(*com), inertia: number(*inertia) }
+            DecimalLinks::Pendulum { mass: number(*mass), com: number(*com), inertia: number(*inertia) }
         }
         (_, io::Links::Tree(bodies)) => {
             let bodies = bodies.iter().enumerate().map(|(i, enclosed)| body(data, i, enclosed));
-            Links::Tree { bodies: bodies.collect() }
+            DecimalLinks::Tree { bodies: bodies.collect() }
         }
         _ => unreachable!("enclosed links are of the same kind"),
     }
 }
 
-fn body(data: &io::Robot, joint: usize, body: &io::Body<Interval>) -> Body {
+fn body(data: &io::Robot, joint: usize, body: &io::Body<Interval>) -> DecimalBody {
     let computed = Number::computed;
     let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = body.inertia;
     let (lower, upper) = (data.limits.lower[joint], data.limits.upper[joint]);
     let number = |x: f64| Number::read(x, data.bounds(x));
     let prismatic = body.kind == io::JointKind::Prismatic;
-    Body {
+    DecimalBody {
         parent: body.parent,
-        kind: if prismatic { JointKind::Prismatic } else { JointKind::Revolute },
+        kind: if prismatic { JointMotion::Prismatic } else { JointMotion::Revolute },
         axis: body.axis.map(computed),
         rotation: body.rotation.map(|row| row.map(computed)),
         translation: body.translation.map(computed),

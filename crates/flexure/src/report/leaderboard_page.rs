@@ -3,7 +3,7 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 
 use super::effort::{chatter_figure, effort_figure};
-use super::html::{Assumption, assumptions};
+use super::html::{AssumedNumber, assumptions};
 use super::number::{NONE, engineering, short, significant};
 use crate::compare::{Leaderboard, Loss, Score, TaskScores, is_vcbc};
 
@@ -11,7 +11,7 @@ const TITLE: &str = "Control laws of flexible-joint robots on the same bench";
 
 /// The page: ranking, where v-CBC loses, errors, figures, gains and what was assumed. The same comparison gives the same
 /// page, byte for byte.
-pub fn leaderboard_page(board: &Leaderboard, assumed: &[Assumption]) -> String {
+pub fn leaderboard_page(board: &Leaderboard, assumed: &[AssumedNumber]) -> String {
     markup! {
         (DOCTYPE)
         html lang="en" {

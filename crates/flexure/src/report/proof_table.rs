@@ -6,8 +6,8 @@ use super::number::{NONE, engineering, short, significant};
 use super::table::{headed, right};
 use crate::along::Along;
 use crate::certify::Verdict;
-use crate::certify::certificate::{Norm, Side, StructureName};
-use crate::proof_summary::{BlockRates, ProofSummary, WitnessSummary};
+use crate::certify::certificate::{LoopSide, Norm, StructureName};
+use crate::proof_summary::{BlockSummary, ProofSummary, WitnessSummary};
 use crate::units::{self, Unit};
 
 /// What was proved, refuted or left undecided, at most 100 columns wide.
@@ -53,7 +53,7 @@ pub fn certificate_table(summaries: &[ProofSummary]) -> String {
     table.to_string()
 }
 
-fn rates(summary: &ProofSummary, contraction: BlockRates, convergence: BlockRates) -> String {
+fn rates(summary: &ProofSummary, contraction: BlockSummary, convergence: BlockSummary) -> String {
     let mut table = headed(["block", "contraction\n[1/s]", "convergence\n[1/s]"].into_iter());
     let number = |x: Option<f64>| right(x.map_or(NONE.to_owned(), |x| significant(x, 6)));
     let mut row = |name: &str, contraction, convergence| {
@@ -99,7 +99,7 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
             significant(summary.sampled.rate, 6)
         ));
     }
-    for side in [Side::Link, Side::Motor] {
+    for side in [LoopSide::Link, LoopSide::Motor] {
         let bounds = summary.measures.iter().filter(|measure| measure.side == side).map(|measure| {
             let norm = match measure.norm {
                 Norm::One => "1",
@@ -110,7 +110,7 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
         });
         let bounds = bounds.collect::<Vec<_>>().join(", ");
         if !bounds.is_empty() {
-            let side = if side == Side::Link { "links: " } else { "motors:" };
+            let side = if side == LoopSide::Link { "links: " } else { "motors:" };
             lines.push(format!("measures     of −Θ ∂φ Θ⁻¹, {side} {bounds} 1/s"));
         }
     }

@@ -2,7 +2,7 @@
 
 use flexure::certify::along::closed_loop::Enclosed;
 use flexure::certify::along::slab::Slab;
-use flexure::certify::along::tube::Tube;
+use flexure::certify::along::tube::ErrorTube;
 use flexure::core::linalg::Vector;
 use flexure::core::model::{Fjr, Links as _};
 use flexure::core::robots::PlanarTwoLink;
@@ -109,7 +109,7 @@ fn reaches_are_the_dual_norm() {
     for _ in 0..100 {
         let q = Vector([3.0 * r.next(), 3.0 * r.next()]);
         let g: [f64; 8] = std::array::from_fn(|_| r.next());
-        let tube = Tube::new(&system, 1e-16, &q.0.map(Interval::point));
+        let tube = ErrorTube::new(&system, 1e-16, &q.0.map(Interval::point));
         let reach = tube.reach(&g.map(Interval::point)).hi();
         let g_l = Vector([g[4], g[5]]);
         let links = g_l.dot(&floats.robot.links.mass_matrix(&q).ldl().solve(&g_l));

@@ -2,7 +2,7 @@
 
 use flexure::certify::Verdict;
 use flexure::certify::direct::{
-    Balance, Coordinate, Region, System, Twins, best_rate, jacobian, prove, symmetric_part, vcbc,
+    Balance, Coordinate, StateBox, System, Twins, best_rate, jacobian, prove, symmetric_part, vcbc,
 };
 use flexure::linalg::Symmetric;
 use flexure_core::control::{Shaping, Tanh};
@@ -55,7 +55,7 @@ impl<C: Decimal> System<C> for Flipped<C> {
 /// Where slopes are flat the coupling decides: |q̃_i| ≤ 6.
 #[test]
 fn coupling_that_adds_up() {
-    let wide = Region::within(6.0, 5.0);
+    let wide = StateBox::within(6.0, 5.0);
     let rate = 7e-4;
     let right = prove(&flow(tanh, tanh, &wide), rate, 10_000);
     assert!(right.proved().is_some(), "{right:?}");
@@ -199,7 +199,7 @@ fn uncertain_constants() {
         [Interval::point(0.159), Interval::point(0.055)],
         [Interval::point(0.0392), Interval::point(0.00808)],
     );
-    let flow: arm::ArmFlow<_, _> = vcbc(uncertain, exact, &Region::within(3.0, 5.0));
+    let flow: arm::ArmFlow<_, _> = vcbc(uncertain, exact, &StateBox::within(3.0, 5.0));
     let verdict = best_rate(&flow, 20_000);
     println!("uncertain: {verdict:?}");
     assert!(verdict.proved().is_some_and(|best| best.rate > 0.2959), "{verdict:?}");

@@ -7,7 +7,7 @@ use flexure::proof::{Question, prove};
 use flexure::proof_summary::ProofSummary;
 use flexure::report::decimate::{bucket_size, decimate, envelope};
 use flexure::report::{
-    Assumption, CertificateReport, FigureOptions, Report, RunReport, certificate_table, comparison,
+    AssumedNumber, CertificateReport, FigureOptions, RunReport, RunsReport, certificate_table, comparison,
     four_panel, html, png, proof_table, summary_table,
 };
 use flexure::summary::Summary;
@@ -185,14 +185,14 @@ fn pictures_are_1600_wide_and_bad_ones_are_errors() {
     assert!(png("<svg xmlns='http://www.w3.org/2000/svg' width='1' height='1000'/>").is_err());
 }
 
-fn report() -> Report {
+fn report() -> RunsReport {
     let trace = fake::trace(2, 3_000, 6.0);
     let run = |name: &str| RunReport {
         summary: fake::summary(name),
         figure_svg: figure(&trace),
         description: "<b>A run".to_owned(),
     };
-    Report {
+    RunsReport {
         title: "<script>title</script>".to_owned(),
         introduction: "One.\n\nTwo & three.".to_owned(),
         runs: vec![run("<script>name</script>"), run("linear")],
@@ -202,7 +202,7 @@ fn report() -> Report {
             phi: "<script>phi</script>".to_owned(),
             file: "<script>.certificate.json".to_owned(),
         }],
-        assumptions: vec![Assumption {
+        assumptions: vec![AssumedNumber {
             file: "robots/<script>.toml".to_owned(),
             key: "joints.stiffness".to_owned(),
             value: "9, 4 N m/rad".to_owned(),

@@ -43,7 +43,7 @@ pub struct Answer {
 }
 
 /// A robot under its law along a reference.
-pub trait ClosedLoop: Sync {
+pub trait TrackingLoop: Sync {
     /// Number of joints.
     fn joints(&self) -> usize;
     /// Taylor coefficients of the reference in rad/sᵏ over the times `t` in s.
@@ -79,7 +79,7 @@ pub struct Enclosed<L, Pl, Pm, R, const N: usize> {
     pub kinks: Vec<Interval>,
 }
 
-impl<L, Pl, Pm, R, const N: usize> ClosedLoop for Enclosed<L, Pl, Pm, R, N>
+impl<L, Pl, Pm, R, const N: usize> TrackingLoop for Enclosed<L, Pl, Pm, R, N>
 where
     L: Links<Interval, N> + Sync,
     Pl: Shaping<Interval, N> + Sync,

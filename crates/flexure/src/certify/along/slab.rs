@@ -7,13 +7,13 @@
 
 use flexure_core::scalar::{Interval, Jet, Scalar};
 
-use super::closed_loop::{Answer, ClosedLoop, Place, Slope};
-use super::tube::Tube;
+use super::closed_loop::{Answer, Place, Slope, TrackingLoop};
+use super::tube::ErrorTube;
 use crate::linalg::Dense;
 
 /// Quantities per joint that are bounded, in the order of a slab's ranges: those of all joints, one quantity after the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
+pub enum BoundedQuantity {
     /// Link velocity q̇_l [rad/s].
     Velocity,
     /// Deflection of the spring q_m − q_l in rad.
@@ -23,7 +23,8 @@ pub enum Quantity {
 }
 
 /// All of them.
-pub const QUANTITIES: [Quantity; 3] = [Quantity::Velocity, Quantity::Deflection, Quantity::Torque];
+pub const QUANTITIES: [BoundedQuantity; 3] =
+    [BoundedQuantity::Velocity, BoundedQuantity::Deflection, BoundedQuantity::Torque];
 
 /// The tube over a slab of time.
 #[derive(Clone, Debug)]
@@ -31,7 +32,7 @@ pub struct Slab {
     /// Its times in s.
     pub time: Interval,
     /// The errors and the metric of W.
-    pub tube: Tube,
+    pub tube: ErrorTube,
     /// The quantities on the reference at the middle.
     pub nominal: Vec<Interval>,
     /// Their derivatives by the errors q̃_l, q̃_m, s_l, s_m: a row per quantity, a column per error.
@@ -42,9 +43,9 @@ pub struct Slab {
 
 impl Slab {
     /// The tube of level `level` in J over the times `time` in s.
-    pub fn new(system: &dyn ClosedLoop, level: f64, time: Interval) -> Self {
+    pub fn new(system: &dyn TrackingLoop, level: f64, time: Interval) -> Self {
         let jets = system.reference(time);
-        let tube = Tube::new(system, level, &jets.iter().map(|jet| jet[0]).collect::<Vec<_>>());
+        let tube = ErrorTube::new(system, level, &jets.iter().map(|jet| jet[0]).collect::<Vec<_>>());
         let middle = Interval::point(time.midpoint());
         let way = Way {
             n: system.joints(),
@@ -100,7 +101,7 @@ enum Smooth {
 }
 
 impl Smooth {
-    fn over(system: &dyn ClosedLoop, time: Interval) -> Self {
+    fn over(system: &dyn TrackingLoop, time: Interval) -> Self {
         let meets = |times: &[Interval]| times.iter().any(|at| at.intersection(time).is_some());
         match (meets(system.breaks()), meets(system.kinks())) {
             (true, _) => Self::Not,
@@ -136,13 +137,13 @@ impl Seeded {
     }
 
     /// q_l = q_ld + q̃_l and q̇_l = q̇_ld − φ_l(q̃_l) + s_l.
-    fn links(&self, system: &dyn ClosedLoop) -> (Vec<Slope>, Vec<Slope>) {
+    fn links(&self, system: &dyn TrackingLoop) -> (Vec<Slope>, Vec<Slope>) {
         let order = |k: usize| self.q_ld.iter().map(|jet| jet[k]).collect::<Vec<_>>();
         let v_lr = differences(&order(1), &system.approach(self.part(0)));
         (sums(&order(0), self.part(0)), sums(&v_lr, self.part(2)))
     }
 
-    fn answer(&self, system: &dyn ClosedLoop, q_m: &[Slope], v_m: &[Slope]) -> Answer {
+    fn answer(&self, system: &dyn TrackingLoop, q_m: &[Slope], v_m: &[Slope]) -> Answer {
         let (q_l, v_l) = self.links(system);
         system.command(&Place { q_l, q_m: q_m.to_vec(), v_l, v_m: v_m.to_vec() }, &self.q_ld)
     }
@@ -160,7 +161,7 @@ struct Way<'a> {
     offset: Interval,
     /// The box around the tube.
     errors: Vec<Interval>,
-    tube: &'a Tube,
+    tube: &'a ErrorTube,
 }
 
 /// Numbers in all views.

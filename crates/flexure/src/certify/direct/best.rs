@@ -2,18 +2,18 @@
 
 use super::bisection::{Proved, bisect};
 use super::witness::Sample;
-use super::{Flow, State, Witness, samples};
+use super::{DirectWitness, Flow, NamedState, samples};
 use crate::certify::{Undecided, Verdict};
 
 /// A rate that holds over the region, and a state that no larger one survives.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Best {
+pub struct BestRate {
     /// β [1/s], proved.
     pub rate: f64,
     /// An upper bound of the rate at the weakest state that was seen [1/s], by intervals: the true rate is at most this.
     pub upper: f64,
     /// That state.
-    pub at: State,
+    pub at: NamedState,
     /// Boxes looked at, attempts that failed included.
     pub boxes: usize,
 }
@@ -39,7 +39,7 @@ const FACTORS: [f64; 13] = [
 ///
 /// Attempts share the budget: each has its part of what those before it left. Refuted where some state shows that W grows, or
 /// does not shrink, in some direction.
-pub fn best_rate(flow: &dyn Flow, budget: usize) -> Verdict<Best, Witness> {
+pub fn best_rate(flow: &dyn Flow, budget: usize) -> Verdict<BestRate, DirectWitness> {
     let undecided = |at: String, spent| Verdict::Undecided(Undecided { at, spent });
     let Some(mut weakest) = samples::weakest(flow) else {
         return undecided("the metric is positive definite at no sample".to_owned(), 0);
@@ -59,7 +59,7 @@ pub fn best_rate(flow: &dyn Flow, budget: usize) -> Verdict<Best, Witness> {
             spent += boxes;
             match verdict {
                 Verdict::Proved(Proved { rate, .. }) => {
-                    return Verdict::Proved(Best { rate, upper, at: weakest.state(flow), boxes: spent });
+                    return Verdict::Proved(BestRate { rate, upper, at: weakest.state(flow), boxes: spent });
                 }
                 Verdict::Refuted(witness) => {
                     let sample = Sample::new(flow, witness.at.values()).filter(|_| witness.rate < upper);

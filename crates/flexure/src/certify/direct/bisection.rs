@@ -4,7 +4,7 @@ use flexure_core::scalar::Interval;
 
 use super::definite::{Definite, definite};
 use super::witness::Sample;
-use super::{Balance, Flow, Witness, samples, split};
+use super::{Balance, DirectWitness, Flow, samples, split};
 use crate::certify::{Undecided, Verdict};
 use crate::linalg::Symmetric;
 
@@ -20,7 +20,7 @@ pub struct Proved {
 /// Whether `flow` contracts at the rate `beta` [1/s] at every state of its region, looking at no more than `budget` boxes.
 ///
 /// [`Verdict::Proved`] is rigorous for every value of constants that are intervals, and so is [`Verdict::Refuted`].
-pub fn prove(flow: &dyn Flow, beta: f64, budget: usize) -> Verdict<Proved, Witness> {
+pub fn prove(flow: &dyn Flow, beta: f64, budget: usize) -> Verdict<Proved, DirectWitness> {
     /// Boxes before samples: most rates that hold with room to spare take no more, and samples cost as much as hundreds.
     const FEW: usize = 32;
     let (verdict, spent) = bisect(flow, beta, budget.min(FEW));
@@ -38,7 +38,7 @@ pub fn prove(flow: &dyn Flow, beta: f64, budget: usize) -> Verdict<Proved, Witne
 }
 
 /// [`prove`] without looking at samples first, only boxes that resist are searched for witnesses; and the boxes it took.
-pub(super) fn bisect(flow: &dyn Flow, beta: f64, budget: usize) -> (Verdict<Proved, Witness>, usize) {
+pub(super) fn bisect(flow: &dyn Flow, beta: f64, budget: usize) -> (Verdict<Proved, DirectWitness>, usize) {
     let root: Vec<Interval> = flow.coordinates().iter().map(|c| c.range).collect();
     let undecided = |at: String, spent| (Verdict::Undecided(Undecided { at, spent }), spent);
     if !beta.is_finite() {

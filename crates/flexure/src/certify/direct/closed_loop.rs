@@ -17,7 +17,7 @@ use crate::units::{self, Unit};
 /// those of the errors, δz = (δq̃_l, δq̃_m, δs_l, δs_m) with δs = M⁻¹ δσ at the real motion, which needs no inverse of M:
 /// W = ½ δzᵀ diag(Π_l, Π_m, M_l, M_m) δz.
 #[derive(Clone, Debug)]
-pub struct ClosedLoop<C, L, Pl, Pm, const N: usize> {
+pub struct VcbcLoop<C, L, Pl, Pm, const N: usize> {
     /// The robot.
     pub robot: Fjr<C, L, N>,
     /// The law.
@@ -26,7 +26,7 @@ pub struct ClosedLoop<C, L, Pl, Pm, const N: usize> {
 
 /// A box of states of the closed loop; what is not said is unbounded.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Region<const N: usize> {
+pub struct StateBox<const N: usize> {
     /// Link position errors q̃_l in rad.
     pub error_l: [Interval; N],
     /// Motor position errors q̃_m in rad.
@@ -48,7 +48,7 @@ pub fn full_turn() -> Interval {
     Interval::point(-turn).hull(Interval::point(turn))
 }
 
-impl<const N: usize> Region<N> {
+impl<const N: usize> StateBox<N> {
     /// Position errors within ±`error` in rad on both sides, link velocities within ±`velocity` [rad/s], all angles, all
     /// velocity errors.
     pub fn within(error: f64, velocity: f64) -> Self {
@@ -63,7 +63,7 @@ impl<const N: usize> Region<N> {
         }
     }
 
-    /// The coordinates in the order of [`ClosedLoop`].
+    /// The coordinates in the order of [`VcbcLoop`].
     pub fn coordinates(&self) -> Vec<Coordinate> {
         let blocks = [
             ("e_l", units::ANGLE, &self.error_l),
@@ -87,14 +87,14 @@ impl<const N: usize> Region<N> {
 
 /// The v-CBC law's closed loop over a region: robot and law with constants enclosed, and again in `f64`.
 pub fn vcbc<LI, PlI, PmI, L, Pl, Pm, const N: usize>(
-    bounds: ClosedLoop<Interval, LI, PlI, PmI, N>,
-    point: ClosedLoop<f64, L, Pl, Pm, N>,
-    region: &Region<N>,
+    bounds: VcbcLoop<Interval, LI, PlI, PmI, N>,
+    point: VcbcLoop<f64, L, Pl, Pm, N>,
+    region: &StateBox<N>,
 ) -> VcbcFlow<LI, PlI, PmI, L, Pl, Pm, N> {
     Twins { bounds, point, coordinates: region.coordinates() }
 }
 
-impl<C, L, Pl, Pm, const N: usize> System<C> for ClosedLoop<C, L, Pl, Pm, N>
+impl<C, L, Pl, Pm, const N: usize> System<C> for VcbcLoop<C, L, Pl, Pm, N>
 where
     C: Scalar + Over<C>,
     L: Links<C, N>,
@@ -139,7 +139,7 @@ where
     }
 }
 
-impl<C, L, Pl, Pm, const N: usize> ClosedLoop<C, L, Pl, Pm, N>
+impl<C, L, Pl, Pm, const N: usize> VcbcLoop<C, L, Pl, Pm, N>
 where
     C: Scalar + Over<C>,
     L: Links<C, N>,

@@ -19,7 +19,7 @@ pub(super) fn definite(a: &Symmetric<Interval>) -> Definite {
     if a.smallest_pivot() > 0.0 {
         return Definite::Yes;
     }
-    let Some(root) = cholesky(&a.map(|x| x.midpoint())).map(|lower| lower_inverse(&lower)) else {
+    let Some(root) = cholesky(&a.map(Interval::midpoint)).map(|lower| lower_inverse(&lower)) else {
         return Definite::Unknown(None);
     };
     let regular = (0..a.size()).all(|i| root[(i, i)] > 0.0 && root.row(i).iter().all(|x| x.is_finite()));

@@ -2,7 +2,7 @@
 
 use flexure_core::scalar::Interval;
 
-use super::ClosedLoop;
+use super::VcbcLoop;
 use crate::linalg::Symmetric;
 
 /// How a quadratic storage W = ½ δzᵀ `weight` δz balances: Ẇ = −δzᵀ `dissipation` δz.
@@ -60,7 +60,7 @@ pub struct Twins<A, B> {
 
 /// [`Twins`] of the v-CBC law's closed loop.
 pub type VcbcFlow<LI, PlI, PmI, L, Pl, Pm, const N: usize> =
-    Twins<ClosedLoop<Interval, LI, PlI, PmI, N>, ClosedLoop<f64, L, Pl, Pm, N>>;
+    Twins<VcbcLoop<Interval, LI, PlI, PmI, N>, VcbcLoop<f64, L, Pl, Pm, N>>;
 
 impl<A: System<Interval>, B: System<f64>> Flow for Twins<A, B> {
     fn coordinates(&self) -> &[Coordinate] {

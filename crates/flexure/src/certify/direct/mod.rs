@@ -9,7 +9,7 @@
 //! | part | does |
 //! | --- | --- |
 //! | [`Flow`], [`System`], [`Twins`] | what is proved about: two matrices over a box of coordinates |
-//! | [`ClosedLoop`], [`vcbc`] | the v-CBC law's closed loop as such |
+//! | [`VcbcLoop`], [`vcbc`] | the v-CBC law's closed loop as such |
 //! | [`prove`], [`best_rate`] | branch and bound |
 //! | [`law_agreement`] | whether the closed form is what the law's code gives |
 //!
@@ -32,9 +32,9 @@ mod split;
 mod witness;
 
 pub use agreement::{Agreement, law_agreement};
-pub use best::{Best, best_rate};
+pub use best::{BestRate, best_rate};
 pub use bisection::{Proved, prove};
-pub use closed_loop::{ClosedLoop, Region, full_turn, vcbc};
+pub use closed_loop::{StateBox, VcbcLoop, full_turn, vcbc};
 pub use flow::{Balance, Coordinate, Flow, System, Twins};
 pub use jacobian::{jacobian, symmetric_part};
-pub use witness::{State, Witness};
+pub use witness::{DirectWitness, NamedState};

@@ -7,12 +7,12 @@ use crate::linalg::weakest;
 
 /// A state: every coordinate by its name.
 #[derive(Clone, Debug, PartialEq)]
-pub struct State {
+pub struct NamedState {
     /// Name and value of each coordinate, in the flow's order and units.
     pub coordinates: Vec<(String, f64)>,
 }
 
-impl std::fmt::Display for State {
+impl std::fmt::Display for NamedState {
     /// `e_l[0] = 0.5, …`
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         for (i, (name, value)) in self.coordinates.iter().enumerate() {
@@ -27,9 +27,9 @@ impl std::fmt::Display for State {
 /// Plain `f64` found it and intervals confirmed it: the real value at this very state is at most `value`, for all constants
 /// that the flow encloses.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Witness {
+pub struct DirectWitness {
     /// The state.
-    pub at: State,
+    pub at: NamedState,
     /// δz.
     pub direction: Vec<f64>,
     /// An upper bound of δzᵀ (dissipation − β weight) δz, where δzᵀ weight δz is about 1: negative.
@@ -66,22 +66,22 @@ impl Sample {
     }
 
     /// The witness against `beta`, if intervals confirm it.
-    pub(super) fn refutes(&self, flow: &dyn Flow, beta: f64) -> Option<Witness> {
+    pub(super) fn refutes(&self, flow: &dyn Flow, beta: f64) -> Option<DirectWitness> {
         if self.rate >= beta {
             return None;
         }
         let (rate, value) = self.bounds(flow, beta)?;
         let direction = self.direction.clone();
-        (value < 0.0).then(|| Witness { at: self.state(flow), direction, value, rate })
+        (value < 0.0).then(|| DirectWitness { at: self.state(flow), direction, value, rate })
     }
 
-    pub(super) fn state(&self, flow: &dyn Flow) -> State {
+    pub(super) fn state(&self, flow: &dyn Flow) -> NamedState {
         let names = flow.coordinates().iter().map(|c| c.name.clone());
-        State { coordinates: names.zip(self.at.iter().copied()).collect() }
+        NamedState { coordinates: names.zip(self.at.iter().copied()).collect() }
     }
 }
 
-impl State {
+impl NamedState {
     /// The value of the coordinate `name`.
     pub fn get(&self, name: &str) -> Option<f64> {
         self.coordinates.iter().find(|(n, _)| n == name).map(|(_, x)| *x)
