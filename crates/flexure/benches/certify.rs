@@ -3,9 +3,10 @@
 use arm::{ArmFlow, coupled_tanh, flow, linear, region, tanh};
 use divan::{Bencher, black_box};
 use flexure::prove::engine::certificate::Certificate;
-use flexure::prove::engine::direct::{self, Flow, best_rate};
+use flexure::prove::engine::direct;
+use flexure::prove::engine::direct::{Flow, best_rate};
 use flexure::prove::engine::number::Number;
-use flexure::prove::engine::structural::{Problem, certify};
+use flexure::prove::engine::structural::{Proposition, certify};
 use flexure::prove::question::{Question, Region, prove};
 use flexure::scenario::load_scenario;
 use flexure::verify::verify;
@@ -30,7 +31,7 @@ const SIGMA_M: f64 = 44.347_826_086_956_52;
 const TANH_CONVERGENCE: f64 = 9.950_547_536_867_305;
 
 /// A built-in scenario with errors of up to `error` rad.
-fn problem(scenario: &str, error: f64) -> Problem {
+fn problem(scenario: &str, error: f64) -> Proposition {
     let scenario = load_scenario(scenario).expect("built in");
     let region = Region::Errors(vec![error; 2 * scenario.robot.joint_count()]);
     flexure::prove::question::problem(&scenario, &Question { region, ..Question::default() }, None)

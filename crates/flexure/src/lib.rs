@@ -3,13 +3,13 @@
 pub use flexure_core as core;
 
 pub mod compare;
-mod eigenvalues;
 pub mod estimators;
 pub mod eval;
 pub mod feasible;
 pub mod files;
 pub mod imperfections;
 pub mod laws;
+pub mod linalg;
 pub mod margins;
 pub mod plant;
 pub mod prove;
@@ -20,6 +20,7 @@ pub mod robot;
 pub mod scenario;
 pub mod simulate;
 pub mod tune;
+pub mod units;
 pub mod verify;
 
 /// The program of the README, compiled and run with the tests of the documentation.

@@ -1,15 +1,15 @@
 //! Certificates of the two-link robot with the paper's gains: the figures of the theory.
 
 use flexure::files::SCENARIOS;
-use flexure::prove::engine::certificate::Certificate;
 use flexure::prove::engine::certificate::{
-    BlockName, Body, Controller, Gains, JointKind, Links, Phi, Robot, Side, StructureName, Witness,
+    BlockName, Certificate, CertifiedPhi, DecimalBody, DecimalGains, DecimalLaw, DecimalLinks, DecimalRobot,
+    JointMotion, LoopSide, StructureName, Witness,
 };
 use flexure::prove::engine::number::Number;
-use flexure::prove::engine::region::Request;
-use flexure::prove::engine::structural::{Problem, certify};
+use flexure::prove::engine::region::RequestedRegion;
+use flexure::prove::engine::structural::{Proposition, certify};
 use flexure::prove::engine::verdict::Verdict;
-use flexure::prove::engine::witness::State;
+use flexure::prove::engine::witness::WitnessState;
 use flexure::prove::question::{Question, prove};
 use flexure::scenario::load_scenario;
 use flexure_core::control::{CoupledTanh, Linear, Shaping, Tanh};
@@ -19,12 +19,12 @@ fn decimals(numbers: &[f64]) -> Vec<Number> {
     numbers.iter().map(|&x| Number::decimal(x)).collect()
 }
 
-fn arm() -> Robot {
+fn arm() -> DecimalRobot {
     let two = |a: f64, b: f64| [Number::decimal(a), Number::decimal(b)];
-    Robot {
+    DecimalRobot {
         name: "quanser-2dof".to_owned(),
         joints: 2,
-        links: Links::PlanarTwoLink {
+        links: DecimalLinks::PlanarTwoLink {
             mass: two(1.510, 0.873),
             length: Number::decimal(0.343),
             com: two(0.159, 0.055),
@@ -37,8 +37,8 @@ fn arm() -> Robot {
     }
 }
 
-fn gains(metric: [f64; 2], damping: [f64; 2], kappa: Option<[f64; 2]>) -> Gains {
-    Gains {
+fn gains(metric: [f64; 2], damping: [f64; 2], kappa: Option<[f64; 2]>) -> DecimalGains {
+    DecimalGains {
         metric: decimals(&metric),
         shaping: decimals(&metric),
         damping: decimals(&damping),
@@ -46,13 +46,13 @@ fn gains(metric: [f64; 2], damping: [f64; 2], kappa: Option<[f64; 2]>) -> Gains 
     }
 }
 
-fn problem(phi: Phi, region: Request) -> Problem {
-    let kappa = (phi == Phi::CoupledTanh).then_some([10.0, 8.0]);
-    Problem {
+fn problem(phi: CertifiedPhi, region: RequestedRegion) -> Proposition {
+    let kappa = (phi == CertifiedPhi::CoupledTanh).then_some([10.0, 8.0]);
+    Proposition {
         name: "two-link".to_owned(),
         assumptions: Vec::new(),
         robot: arm(),
-        controller: Controller {
+        controller: DecimalLaw {
             phi,
             link: gains([55.0, 30.0], [15.0, 10.0], kappa),
             motor: gains([70.0, 60.0], [10.0, 5.0], kappa),
@@ -62,8 +62,8 @@ fn problem(phi: Phi, region: Request) -> Problem {
     }
 }
 
-fn proved(phi: Phi) -> Certificate {
-    match certify(&problem(phi, Request::Box(decimals(&[3.0; 4])))) {
+fn proved(phi: CertifiedPhi) -> Certificate {
+    match certify(&problem(phi, RequestedRegion::Box(decimals(&[3.0; 4])))) {
         Verdict::Proved(certificate) => certificate,
         other => panic!("{other:?}"),
     }
@@ -82,9 +82,9 @@ fn tight(rate: &Number, exact: f64) {
 #[test]
 fn block_rates_are_the_exact_ones() {
     let exact = [
-        (Phi::Linear, 30.0, 30.0),
-        (Phi::Tanh, 0.295_981_114_963_205_7, 9.950547536867305),
-        (Phi::CoupledTanh, 10.0 - 2.0_f64.sqrt(), 10.0 - 2.0_f64.sqrt()),
+        (CertifiedPhi::Linear, 30.0, 30.0),
+        (CertifiedPhi::Tanh, 0.295_981_114_963_205_7, 9.950547536867305),
+        (CertifiedPhi::CoupledTanh, 10.0 - 2.0_f64.sqrt(), 10.0 - 2.0_f64.sqrt()),
     ];
     for (phi, contraction, convergence) in exact {
         let certificate = proved(phi);
@@ -107,10 +107,11 @@ fn block_rates_are_the_exact_ones() {
 /// A larger region never has a larger rate, and the level set lies inside its box.
 #[test]
 fn rates_fall_as_regions_grow() {
-    for phi in [Phi::Tanh, Phi::Linear, Phi::CoupledTanh] {
+    for phi in [CertifiedPhi::Tanh, CertifiedPhi::Linear, CertifiedPhi::CoupledTanh] {
         let mut last = f64::INFINITY;
         for error in [0.1, 0.5, 1.0, 2.0, 5.0, 12.0] {
-            let Verdict::Proved(certificate) = certify(&problem(phi, Request::Box(decimals(&[error; 4]))))
+            let Verdict::Proved(certificate) =
+                certify(&problem(phi, RequestedRegion::Box(decimals(&[error; 4]))))
             else {
                 panic!("{phi:?} at {error}");
             };
@@ -127,23 +128,23 @@ fn rates_fall_as_regions_grow() {
 /// The tanh law has no rate everywhere: undecided, not a rate of zero.
 #[test]
 fn tanh_has_no_rate_everywhere() {
-    match certify(&problem(Phi::Tanh, Request::Everywhere)) {
+    match certify(&problem(CertifiedPhi::Tanh, RequestedRegion::Everywhere)) {
         Verdict::Undecided(undecided) => assert!(undecided.at.contains("phi_l"), "{}", undecided.at),
         other => panic!("{other:?}"),
     }
-    for phi in [Phi::Linear, Phi::CoupledTanh] {
-        assert!(certify(&problem(phi, Request::Everywhere)).proved().is_some());
+    for phi in [CertifiedPhi::Linear, CertifiedPhi::CoupledTanh] {
+        assert!(certify(&problem(phi, RequestedRegion::Everywhere)).proved().is_some());
     }
 }
 
 /// A metric far from Λ makes the coupling of φ_3 too strong for it: refuted, and the slope of the very φ says so in f64.
 #[test]
 fn a_refutation_is_confirmed_by_the_law() {
-    let mut bad = problem(Phi::CoupledTanh, Request::Box(decimals(&[3.0; 4])));
+    let mut bad = problem(CertifiedPhi::CoupledTanh, RequestedRegion::Box(decimals(&[3.0; 4])));
     let metric = [1.0, 10_000.0];
     bad.controller.link.metric = decimals(&metric);
     let Verdict::Refuted(witness) = certify(&bad) else { panic!("not refuted") };
-    let State::Error(error) = &witness.state else { panic!("{witness:?}") };
+    let WitnessState::Error(error) = &witness.state else { panic!("{witness:?}") };
     assert_eq!(witness.block, BlockName::PhiL);
     let phi = CoupledTanh::new(Vector([10.0, 8.0]), &Vector([55.0, 30.0]));
     let slope = phi.slope(&Vector([error[0], error[1]]));
@@ -175,7 +176,7 @@ fn proved_rates_lie_below_samples() {
 /// A joint that slides without limits has no bound on its inertia; with limits it does.
 #[test]
 fn travel_bounds_a_sliding_joint() {
-    let body = |kind, parent, travel: Option<[f64; 2]>| Body {
+    let body = |kind, parent, travel: Option<[f64; 2]>| DecimalBody {
         parent,
         kind,
         axis: [0.0, 0.0, 1.0].map(Number::decimal),
@@ -187,9 +188,10 @@ fn travel_bounds_a_sliding_joint() {
         travel: travel.map(|ends| ends.map(Number::decimal)),
     };
     let rate = |travel| {
-        let mut problem = problem(Phi::Linear, Request::Everywhere);
-        let bodies = vec![body(JointKind::Revolute, None, None), body(JointKind::Prismatic, Some(0), travel)];
-        problem.robot.links = Links::Tree { bodies };
+        let mut problem = problem(CertifiedPhi::Linear, RequestedRegion::Everywhere);
+        let bodies =
+            vec![body(JointMotion::Revolute, None, None), body(JointMotion::Prismatic, Some(0), travel)];
+        problem.robot.links = DecimalLinks::Tree { bodies };
         certify(&problem).proved().map(|certificate| certificate.blocks[2].contraction.bounds().midpoint())
     };
     // The slider moves across the first axis, 3 m from it at most: inertia 0.2 + 2 · 9 against 15.8, and 2 kg against 10.55.
@@ -202,9 +204,11 @@ fn travel_bounds_a_sliding_joint() {
 #[test]
 fn structures_are_kept_as_the_theory_says() {
     let metric = [[55.0, 30.0], [70.0, 60.0]];
-    for (phi, variational, ph_like) in
-        [(Phi::Tanh, true, false), (Phi::Linear, true, true), (Phi::CoupledTanh, false, false)]
-    {
+    for (phi, variational, ph_like) in [
+        (CertifiedPhi::Tanh, true, false),
+        (CertifiedPhi::Linear, true, true),
+        (CertifiedPhi::CoupledTanh, false, false),
+    ] {
         let certificate = proved(phi);
         let holds = |name| certificate.structure.iter().find(|claim| claim.name == name).unwrap();
         assert_eq!(holds(StructureName::VariationalPh).holds, variational, "{phi:?}");
@@ -212,12 +216,12 @@ fn structures_are_kept_as_the_theory_says() {
         assert!(holds(StructureName::StrictDifferentialPassivity).holds);
         for claim in certificate.structure.iter().filter(|claim| !claim.holds) {
             let Witness { side, error, row, column, difference } = claim.witness.as_ref().unwrap();
-            let gain = metric[usize::from(*side == Side::Motor)];
+            let gain = metric[usize::from(*side == LoopSide::Motor)];
             let e = Vector([error[0].approximate(), error[1].approximate()]);
             let slope = match phi {
-                Phi::Tanh => Tanh { gain: Vector(gain) }.slope(&e),
-                Phi::Linear => Linear { gain: Vector(gain) }.slope(&e),
-                Phi::CoupledTanh => CoupledTanh::new(Vector([10.0, 8.0]), &Vector(gain)).slope(&e),
+                CertifiedPhi::Tanh => Tanh { gain: Vector(gain) }.slope(&e),
+                CertifiedPhi::Linear => Linear { gain: Vector(gain) }.slope(&e),
+                CertifiedPhi::CoupledTanh => CoupledTanh::new(Vector([10.0, 8.0]), &Vector(gain)).slope(&e),
             };
             let (i, j) = (*row, *column);
             let found = match claim.name {
@@ -228,7 +232,7 @@ fn structures_are_kept_as_the_theory_says() {
         }
     }
     // The same gain everywhere but one last digit: no longer the gradient of its own metric.
-    let mut close = problem(Phi::Linear, Request::Everywhere);
+    let mut close = problem(CertifiedPhi::Linear, RequestedRegion::Everywhere);
     close.controller.motor.shaping[1] = Number::decimal(60.000_000_000_001);
     let verdict = certify(&close);
     let claim = &verdict.proved().unwrap().structure[1];

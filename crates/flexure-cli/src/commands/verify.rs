@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use flexure::verify::{self, Claim, Rejected, Report};
+use flexure::verify::{self, CheckReport, Claim, Rejected};
 use serde::Serialize;
 
 use super::print;
@@ -52,8 +52,8 @@ fn read(file: &Path) -> io::Result<String> {
     String::from_utf8(bytes).map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error.utf8_error()))
 }
 
-fn verified(report: Report, json: bool) -> Result<(), Failure> {
-    let Report { name, assumptions, claims, contraction_rate, convergence_rate } = report;
+fn verified(report: CheckReport, json: bool) -> Result<(), Failure> {
+    let CheckReport { name, assumptions, claims, contraction_rate, convergence_rate } = report;
     if json {
         return print::json(&Answer {
             verdict: "verified",

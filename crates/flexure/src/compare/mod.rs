@@ -20,7 +20,7 @@ use crate::tune::tune;
 pub use entrant::{Entrant, entrants};
 pub use leaderboard::{Leaderboard, Loss, TaskScores, is_vcbc};
 pub use ranking::{Standing, TIE, ranks, standings};
-pub use score::{CHATTERS, Gain, Score};
+pub use score::{CHATTERS, Score, TunedGain};
 pub use task::{Task, tasks};
 
 /// Runs that each law may simulate on each task.

@@ -38,12 +38,12 @@ pub struct Score {
     /// Runs that the search simulated.
     pub evaluations: usize,
     /// The gains that it found.
-    pub gains: Vec<Gain>,
+    pub gains: Vec<TunedGain>,
 }
 
 /// A gain, one number per joint.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Gain {
+pub struct TunedGain {
     /// Its key below `[controller]`.
     pub key: String,
     /// Its values, in the unit that the key has in scenario files.
@@ -73,7 +73,10 @@ impl Score {
             diverged_at,
             failure: None,
             evaluations: tuned.evaluations,
-            gains: gains.into_iter().map(|(key, values)| Gain { key, values: values.to_vec() }).collect(),
+            gains: gains
+                .into_iter()
+                .map(|(key, values)| TunedGain { key, values: values.to_vec() })
+                .collect(),
         }
     }
 

@@ -3,10 +3,11 @@
 use crate::feasible::Usage;
 use crate::feasible::peaks::Peak;
 use crate::robot::{JointKind, Robot};
+use crate::units::{self, Unit};
 
 /// What is limited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
+pub enum LimitKind {
     /// Motor torque.
     Torque,
     /// Its rate.
@@ -25,7 +26,7 @@ pub struct Bound {
     /// Index of the joint.
     pub joint: usize,
     /// Of what.
-    pub quantity: Quantity,
+    pub quantity: LimitKind,
     /// Its key in robot files.
     key: &'static str,
     limit: f64,
@@ -53,7 +54,7 @@ impl Bound {
     /// The largest share that a speed may be chosen for, which need not be `margin`: nothing is gained by staying away from
     /// the ends of a range.
     pub fn allowed(&self, margin: f64) -> f64 {
-        if self.quantity == Quantity::Position { 1.0 } else { margin }
+        if self.quantity == LimitKind::Position { 1.0 } else { margin }
     }
 
     /// With what comes closest.
@@ -78,31 +79,31 @@ pub fn is_position(key: &str) -> bool {
 }
 
 /// What a limit with this key is of, and the unit.
-pub fn words(key: &str, kind: JointKind) -> (&'static str, &'static str) {
-    let (what, [angle, distance]) = match key {
-        "torque_limit" => ("motor torque", ["N m", "N"]),
-        "torque_rate_limit" => ("rate of the motor torque", ["N m/s", "N/s"]),
-        "velocity_limit" => ("link velocity", ["rad/s", "m/s"]),
-        "deflection_limit" => ("deflection of the spring", ["rad", "m"]),
-        _ => ("link position", ["rad", "m"]),
+pub fn limit_words(key: &str, kind: JointKind) -> (&'static str, &'static str) {
+    let what = match key {
+        "torque_limit" => "motor torque",
+        "torque_rate_limit" => "rate of the motor torque",
+        "velocity_limit" => "link velocity",
+        "deflection_limit" => "deflection of the spring",
+        _ => "link position",
     };
-    (what, if kind == JointKind::Revolute { angle } else { distance })
+    (what, Unit::of_key(key).unwrap_or(units::ANGLE).of(kind).plain)
 }
 
 /// The limits that `robot` has, joint by joint.
 pub fn bounds(robot: &Robot) -> Vec<Bound> {
     let limits = &robot.limits;
     let symmetric = [
-        ("torque_limit", Quantity::Torque, &limits.torque),
-        ("torque_rate_limit", Quantity::TorqueRate, &limits.torque_rate),
-        ("velocity_limit", Quantity::Velocity, &limits.velocity),
-        ("deflection_limit", Quantity::Deflection, &limits.deflection),
+        ("torque_limit", LimitKind::Torque, &limits.torque),
+        ("torque_rate_limit", LimitKind::TorqueRate, &limits.torque_rate),
+        ("velocity_limit", LimitKind::Velocity, &limits.velocity),
+        ("deflection_limit", LimitKind::Deflection, &limits.deflection),
     ];
     let of_joint = |joint: usize| {
         let (lower, upper) = (limits.lower[joint], limits.upper[joint]);
         let half = if (upper - lower).is_finite() { 0.5 * (upper - lower) } else { 0.0 };
         let position = |key, limit: f64, side: f64| {
-            let quantity = Quantity::Position;
+            let quantity = LimitKind::Position;
             Bound { joint, quantity, key, limit, middle: limit - side * half, half, side }
         };
         let [lower_key, upper_key] = POSITIONS;

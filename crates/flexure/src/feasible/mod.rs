@@ -15,12 +15,13 @@ mod track;
 use serde::Serialize;
 
 use crate::feasible::bounds::bounds;
-use crate::feasible::peaks::{Course, peaks};
+use crate::feasible::peaks::{PacedReference, peaks};
 use crate::feasible::track::with_track;
 use crate::files::{Problem, Problems};
 use crate::references::Speed;
 use crate::scenario::Scenario;
 
+pub(crate) use crate::feasible::bounds::limit_words;
 pub use crate::feasible::effort::effort;
 pub use crate::feasible::search::speed;
 
@@ -51,7 +52,7 @@ pub fn usage(scenario: &Scenario) -> Result<Vec<Usage>, Problems> {
     let speed = speed(scenario)?;
     with_track(scenario, |track| {
         let bounds = bounds(&scenario.robot);
-        let peaks = peaks(&Course::new(scenario, track, speed), &bounds, search::fine(scenario));
+        let peaks = peaks(&PacedReference::new(scenario, track, speed), &bounds, search::fine(scenario));
         bounds.iter().zip(peaks).map(|(bound, peak)| bound.usage(&peak)).collect()
     })
 }
@@ -89,7 +90,7 @@ pub fn pinned(scenario: &Scenario) -> Result<Scenario, Problems> {
 fn described(scenario: &Scenario, usage: &Usage) -> String {
     let robot = &scenario.robot;
     let joint = &robot.joints[usage.joint];
-    let (what, unit) = bounds::words(usage.key, joint.kind);
+    let (what, unit) = limit_words(usage.key, joint.kind);
     let share = if usage.share.is_finite() { format!(", {:.3} of it", usage.share) } else { String::new() };
     format!(
         "joint {}: {what} of {:.4} {unit} at t = {:.4} s, where {} is {} {unit}{share}",

@@ -3,19 +3,19 @@
 use flexure_core::reference::Clock;
 use flexure_core::scalar::Interval;
 
-use crate::feasible::bounds::{Bound, Quantity};
+use crate::feasible::bounds::{Bound, LimitKind};
 use crate::feasible::track::{Demand, Demands, Track};
 use crate::references::{Profile, Reference, when};
 use crate::scenario::Scenario;
 
 /// The reference of a scenario at a speed.
-pub struct Course<'a> {
+pub struct PacedReference<'a> {
     scenario: &'a Scenario,
     speed: f64,
     demands: Box<Demands<'a>>,
 }
 
-impl<'a> Course<'a> {
+impl<'a> PacedReference<'a> {
     /// The reference of `scenario`, which is that of `track`, at `speed`.
     pub fn new(scenario: &'a Scenario, track: &'a dyn Track, speed: f64) -> Self {
         Self { scenario, speed, demands: track.at_speed(speed) }
@@ -32,7 +32,7 @@ pub struct Peak {
 }
 
 /// For each bound what comes closest, among `samples` intervals of the run and the tops of the humps between them.
-pub fn peaks(course: &Course<'_>, bounds: &[Bound], samples: usize) -> Vec<Peak> {
+pub fn peaks(course: &PacedReference<'_>, bounds: &[Bound], samples: usize) -> Vec<Peak> {
     let mut best: Vec<Option<Peak>> = bounds.iter().map(|_| None).collect();
     visit(course, bounds, samples, &mut |i, peak| {
         let share = |peak: Peak| bounds[i].share(peak.value);
@@ -45,27 +45,27 @@ pub fn peaks(course: &Course<'_>, bounds: &[Bound], samples: usize) -> Vec<Peak>
 }
 
 /// Whether every share stays within what `margin` allows.
-pub fn fits(course: &Course<'_>, bounds: &[Bound], samples: usize, margin: f64) -> bool {
+pub fn fits(course: &PacedReference<'_>, bounds: &[Bound], samples: usize, margin: f64) -> bool {
     visit(course, bounds, samples, &mut |i, peak| bounds[i].share(peak.value) <= bounds[i].allowed(margin))
 }
 
 /// Shows `look` what each bound (by index) is about at each time, until it has seen enough; whether it never had.
 fn visit(
-    course: &Course<'_>,
+    course: &PacedReference<'_>,
     bounds: &[Bound],
     samples: usize,
     look: &mut dyn FnMut(usize, Peak) -> bool,
 ) -> bool {
     if let Some((time, without_torque)) = jumps(course) {
         for (i, bound) in bounds.iter().enumerate() {
-            let infinite = bound.quantity == Quantity::TorqueRate
-                || (without_torque && bound.quantity == Quantity::Torque);
+            let infinite = bound.quantity == LimitKind::TorqueRate
+                || (without_torque && bound.quantity == LimitKind::Torque);
             if infinite && !look(i, Peak { value: f64::INFINITY, time }) {
                 return false;
             }
         }
     }
-    let Course { scenario, demands, .. } = course;
+    let PacedReference { scenario, demands, .. } = course;
     let instant = |k: usize| scenario.duration * k as f64 / samples as f64;
     let mut show = |time: f64, demand: &Demand| {
         bounds.iter().enumerate().all(|(i, bound)| look(i, Peak { value: demand.of(bound), time }))
@@ -104,7 +104,7 @@ fn tops(bounds: &[Bound], [a, b, c]: [&Demand; 3]) -> Vec<f64> {
 }
 
 /// When a motion from rest to rest asks for a torque that jumps, in s, and whether it even asks for an infinite one.
-fn jumps(course: &Course<'_>) -> Option<(f64, bool)> {
+fn jumps(course: &PacedReference<'_>) -> Option<(f64, bool)> {
     let Reference::PointToPoint { profile, start, .. } = &course.scenario.reference else { return None };
     let infinite = match profile {
         Profile::Quintic => true,

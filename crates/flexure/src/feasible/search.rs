@@ -1,7 +1,7 @@
 //! The largest speed at which a reference keeps the limits.
 
 use crate::feasible::bounds::{Bound, bounds};
-use crate::feasible::peaks::{Course, fits, peaks};
+use crate::feasible::peaks::{PacedReference, fits, peaks};
 use crate::feasible::track::{Track, with_track};
 use crate::feasible::{Usage, bounds as words, described};
 use crate::files::{Problem, Problems};
@@ -49,8 +49,9 @@ pub fn speed(scenario: &Scenario) -> Result<f64, Problems> {
 
 fn search(scenario: &Scenario, track: &dyn Track, margin: f64) -> Result<f64, Problems> {
     let bounds = bounds(&scenario.robot);
-    let fits_with =
-        |samples: usize, speed: f64| fits(&Course::new(scenario, track, speed), &bounds, samples, margin);
+    let fits_with = |samples: usize, speed: f64| {
+        fits(&PacedReference::new(scenario, track, speed), &bounds, samples, margin)
+    };
     let mut refused = f64::INFINITY;
     let mut speed = 1.0;
     while !fits_with(COARSE, speed) || !fits_with(fine(scenario), speed) {
@@ -76,7 +77,7 @@ fn search(scenario: &Scenario, track: &dyn Track, margin: f64) -> Result<f64, Pr
 
 /// What to say where even the slowest speed is too fast.
 fn impossible(scenario: &Scenario, bounds: &[Bound], track: &dyn Track, margin: f64) -> Problem {
-    let peaks = peaks(&Course::new(scenario, track, SLOWEST), bounds, fine(scenario));
+    let peaks = peaks(&PacedReference::new(scenario, track, SLOWEST), bounds, fine(scenario));
     let excess = |(bound, usage): &(&Bound, Usage)| usage.share / bound.allowed(margin);
     let worst = bounds
         .iter()

@@ -5,7 +5,7 @@ use flexure_core::model::{Fjr, Links};
 use flexure_core::reference::Reference as _;
 use flexure_core::scalar::Jet;
 
-use crate::feasible::bounds::{Bound, Quantity};
+use crate::feasible::bounds::{Bound, LimitKind};
 use crate::files::Problems;
 use crate::references::AnyReference;
 use crate::robot::{RobotVisitor, with_robot};
@@ -33,11 +33,11 @@ impl Demand {
     /// What `bound` is about.
     pub fn of(&self, bound: &Bound) -> f64 {
         let values = match bound.quantity {
-            Quantity::Torque => &self.torque,
-            Quantity::TorqueRate => &self.torque_rate,
-            Quantity::Velocity => &self.velocity,
-            Quantity::Deflection => &self.deflection,
-            Quantity::Position => &self.position,
+            LimitKind::Torque => &self.torque,
+            LimitKind::TorqueRate => &self.torque_rate,
+            LimitKind::Velocity => &self.velocity,
+            LimitKind::Deflection => &self.deflection,
+            LimitKind::Position => &self.position,
         };
         values[bound.joint]
     }

@@ -1,6 +1,7 @@
 //! What a number in a file stands for: its unit, its allowed range, and what would be plausible.
 
 use crate::files::diagnostic::Problem;
+use crate::units::{self, Unit};
 
 /// Largest magnitude of any number; together with its reciprocal it keeps every product of a few numbers finite.
 const LARGEST: f64 = 1e30;
@@ -23,31 +24,31 @@ enum Sign {
 pub(crate) struct Quantity {
     /// In words, for hints.
     pub what: &'static str,
-    /// Unit; empty for none.
-    pub unit: &'static str,
+    /// Its unit.
+    unit: Unit,
     sign: Sign,
     /// Magnitudes of nonzero numbers that raise no doubt, and the doubt.
     plausible: (f64, f64, &'static str),
 }
 
 impl Quantity {
-    const fn any(what: &'static str, unit: &'static str) -> Self {
+    const fn any(what: &'static str, unit: Unit) -> Self {
         Self { what, unit, sign: Sign::Any, plausible: (TINY, LARGEST, "") }
     }
-    const fn positive(what: &'static str, unit: &'static str) -> Self {
+    const fn positive(what: &'static str, unit: Unit) -> Self {
         Self { sign: Sign::Positive, ..Self::any(what, unit) }
     }
-    const fn non_negative(what: &'static str, unit: &'static str) -> Self {
+    const fn non_negative(what: &'static str, unit: Unit) -> Self {
         Self { sign: Sign::NonNegative, ..Self::any(what, unit) }
     }
-    const fn nonzero(what: &'static str, unit: &'static str) -> Self {
+    const fn nonzero(what: &'static str, unit: Unit) -> Self {
         Self { sign: Sign::NonZero, ..Self::any(what, unit) }
     }
-    const fn at_least_one(what: &'static str, unit: &'static str) -> Self {
+    const fn at_least_one(what: &'static str, unit: Unit) -> Self {
         Self { sign: Sign::AtLeastOne, ..Self::any(what, unit) }
     }
     const fn probability(what: &'static str) -> Self {
-        Self { sign: Sign::Probability, ..Self::any(what, "") }
+        Self { sign: Sign::Probability, ..Self::any(what, units::NONE) }
     }
     const fn plausible(self, low: f64, high: f64, doubt: &'static str) -> Self {
         Self { plausible: (low, high, doubt), ..self }
@@ -55,25 +56,19 @@ impl Quantity {
 
     /// What and in which unit, for hints.
     pub fn described(&self) -> String {
-        if self.unit.is_empty() { self.what.to_owned() } else { format!("{} in {}", self.what, self.unit) }
+        let unit = self.unit.plain;
+        if unit.is_empty() { self.what.to_owned() } else { format!("{} in {unit}", self.what) }
     }
 
-    /// How often 1/s is in the unit, with kg, m and rad set aside: by which power of its speed a gain grows with a loop that is to
-    /// be faster.
+    /// How often 1/s is in the unit: [`Unit::per_second`].
     pub fn per_second(&self) -> i32 {
-        match self.unit {
-            "1/s" | "N m s/rad" => 1,
-            "1/s^2" | "N m/rad" | "N m/rad^3" => 2,
-            "1/s^3" => 3,
-            "1/s^4" => 4,
-            _ => 0,
-        }
+        self.unit.per_second
     }
 
     /// What speaks against the number `x` called `name`, if anything; a warning if it can be used all the same.
     pub fn objection(&self, name: &str, x: f64) -> Option<Problem> {
         let (low, high, doubt) = self.plausible;
-        let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
+        let unit = if self.unit.plain.is_empty() { String::new() } else { format!(" {}", self.unit.plain) };
         let problem = |code, objection: &str, hint: String| {
             Problem::new(code, format!("{name} is {}{unit}, {objection}", shortest(x)), hint)
         };
@@ -124,169 +119,181 @@ const DEGREES: &str = "it looks like degrees";
 const MILLIMETRES: &str = "is it in millimetres?";
 
 pub(crate) const GRAVITY: Quantity =
-    Quantity::any("acceleration of gravity", "m/s^2").plausible(1e-6, 100.0, "9.81 on Earth");
-pub(crate) const MASS: Quantity = Quantity::positive("mass", "kg").plausible(1e-7, 1e5, "is it in grams?");
+    Quantity::any("acceleration of gravity", units::ACCELERATION).plausible(1e-6, 100.0, "9.81 on Earth");
+pub(crate) const MASS: Quantity =
+    Quantity::positive("mass", units::MASS).plausible(1e-7, 1e5, "is it in grams?");
 pub(crate) const BODY_MASS: Quantity =
-    Quantity::non_negative("mass of the body", "kg").plausible(1e-7, 1e5, "is it in grams?");
-pub(crate) const LENGTH: Quantity = Quantity::positive("length", "m").plausible(1e-5, 50.0, MILLIMETRES);
-pub(crate) const POSITION: Quantity = Quantity::any("position", "m").plausible(TINY, 50.0, MILLIMETRES);
+    Quantity::non_negative("mass of the body", units::MASS).plausible(1e-7, 1e5, "is it in grams?");
+pub(crate) const LENGTH: Quantity =
+    Quantity::positive("length", units::LENGTH).plausible(1e-5, 50.0, MILLIMETRES);
+pub(crate) const POSITION: Quantity =
+    Quantity::any("position", units::LENGTH).plausible(TINY, 50.0, MILLIMETRES);
 pub(crate) const INERTIA: Quantity =
-    Quantity::positive("inertia", "kg m^2").plausible(1e-12, 1e5, "is it in kg mm^2 or kg cm^2?");
-pub(crate) const BODY_INERTIA: Quantity = Quantity::any("inertia about the centre of mass", "kg m^2")
+    Quantity::positive("inertia", units::INERTIA).plausible(1e-12, 1e5, "is it in kg mm^2 or kg cm^2?");
+pub(crate) const BODY_INERTIA: Quantity = Quantity::any("inertia about the centre of mass", units::INERTIA)
     .plausible(TINY, 1e5, "is it in kg mm^2 or kg cm^2?");
-pub(crate) const AXIS: Quantity = Quantity::any("component of the joint axis", "");
+pub(crate) const AXIS: Quantity = Quantity::any("component of the joint axis", units::NONE);
 pub(crate) const ORIENTATION: Quantity =
-    Quantity::any("roll, pitch or yaw", "rad").plausible(TINY, 6.4, DEGREES);
+    Quantity::any("roll, pitch or yaw", units::ANGLE).plausible(TINY, 6.4, DEGREES);
 pub(crate) const STIFFNESS: Quantity = Quantity::positive(
     "joint stiffness K, link side of the gear",
-    "N m/rad",
+    units::STIFFNESS,
 )
 .plausible(1e-3, 1e7, "joints lie between 1 and 1e6 N m/rad; is it in N m/degree or on the motor side?");
 pub(crate) const SPRING_HARDENING: Quantity = Quantity::non_negative(
     "growth k of the joint springs, torque K ζ + k ζ³, link side of the gear",
-    "N m/rad^3",
+    units::HARDENING,
 );
 pub(crate) const MOTOR_INERTIA: Quantity = Quantity::positive(
     "motor inertia, link side of the gear",
-    "kg m^2",
+    units::INERTIA,
 )
 .plausible(1e-9, 1e5, "multiply the rotor's by the square of the gear ratio");
 pub(crate) const DAMPING: Quantity = Quantity::non_negative(
     "viscous damping, link side of the gear",
-    "N m s/rad",
+    units::DAMPING,
 )
 .plausible(TINY, 1e7, "is it on the motor side, or per rev/min?");
-pub(crate) const GEAR_RATIO: Quantity =
-    Quantity::nonzero("gear ratio, motor turns per joint turn; negative if they turn in opposite senses", "")
-        .plausible(0.1, 1e5, "gears of arms lie between 1 and 500");
+pub(crate) const GEAR_RATIO: Quantity = Quantity::nonzero(
+    "gear ratio, motor turns per joint turn; negative if they turn in opposite senses",
+    units::NONE,
+)
+.plausible(0.1, 1e5, "gears of arms lie between 1 and 500");
 pub(crate) const TORQUE_LIMIT: Quantity =
-    Quantity::positive("largest motor torque, link side of the gear", "N m");
-pub(crate) const VELOCITY_LIMIT: Quantity = Quantity::positive("largest joint velocity", "rad/s");
+    Quantity::positive("largest motor torque, link side of the gear", units::TORQUE);
+pub(crate) const VELOCITY_LIMIT: Quantity = Quantity::positive("largest joint velocity", units::SPEED);
 pub(crate) const DEFLECTION_LIMIT: Quantity =
-    Quantity::positive("largest deflection of the joint's spring", "rad")
+    Quantity::positive("largest deflection of the joint's spring", units::ANGLE)
         .plausible(TINY, FOUR_TURNS, DEGREES);
-pub(crate) const FRICTION: Quantity = Quantity::non_negative("Coulomb friction", "N m");
-pub(crate) const EFFORT: Quantity = Quantity::any("largest torque of the joint", "N m");
-pub(crate) const SPEED: Quantity = Quantity::any("largest velocity of the joint", "rad/s");
-pub(crate) const STOP: Quantity = Quantity::any("limit of the joint position", "rad");
-pub(crate) const MULTIPLIER: Quantity = Quantity::any("multiplier of a joint that mimics another", "");
+pub(crate) const FRICTION: Quantity = Quantity::non_negative("Coulomb friction", units::TORQUE);
+pub(crate) const EFFORT: Quantity = Quantity::any("largest torque of the joint", units::TORQUE);
+pub(crate) const SPEED: Quantity = Quantity::any("largest velocity of the joint", units::SPEED);
+pub(crate) const STOP: Quantity = Quantity::any("limit of the joint position", units::ANGLE);
+pub(crate) const MULTIPLIER: Quantity =
+    Quantity::any("multiplier of a joint that mimics another", units::NONE);
 pub(crate) const DURATION: Quantity =
-    Quantity::positive("duration", "s").plausible(1e-6, 1e6, "is it in milliseconds?");
-pub(crate) const PERIOD: Quantity = Quantity::positive("control period", "s").plausible(
+    Quantity::positive("duration", units::TIME).plausible(1e-6, 1e6, "is it in milliseconds?");
+pub(crate) const PERIOD: Quantity = Quantity::positive("control period", units::TIME).plausible(
     1e-7,
     0.1,
     "is it in milliseconds, or the rate in Hz?",
 );
 pub(crate) const SPEED_OF_TIME: Quantity = Quantity::positive(
     "seconds of the reference per second of the run",
-    "",
+    units::NONE,
 )
 .plausible(1e-3, 100.0, "1 is the reference's own speed");
-pub(crate) const MARGIN: Quantity = Quantity::positive("largest share of a limit, 0.9 for nine tenths", "")
-    .plausible(0.01, 1.0, "1 is the limit itself: is it in percent?");
-pub(crate) const TIME: Quantity = Quantity::any("time", "s");
-pub(crate) const START: Quantity = Quantity::non_negative("time of departure", "s");
-pub(crate) const ANGLE: Quantity =
-    Quantity::any("joint position", "rad").plausible(TINY, FOUR_TURNS, DEGREES);
-pub(crate) const AMPLITUDE: Quantity = Quantity::any("amplitude", "rad").plausible(TINY, FOUR_TURNS, DEGREES);
-pub(crate) const PHASE: Quantity = Quantity::any("phase", "rad").plausible(TINY, FOUR_TURNS, DEGREES);
-pub(crate) const FREQUENCY: Quantity = Quantity::any("angular frequency, 2π times the one in Hz", "rad/s")
-    .plausible(TINY, 1e4, "that is beyond any joint");
-pub(crate) const VELOCITY: Quantity =
-    Quantity::any("joint velocity", "rad/s").plausible(TINY, 1e3, "is it in degrees/s or rev/min?");
-pub(crate) const GAIN_METRIC: Quantity = Quantity::positive("metric Π, diagonal", "N m/rad");
-pub(crate) const GAIN_HARDENING: Quantity =
-    Quantity::non_negative("growth of Π_l with the error squared", "N m/rad^3");
-pub(crate) const GAIN_SHAPING: Quantity = Quantity::positive("gain Λ inside φ", "1/s");
-pub(crate) const GAIN_DAMPING: Quantity = Quantity::positive("injected damping K_d", "N m s/rad");
-pub(crate) const GAIN_KAPPA: Quantity = Quantity::positive("rate κ of coupled-tanh", "1/s");
-pub(crate) const GAIN_STIFFNESS: Quantity =
-    Quantity::positive("stiffness K_P of the feedback of motor positions", "N m/rad");
-pub(crate) const GAIN_SNAP_POSITION: Quantity =
-    Quantity::positive("gain k_0 of the link position error", "1/s^4");
-pub(crate) const GAIN_SNAP_VELOCITY: Quantity =
-    Quantity::positive("gain k_1 of the link velocity error", "1/s^3");
-pub(crate) const GAIN_SNAP_ACCELERATION: Quantity =
-    Quantity::positive("gain k_2 of the link acceleration error", "1/s^2");
-pub(crate) const GAIN_SNAP_JERK: Quantity = Quantity::positive("gain k_3 of the link jerk error", "1/s");
-pub(crate) const GAIN_POSITION: Quantity = Quantity::positive("gain k_p of the position error", "1/s^2");
-pub(crate) const GAIN_RATE: Quantity = Quantity::positive("gain k_v of the velocity error", "1/s");
-pub(crate) const GAIN_LINK: Quantity = Quantity::non_negative("damping injected into the links", "N m s/rad");
-pub(crate) const GAIN_MOTOR: Quantity =
-    Quantity::non_negative("damping injected into the motors", "N m s/rad");
-pub(crate) const GAIN_INERTIA: Quantity =
-    Quantity::positive("motor inertia that feedback of the spring torque makes", "kg m^2");
-pub(crate) const GAIN_WEIGHT: Quantity = Quantity::positive("weight W of motor position errors", "N m/rad");
-pub(crate) const GAIN_MOTOR_SHAPING: Quantity =
-    Quantity::positive("rate a at which motor errors decay", "1/s");
-pub(crate) const GAIN_SPRING: Quantity = Quantity::non_negative("damping K_f of the springs", "N m s/rad");
-pub(crate) const GAIN_VELOCITY: Quantity =
-    Quantity::non_negative("damping K_D of the feedback of motor velocities", "N m s/rad");
-pub(crate) const TORQUE_RATE_LIMIT: Quantity = Quantity::positive(
-    "largest rate of the motor torque, link side of the gear",
-    "N m/s",
+pub(crate) const MARGIN: Quantity = Quantity::positive(
+    "largest share of a limit, 0.9 for nine tenths",
+    units::NONE,
 )
-.plausible(1e-1, 1e9, "is it in N m/ms?");
+.plausible(0.01, 1.0, "1 is the limit itself: is it in percent?");
+pub(crate) const TIME: Quantity = Quantity::any("time", units::TIME);
+pub(crate) const START: Quantity = Quantity::non_negative("time of departure", units::TIME);
+pub(crate) const ANGLE: Quantity =
+    Quantity::any("joint position", units::ANGLE).plausible(TINY, FOUR_TURNS, DEGREES);
+pub(crate) const AMPLITUDE: Quantity =
+    Quantity::any("amplitude", units::ANGLE).plausible(TINY, FOUR_TURNS, DEGREES);
+pub(crate) const PHASE: Quantity = Quantity::any("phase", units::ANGLE).plausible(TINY, FOUR_TURNS, DEGREES);
+pub(crate) const FREQUENCY: Quantity = Quantity::any(
+    "angular frequency, 2π times the one in Hz",
+    units::SPEED,
+)
+.plausible(TINY, 1e4, "that is beyond any joint");
+pub(crate) const VELOCITY: Quantity =
+    Quantity::any("joint velocity", units::SPEED).plausible(TINY, 1e3, "is it in degrees/s or rev/min?");
+pub(crate) const GAIN_METRIC: Quantity = Quantity::positive("metric Π, diagonal", units::STIFFNESS);
+pub(crate) const GAIN_HARDENING: Quantity =
+    Quantity::non_negative("growth of Π_l with the error squared", units::HARDENING);
+pub(crate) const GAIN_SHAPING: Quantity = Quantity::positive("gain Λ inside φ", units::RATE);
+pub(crate) const GAIN_DAMPING: Quantity = Quantity::positive("injected damping K_d", units::DAMPING);
+pub(crate) const GAIN_KAPPA: Quantity = Quantity::positive("rate κ of coupled-tanh", units::RATE);
+pub(crate) const GAIN_STIFFNESS: Quantity =
+    Quantity::positive("stiffness K_P of the feedback of motor positions", units::STIFFNESS);
+pub(crate) const GAIN_SNAP_POSITION: Quantity =
+    Quantity::positive("gain k_0 of the link position error", units::RATE_4);
+pub(crate) const GAIN_SNAP_VELOCITY: Quantity =
+    Quantity::positive("gain k_1 of the link velocity error", units::RATE_3);
+pub(crate) const GAIN_SNAP_ACCELERATION: Quantity =
+    Quantity::positive("gain k_2 of the link acceleration error", units::RATE_2);
+pub(crate) const GAIN_SNAP_JERK: Quantity =
+    Quantity::positive("gain k_3 of the link jerk error", units::RATE);
+pub(crate) const GAIN_POSITION: Quantity =
+    Quantity::positive("gain k_p of the position error", units::RATE_2);
+pub(crate) const GAIN_RATE: Quantity = Quantity::positive("gain k_v of the velocity error", units::RATE);
+pub(crate) const GAIN_LINK: Quantity =
+    Quantity::non_negative("damping injected into the links", units::DAMPING);
+pub(crate) const GAIN_MOTOR: Quantity =
+    Quantity::non_negative("damping injected into the motors", units::DAMPING);
+pub(crate) const GAIN_INERTIA: Quantity =
+    Quantity::positive("motor inertia that feedback of the spring torque makes", units::INERTIA);
+pub(crate) const GAIN_WEIGHT: Quantity =
+    Quantity::positive("weight W of motor position errors", units::STIFFNESS);
+pub(crate) const GAIN_MOTOR_SHAPING: Quantity =
+    Quantity::positive("rate a at which motor errors decay", units::RATE);
+pub(crate) const GAIN_SPRING: Quantity = Quantity::non_negative("damping K_f of the springs", units::DAMPING);
+pub(crate) const GAIN_VELOCITY: Quantity =
+    Quantity::non_negative("damping K_D of the feedback of motor velocities", units::DAMPING);
+pub(crate) const TORQUE_RATE_LIMIT: Quantity =
+    Quantity::positive("largest rate of the motor torque, link side of the gear", units::TORQUE_RATE)
+        .plausible(1e-1, 1e9, "is it in N m/ms?");
 pub(crate) const TORQUE_STEP: Quantity =
-    Quantity::non_negative("step that the motor torque comes in, link side of the gear", "N m");
-pub(crate) const COUNTS: Quantity = Quantity::positive("counts per turn of the encoder's shaft", "")
+    Quantity::non_negative("step that the motor torque comes in, link side of the gear", units::TORQUE);
+pub(crate) const COUNTS: Quantity = Quantity::positive("counts per turn of the encoder's shaft", units::NONE)
     .plausible(10.0, 1e9, "encoders have between 100 and 1e7");
 pub(crate) const RESOLUTION: Quantity =
-    Quantity::non_negative("one count of the encoder, link side of the gear", "rad")
+    Quantity::non_negative("one count of the encoder, link side of the gear", units::ANGLE)
         .plausible(TINY, 0.3, DEGREES);
 pub(crate) const NOISE: Quantity =
-    Quantity::non_negative("standard deviation of measured positions", "rad").plausible(TINY, 0.3, DEGREES);
+    Quantity::non_negative("standard deviation of measured positions", units::ANGLE)
+        .plausible(TINY, 0.3, DEGREES);
 pub(crate) const VELOCITY_NOISE: Quantity = Quantity::non_negative(
     "standard deviation of measured velocities",
-    "rad/s",
+    units::SPEED,
 )
 .plausible(TINY, 30.0, "is it in degrees/s or rev/min?");
-pub(crate) const SENSOR_PERIOD: Quantity = Quantity::positive("time between two readings", "s").plausible(
-    1e-7,
-    1.0,
-    "is it in milliseconds, or the rate in Hz?",
-);
+pub(crate) const SENSOR_PERIOD: Quantity = Quantity::positive("time between two readings", units::TIME)
+    .plausible(1e-7, 1.0, "is it in milliseconds, or the rate in Hz?");
 pub(crate) const PROBABILITY: Quantity = Quantity::probability("probability per control period");
 pub(crate) const MEAN_LENGTH: Quantity =
-    Quantity::at_least_one("mean length of an outage", "control periods");
-pub(crate) const FROM: Quantity = Quantity::non_negative("time of the beginning", "s");
-pub(crate) const UNTIL: Quantity = Quantity::positive("time of the end", "s");
+    Quantity::at_least_one("mean length of an outage", units::CONTROL_PERIODS);
+pub(crate) const FROM: Quantity = Quantity::non_negative("time of the beginning", units::TIME);
+pub(crate) const UNTIL: Quantity = Quantity::positive("time of the end", units::TIME);
 pub(crate) const CUTOFF: Quantity = Quantity::positive(
     "cut-off frequency, the one in rad/s divided by 2π",
-    "Hz",
+    units::FREQUENCY,
 )
 .plausible(0.1, 1e5, "filters of velocities lie between 10 and 1000 Hz");
 pub(crate) const DAMPING_RATIO: Quantity =
-    Quantity::positive("damping ratio", "").plausible(0.05, 20.0, "0.7 to 1 is usual");
+    Quantity::positive("damping ratio", units::NONE).plausible(0.05, 20.0, "0.7 to 1 is usual");
 pub(crate) const DELAY: Quantity =
-    Quantity::non_negative("delay", "s").plausible(1e-9, 0.5, "is it in milliseconds?");
+    Quantity::non_negative("delay", units::TIME).plausible(1e-9, 0.5, "is it in milliseconds?");
 pub(crate) const STATIC_FRICTION: Quantity =
-    Quantity::non_negative("torque that breaks the joint loose, link side of the gear", "N m");
+    Quantity::non_negative("torque that breaks the joint loose, link side of the gear", units::TORQUE);
 pub(crate) const STRIBECK_VELOCITY: Quantity = Quantity::positive(
     "speed at which 1/e of the rise of friction is left",
-    "rad/s",
+    units::SPEED,
 )
 .plausible(1e-6, 100.0, "is it in degrees/s or rev/min?");
 pub(crate) const DEAD_ZONE: Quantity =
-    Quantity::non_negative("deflection to either side without torque", "rad").plausible(TINY, 0.5, DEGREES);
+    Quantity::non_negative("deflection to either side without torque", units::ANGLE)
+        .plausible(TINY, 0.5, DEGREES);
 pub(crate) const HYSTERESIS_STIFFNESS: Quantity =
-    Quantity::non_negative("stiffness of the element that slips", "N m/rad");
+    Quantity::non_negative("stiffness of the element that slips", units::STIFFNESS);
 pub(crate) const HYSTERESIS_TORQUE: Quantity =
-    Quantity::non_negative("torque at which the element slips", "N m");
-pub(crate) const FACTOR: Quantity = Quantity::positive(
-    "the simulated robot's number divided by the one that the law knows",
-    "",
-)
-.plausible(0.01, 100.0, "1 leaves it as it is; is it in percent?");
+    Quantity::non_negative("torque at which the element slips", units::TORQUE);
+pub(crate) const FACTOR: Quantity =
+    Quantity::positive("the simulated robot's number divided by the one that the law knows", units::NONE)
+        .plausible(0.01, 100.0, "1 leaves it as it is; is it in percent?");
 pub(crate) const TORQUE_FACTOR: Quantity = Quantity::positive(
     "torque of the drive divided by what is asked of it",
-    "",
+    units::NONE,
 )
 .plausible(0.01, 100.0, "1 leaves it as it is; is it in percent?");
 pub(crate) const PAYLOAD: Quantity =
-    Quantity::non_negative("mass of the payload", "kg").plausible(1e-7, 1e5, "is it in grams?");
-pub(crate) const PUSH: Quantity = Quantity::any("torque from outside on the link", "N m");
-pub(crate) const BANDWIDTH: Quantity = Quantity::positive("bandwidth, 2π times the one in Hz", "rad/s")
+    Quantity::non_negative("mass of the payload", units::MASS).plausible(1e-7, 1e5, "is it in grams?");
+pub(crate) const PUSH: Quantity = Quantity::any("torque from outside on the link", units::TORQUE);
+pub(crate) const BANDWIDTH: Quantity = Quantity::positive("bandwidth, 2π times the one in Hz", units::SPEED)
     .plausible(0.1, 1e5, "observers lie between 10 and 10000 rad/s");
 pub(crate) const STOP_DAMPING: Quantity =
-    Quantity::non_negative("damping of the motor while stopped, link side of the gear", "N m s/rad");
+    Quantity::non_negative("damping of the motor while stopped, link side of the gear", units::DAMPING);

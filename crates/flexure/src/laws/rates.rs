@@ -6,7 +6,7 @@ use flexure_core::model::{Fjr, Links};
 use flexure_core::scalar::Dual;
 use serde::Serialize;
 
-use crate::eigenvalues::eigenvalues;
+use crate::linalg::{Leading, eigenvalues};
 
 /// The contraction rate of each block of the closed loop at one state [1/s]: decay rates of √W, the length of the
 /// error. The coupling between blocks cancels, so that the smallest of them is the rate of the whole.
@@ -75,8 +75,9 @@ fn shaping_rate<const N: usize>(
 /// Smallest and largest eigenvalue of the symmetric `a` relative to the positive diagonal `weight`.
 fn relative<const N: usize>(a: &Matrix<f64, N, N>, weight: &Vector<f64, N>) -> (f64, f64) {
     let root = weight.map(f64::sqrt);
-    let values: Vector<f64, N> = eigenvalues(Matrix::from_fn(|i, j| a[(i, j)] / (root[i] * root[j])));
-    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
+    let mut scaled: Matrix<f64, N, N> = Matrix::from_fn(|i, j| a[(i, j)] / (root[i] * root[j]));
+    eigenvalues(Leading::of(&mut scaled.0, N))
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
 }
 
 #[cfg(test)]

@@ -12,11 +12,11 @@ use serde::Serialize;
 
 use crate::files::{Problem, Problems};
 use crate::laws::law_over;
-use crate::prove::engine::envelope::closed_loop::{ClosedLoop, Enclosed, Place, Slope};
+use crate::prove::engine::envelope::closed_loop::{Enclosed, Place, Slope, TrackingLoop};
 use crate::prove::engine::envelope::slab::QUANTITIES;
-use crate::prove::engine::envelope::tube::Tube;
+use crate::prove::engine::envelope::tube::ErrorTube;
 use crate::prove::engine::envelope::witness::candidates;
-use crate::prove::engine::envelope::{Course, Request, course};
+use crate::prove::engine::envelope::{AlongRequest, Course, course};
 use crate::prove::engine::number::Number;
 use crate::prove::engine::verdict::{Undecided, Verdict};
 use crate::references::{self, AnyReference, Profile};
@@ -93,7 +93,7 @@ pub fn start_level(scenario: &Scenario) -> Result<f64, Problems> {
 /// Hands the scenario's closed loop over intervals to `then`.
 struct Build<'a, R> {
     scenario: &'a Scenario,
-    then: &'a dyn Fn(&dyn ClosedLoop) -> R,
+    then: &'a dyn Fn(&dyn TrackingLoop) -> R,
 }
 
 impl<R> RobotVisitor<Interval> for Build<'_, R> {
@@ -133,12 +133,12 @@ pub(crate) fn uneven_metric(scenario: &Scenario) -> Option<Problem> {
     Some(scenario.places.problem("controller.link.metric_hardening", "metric", message, help))
 }
 
-fn bounds(scenario: &Scenario, system: &dyn ClosedLoop, level: f64, budget: usize) -> Along {
+fn bounds(scenario: &Scenario, system: &dyn TrackingLoop, level: f64, budget: usize) -> Along {
     let robot = &scenario.robot;
     let given = [&robot.limits.velocity, &robot.limits.deflection, &robot.limits.torque];
     let limits: Vec<Interval> = given.into_iter().flatten().map(|&limit| robot.bounds(limit)).collect();
     let duration = scenario.bounds(scenario.duration).hi();
-    let course = course(system, &Request { level, duration, limits, budget });
+    let course = course(system, &AlongRequest { level, duration, limits, budget });
     let n = system.joints();
     let peaks = |quantity: usize| {
         let of = |f: &dyn Fn(usize) -> f64| (quantity * n..(quantity + 1) * n).map(f).collect();
@@ -159,7 +159,7 @@ fn bounds(scenario: &Scenario, system: &dyn ClosedLoop, level: f64, budget: usiz
     let [velocity, deflection, torque] = [0, 1, 2].map(peaks);
     Along {
         level,
-        error: Tube::new(system, level, &vec![Interval::ZERO; n]).errors()[..n]
+        error: ErrorTube::new(system, level, &vec![Interval::ZERO; n]).errors()[..n]
             .iter()
             .map(|e| e.hi())
             .collect(),
@@ -174,7 +174,7 @@ fn bounds(scenario: &Scenario, system: &dyn ClosedLoop, level: f64, budget: usiz
 /// Whether quantity `k` keeps `limit`.
 fn verdict(
     scenario: &Scenario,
-    system: &dyn ClosedLoop,
+    system: &dyn TrackingLoop,
     course: &Course,
     level: f64,
     k: usize,
@@ -208,7 +208,7 @@ fn verdict(
 }
 
 /// W at the initial state, from above.
-fn storage(scenario: &Scenario, system: &dyn ClosedLoop) -> f64 {
+fn storage(scenario: &Scenario, system: &dyn TrackingLoop) -> f64 {
     let initial = &scenario.initial;
     let enclosed = |values: &[f64]| values.iter().map(|&x| scenario.bounds(x)).collect::<Vec<_>>();
     let constant = |values: &[f64]| enclosed(values).into_iter().map(Slope::value).collect::<Vec<_>>();

@@ -6,7 +6,7 @@ use flexure_core::scalar::Interval;
 use crate::files::Problems;
 use crate::laws::{VcbcGains, law, law_over};
 use crate::prove::engine::certificate::Certificate;
-use crate::prove::engine::direct::{ClosedLoop, Proved, Region, Witness, full_turn, prove, vcbc};
+use crate::prove::engine::direct::{DirectWitness, Proved, StateBox, VcbcLoop, full_turn, prove, vcbc};
 use crate::prove::engine::number::Number;
 use crate::prove::engine::verdict::Verdict;
 use crate::robot::{JointKind, Robot, TwinVisitor, with_twins};
@@ -17,7 +17,7 @@ use crate::scenario::Scenario;
 const SHARE: f64 = 1.0 - 1e-9;
 
 /// What the direct engine says of a certified rate.
-pub type Confirmation = Verdict<Proved, Witness>;
+pub type Confirmation = Verdict<Proved, DirectWitness>;
 
 /// Proves the contraction rate of `certificate` again, on its region and for link speeds of up to `speed` [rad/s], from
 /// the full inequality, looking at no more than `budget` boxes.
@@ -55,7 +55,7 @@ impl TwinVisitor for Confirm<'_> {
         let around = |x: f64| Interval::point(-x).hull(Interval::point(x));
         let error =
             |i: usize| errors[i].as_ref().map_or(Interval::ENTIRE, |e: &Number| around(e.bounds().hi()));
-        let region = Region {
+        let region = StateBox {
             error_l: std::array::from_fn(error),
             error_m: std::array::from_fn(|i| error(N + i)),
             velocity_error_l: [Interval::ENTIRE; N],
@@ -63,8 +63,8 @@ impl TwinVisitor for Confirm<'_> {
             position: std::array::from_fn(|i| range(&scenario.robot, i)),
             velocity: [around(speed); N],
         };
-        let bounds = ClosedLoop { robot: enclosed, law: law_over(gains, |x| scenario.bounds(x)) };
-        let point = ClosedLoop { robot: point, law: law(gains) };
+        let bounds = VcbcLoop { robot: enclosed, law: law_over(gains, |x| scenario.bounds(x)) };
+        let point = VcbcLoop { robot: point, law: law(gains) };
         let rate = certificate.contraction_rate.bounds().lo() * SHARE;
         prove(&vcbc(bounds, point, &region), rate, budget)
     }

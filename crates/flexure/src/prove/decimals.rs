@@ -2,15 +2,15 @@
 
 use flexure_core::scalar::Interval;
 
-use crate::prove::engine::certificate::{Body, Gains, JointKind, Links, Robot};
+use crate::prove::engine::certificate::{DecimalBody, DecimalGains, DecimalLinks, DecimalRobot, JointMotion};
 use crate::prove::engine::number::Number;
 use crate::scenario::Scenario;
 use crate::{laws, robot};
 
 /// The gains of a side.
-pub(crate) fn gains(scenario: &Scenario, gains: &laws::SideGains) -> Gains {
+pub(crate) fn gains(scenario: &Scenario, gains: &laws::SideGains) -> DecimalGains {
     let numbers = |values: &[f64]| values.iter().map(|&x| Number::read(x, scenario.bounds(x))).collect();
-    Gains {
+    DecimalGains {
         metric: numbers(&gains.metric),
         shaping: numbers(&gains.shaping),
         damping: numbers(&gains.damping),
@@ -19,9 +19,9 @@ pub(crate) fn gains(scenario: &Scenario, gains: &laws::SideGains) -> Gains {
 }
 
 /// The robot.
-pub(crate) fn robot(data: &robot::Robot) -> Robot {
+pub(crate) fn robot(data: &robot::Robot) -> DecimalRobot {
     let numbers = |values: &[f64]| values.iter().map(|&x| Number::read(x, data.bounds(x))).collect();
-    Robot {
+    DecimalRobot {
         name: data.name.clone(),
         joints: data.joint_count(),
         links: links(data),
@@ -32,35 +32,35 @@ pub(crate) fn robot(data: &robot::Robot) -> Robot {
     }
 }
 
-fn links(data: &robot::Robot) -> Links {
+fn links(data: &robot::Robot) -> DecimalLinks {
     let number = |x: f64| Number::read(x, data.bounds(x));
     match (&data.links, &data.enclosed) {
-        (robot::Links::PlanarTwoLink { mass, length, com, inertia }, _) => Links::PlanarTwoLink {
+        (robot::Links::PlanarTwoLink { mass, length, com, inertia }, _) => DecimalLinks::PlanarTwoLink {
             mass: mass.map(number),
             length: number(length[0]),
             com: com.map(number),
             inertia: inertia.map(number),
         },
         (robot::Links::Pendulum { mass, com, inertia }, _) => {
-            Links::Pendulum { mass: number(*mass), com: number(*com), inertia: number(*inertia) }
+            DecimalLinks::Pendulum { mass: number(*mass), com: number(*com), inertia: number(*inertia) }
         }
         (_, robot::Links::Tree(bodies)) => {
             let bodies = bodies.iter().enumerate().map(|(i, enclosed)| body(data, i, enclosed));
-            Links::Tree { bodies: bodies.collect() }
+            DecimalLinks::Tree { bodies: bodies.collect() }
         }
         _ => unreachable!("enclosed links are of the same kind"),
     }
 }
 
-fn body(data: &robot::Robot, joint: usize, body: &robot::Body<Interval>) -> Body {
+fn body(data: &robot::Robot, joint: usize, body: &robot::Body<Interval>) -> DecimalBody {
     let computed = Number::computed;
     let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = body.inertia;
     let (lower, upper) = (data.limits.lower[joint], data.limits.upper[joint]);
     let number = |x: f64| Number::read(x, data.bounds(x));
     let prismatic = body.kind == robot::JointKind::Prismatic;
-    Body {
+    DecimalBody {
         parent: body.parent,
-        kind: if prismatic { JointKind::Prismatic } else { JointKind::Revolute },
+        kind: if prismatic { JointMotion::Prismatic } else { JointMotion::Revolute },
         axis: body.axis.map(computed),
         rotation: body.rotation.map(|row| row.map(computed)),
         translation: body.translation.map(computed),

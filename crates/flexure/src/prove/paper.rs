@@ -1,21 +1,21 @@
 //! The paper's formula for the rate: products of extreme eigenvalues. A lower bound of the true rate, often a poor one.
 
 use crate::laws::VcbcGains;
-use crate::prove::engine::certificate::Phi;
+use crate::prove::engine::certificate::CertifiedPhi;
 use crate::prove::engine::region::region;
-use crate::prove::engine::structural::{Problem, positions};
+use crate::prove::engine::structural::{Proposition, positions};
 use crate::robot::Robot;
 
 /// The rate of paper, corollaries on the three shaping functions, by its own formula, with its factor 2 corrected
 /// (docs/errata.md, 1) [1/s]: min{β_q, λ_min(D + K_d) λ_min(M⁻¹)}, with β_q = λ_min(Π ∂φ)/λ_max(Π), or ½ min κ for `coupled-tanh`.
 ///
 /// `largest_inertia` is λ_max of M_l over all configurations [kg m²].
-pub fn paper_rate(robot: &Robot, gains: &VcbcGains, problem: &Problem, largest_inertia: f64) -> f64 {
+pub fn paper_rate(robot: &Robot, gains: &VcbcGains, problem: &Proposition, largest_inertia: f64) -> f64 {
     let VcbcGains { link, motor, .. } = gains;
     let smallest = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
     let largest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
 
-    let beta_q = if problem.controller.phi == Phi::CoupledTanh {
+    let beta_q = if problem.controller.phi == CertifiedPhi::CoupledTanh {
         let kappa = [&link.kappa, &motor.kappa].map(|kappa| kappa.clone().unwrap_or_default()).concat();
         0.5 * smallest(&mut kappa.into_iter())
     } else {

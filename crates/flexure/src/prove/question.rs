@@ -5,18 +5,18 @@ use std::time::Instant as Clock;
 use flexure_core::scalar::Interval;
 
 use crate::files::Problems;
+use crate::linalg::Symmetric;
 use crate::prove::along::{Along, along, start_level, uneven_metric};
 use crate::prove::confirmation::{Confirmation, confirm};
 use crate::prove::decimals::{gains, robot};
-use crate::prove::engine::certificate::{BlockName, Certificate, Controller, Phi};
-use crate::prove::engine::matrix::Symmetric;
+use crate::prove::engine::certificate::{BlockName, Certificate, CertifiedPhi, DecimalLaw};
 use crate::prove::engine::momentum;
 use crate::prove::engine::number::Number;
 use crate::prove::engine::rate::Inequality;
-use crate::prove::engine::region::{Request, level_that_holds, region};
+use crate::prove::engine::region::{RequestedRegion, level_that_holds, region};
 use crate::prove::engine::structural::{self, certify, positions};
 use crate::prove::engine::verdict::{Undecided, Verdict};
-use crate::prove::engine::witness::{RateWitness, State, against};
+use crate::prove::engine::witness::{RateWitness, WitnessState, against};
 use crate::prove::paper::paper_rate;
 use crate::prove::sampling::{Sampled, sample};
 use crate::scenario::{self, Scenario};
@@ -97,17 +97,17 @@ pub fn problem(
     scenario: &Scenario,
     question: &Question,
     start: Option<f64>,
-) -> Result<structural::Problem, Problems> {
+) -> Result<structural::Proposition, Problems> {
     let laws::VcbcGains { phi, link, motor } = scenario.vcbc()?;
     if let Some(problem) = uneven_metric(scenario) {
         return Err(problem.into());
     }
     let phi = match phi {
-        laws::Phi::Tanh => Phi::Tanh,
-        laws::Phi::Linear => Phi::Linear,
-        laws::Phi::CoupledTanh => Phi::CoupledTanh,
+        laws::Phi::Tanh => CertifiedPhi::Tanh,
+        laws::Phi::Linear => CertifiedPhi::Linear,
+        laws::Phi::CoupledTanh => CertifiedPhi::CoupledTanh,
     };
-    let controller = Controller { phi, link: gains(scenario, link), motor: gains(scenario, motor) };
+    let controller = DecimalLaw { phi, link: gains(scenario, link), motor: gains(scenario, motor) };
     let mut assumptions: Vec<String> = scenario
         .assumptions
         .iter()
@@ -118,18 +118,18 @@ pub fn problem(
     let metric: Vec<_> =
         controller.link.metric.iter().chain(&controller.motor.metric).map(Number::bounds).collect();
     let region = match &question.region {
-        Region::Errors(largest) => Request::Box(errors(largest)),
-        Region::Start(start) => Request::Level(level_that_holds(&errors(start), &metric)),
-        Region::Chosen if phi == Phi::Tanh => {
+        Region::Errors(largest) => RequestedRegion::Box(errors(largest)),
+        Region::Start(start) => RequestedRegion::Level(level_that_holds(&errors(start), &metric)),
+        Region::Chosen if phi == CertifiedPhi::Tanh => {
             let (request, note) = chosen(&metric, start);
             assumptions.push(format!("no region was named and tanh has no rate everywhere: {note} is taken"));
             request
         }
-        Region::Chosen => Request::Everywhere,
+        Region::Chosen => RequestedRegion::Everywhere,
     };
     let disturbance =
         question.disturbance.as_ref().map(|torques| torques.iter().map(|&d| Number::decimal(d)).collect());
-    Ok(structural::Problem {
+    Ok(structural::Proposition {
         name: scenario.name.clone(),
         assumptions,
         robot: robot(&scenario.robot),
@@ -183,12 +183,13 @@ fn outside_travel(scenario: &Scenario) -> bool {
 }
 
 /// The smallest level of W that holds the start, or errors of up to [`ASSUMED_ERROR`] if that is more.
-fn chosen(metric: &[Interval], start: Option<f64>) -> (Request, String) {
+fn chosen(metric: &[Interval], start: Option<f64>) -> (RequestedRegion, String) {
     let errors = vec![Number::decimal(ASSUMED_ERROR); metric.len()];
-    let inside = region(&Request::Box(errors.clone()), metric).level.map_or(0.0, |level| level.bounds().lo());
+    let inside =
+        region(&RequestedRegion::Box(errors.clone()), metric).level.map_or(0.0, |level| level.bounds().lo());
     match start.filter(|&start| start > inside) {
-        Some(start) => (Request::Level(start), "the level of W at the scenario's start".to_owned()),
-        None => (Request::Box(errors), format!("|q̃_i| up to {ASSUMED_ERROR} rad")),
+        Some(start) => (RequestedRegion::Level(start), "the level of W at the scenario's start".to_owned()),
+        None => (RequestedRegion::Box(errors), format!("|q̃_i| up to {ASSUMED_ERROR} rad")),
     }
 }
 
@@ -274,21 +275,21 @@ fn slower(rate: f64, certificate: &Certificate, sampled: &Sampled, damping: &[f6
             let (direction, rate) = against(&side.inequality(&side.slopes(case)), rate)?;
             let far: Vec<bool> = case.iter().map(|high| !high).collect();
             let error = if far.is_empty() { vec![0.0; side.joints()] } else { side.error_at(&far) };
-            Some(RateWitness { block, state: State::Error(error), direction, rate })
+            Some(RateWitness { block, state: WitnessState::Error(error), direction, rate })
         })
     });
     let links = || {
         let damping: Vec<_> = damping.iter().map(|&d| Interval::point(d)).collect();
-        let weight = Symmetric::from_fn(damping.len(), |i, j| Interval::point(sampled.mass_matrix[i][j]));
+        let weight = sampled.mass_matrix.map(Interval::point);
         let (direction, rate) = against(&Inequality { form: Symmetric::diagonal(&damping), weight }, rate)?;
-        let state = State::Configuration(sampled.configuration.clone());
+        let state = WitnessState::Configuration(sampled.configuration.clone());
         Some(RateWitness { block: BlockName::SigmaL, state, direction, rate })
     };
     let motors = || {
         let robot = &certificate.robot;
         let damping = momentum::damping(&robot.motor_damping, &certificate.controller.motor.damping);
         let (direction, rate) = against(&momentum::motors(robot, &damping), rate)?;
-        Some(RateWitness { block: BlockName::SigmaM, state: State::Any, direction, rate })
+        Some(RateWitness { block: BlockName::SigmaM, state: WitnessState::Any, direction, rate })
     };
     position.or_else(links).or_else(motors)
 }

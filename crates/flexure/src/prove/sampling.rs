@@ -4,8 +4,8 @@ use flexure_core::linalg::{Matrix, Vector};
 use flexure_core::model::{Fjr, Links};
 use serde::Serialize;
 
-use crate::eigenvalues::eigenvalues;
 use crate::files::Problems;
+use crate::linalg::{Leading, Symmetric, eigenvalues};
 use crate::robot::{self, RobotVisitor, with_robot};
 
 /// Configurations looked at before the worst are refined.
@@ -22,9 +22,9 @@ pub struct Sampled {
     pub rate: f64,
     /// Where, in rad (m for prismatic joints).
     pub configuration: Vec<f64>,
-    /// M_l there, by rows [kg m²].
+    /// M_l there [kg m²].
     #[serde(skip)]
-    pub mass_matrix: Vec<Vec<f64>>,
+    pub mass_matrix: Symmetric<f64>,
     /// Largest eigenvalue of M_l at the configuration where that is largest [kg m²].
     pub largest_inertia: f64,
 }
@@ -56,7 +56,8 @@ impl RobotVisitor for Sampler<'_> {
         let inertia = |q: &Vector<f64, N>| -largest(robot.links.mass_matrix(q));
         let (rate, configuration) = smallest(&ranges, &rate);
         let (negative, _) = smallest(&ranges, &inertia);
-        let mass_matrix = robot.links.mass_matrix(&configuration).0.map(|row| row.to_vec()).to_vec();
+        let mass = robot.links.mass_matrix(&configuration);
+        let mass_matrix = Symmetric::from_fn(N, |i, j| mass[(i, j)]);
         let configuration = configuration.0.to_vec();
         Sampled { rate, configuration, mass_matrix, largest_inertia: -negative }
     }
@@ -74,8 +75,8 @@ fn ranges<const N: usize>(robot: &robot::Robot) -> Vector<(f64, f64), N> {
     })
 }
 
-fn largest<const N: usize>(m: Matrix<f64, N, N>) -> f64 {
-    eigenvalues(m).iter().fold(f64::NEG_INFINITY, f64::max)
+fn largest<const N: usize>(mut m: Matrix<f64, N, N>) -> f64 {
+    eigenvalues(Leading::of(&mut m.0, N)).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// The smallest value found of `f` over the ranges, and where.

@@ -5,11 +5,11 @@ use serde::Serialize;
 use crate::prove::along::Along;
 use crate::prove::confirmation::Confirmation;
 use crate::prove::engine::certificate::{
-    Block, BlockName, Certificate, Norm, Side, Structure, StructureName,
+    Block, BlockName, Certificate, LoopSide, Norm, StructureClaim, StructureName,
 };
 use crate::prove::engine::number::Number;
 use crate::prove::engine::verdict::Verdict;
-use crate::prove::engine::witness::State;
+use crate::prove::engine::witness::WitnessState;
 use crate::prove::question::{Proof, inside};
 use crate::prove::sampling::Sampled;
 use crate::scenario::Scenario;
@@ -28,9 +28,9 @@ pub struct ProofSummary {
     /// The rate by the paper's formula [1/s].
     pub paper_rate: f64,
     /// Contraction rate of each block [1/s].
-    pub blocks: Option<BlockRates>,
+    pub blocks: Option<BlockSummary>,
     /// Convergence rate of each block [1/s].
-    pub convergence_blocks: Option<BlockRates>,
+    pub convergence_blocks: Option<BlockSummary>,
     /// Where it holds.
     pub region: Option<RegionSummary>,
     /// Upper bounds of the matrix measures of −Θ ∂φ Θ⁻¹ [1/s].
@@ -63,7 +63,7 @@ pub struct ProofSummary {
 
 /// A rate of each block [1/s].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct BlockRates {
+pub struct BlockSummary {
     /// Link positions.
     pub phi_l: f64,
     /// Motor positions.
@@ -89,7 +89,7 @@ pub struct RegionSummary {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MeasureSummary {
     /// Links or motors.
-    pub side: Side,
+    pub side: LoopSide,
     /// The norm.
     pub norm: Norm,
     /// Its bound [1/s].
@@ -166,7 +166,7 @@ fn floats(numbers: &[Number]) -> Vec<f64> {
     numbers.iter().map(Number::approximate).collect()
 }
 
-impl BlockRates {
+impl BlockSummary {
     fn of(blocks: &[Block], rate: impl Fn(&Block) -> &Number) -> Self {
         let of = |name| {
             blocks
@@ -187,14 +187,14 @@ impl ProofSummary {
     /// Of a proof of `scenario`.
     pub fn new(scenario: &Scenario, proof: &Proof) -> Self {
         let certificate = proof.verdict.proved();
-        let sigma_l = |c: &Certificate| BlockRates::of(&c.blocks, |block| &block.contraction).sigma_l;
+        let sigma_l = |c: &Certificate| BlockSummary::of(&c.blocks, |block| &block.contraction).sigma_l;
         let (witness, undecided) = match &proof.verdict {
             Verdict::Proved(_) => (None, None),
             Verdict::Refuted(witness) => {
                 let (error, configuration) = match &witness.state {
-                    State::Error(error) => (Some(error.clone()), None),
-                    State::Configuration(q) => (None, Some(q.clone())),
-                    State::Any => (None, None),
+                    WitnessState::Error(error) => (Some(error.clone()), None),
+                    WitnessState::Configuration(q) => (None, Some(q.clone())),
+                    WitnessState::Any => (None, None),
                 };
                 let (direction, rate) = (witness.direction.clone(), witness.rate);
                 (Some(WitnessSummary { block: witness.block, error, configuration, direction, rate }), None)
@@ -209,14 +209,14 @@ impl ProofSummary {
             contraction_rate: certificate.map(|c| c.contraction_rate.approximate()),
             convergence_rate: certificate.map(|c| c.convergence_rate.approximate()),
             paper_rate: proof.paper_rate,
-            blocks: certificate.map(|c| BlockRates::of(&c.blocks, |block| &block.contraction)),
-            convergence_blocks: certificate.map(|c| BlockRates::of(&c.blocks, |block| &block.convergence)),
+            blocks: certificate.map(|c| BlockSummary::of(&c.blocks, |block| &block.contraction)),
+            convergence_blocks: certificate.map(|c| BlockSummary::of(&c.blocks, |block| &block.convergence)),
             region: certificate.map(region),
             measures: certificate.map_or_else(Vec::new, measures),
             structure: certificate.map_or_else(Vec::new, |c| {
                 c.structure
                     .iter()
-                    .map(|&Structure { name, holds, .. }| StructureSummary { name, holds })
+                    .map(|&StructureClaim { name, holds, .. }| StructureSummary { name, holds })
                     .collect()
             }),
             mass_matrix_positive_definite: certificate.map(|_| true),

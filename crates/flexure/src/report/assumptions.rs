@@ -1,17 +1,18 @@
 //! What was assumed, for reports.
 
 use crate::files;
-use crate::report::Assumption;
+use crate::report::AssumedNumber;
 use crate::scenario::Scenario;
+use crate::units::Unit;
 
 /// Every assumption of every file, once; a scenario's include its robot's.
-pub fn assumptions<'a>(scenarios: impl Iterator<Item = &'a Scenario>) -> Vec<Assumption> {
-    let mut all: Vec<Assumption> = Vec::new();
+pub fn assumptions<'a>(scenarios: impl Iterator<Item = &'a Scenario>) -> Vec<AssumedNumber> {
+    let mut all: Vec<AssumedNumber> = Vec::new();
     for scenario in scenarios {
         for assumed in &scenario.assumptions {
             let seen = all.iter().any(|a| a.file == assumed.file && a.key == assumed.key);
             if !seen {
-                all.push(Assumption {
+                all.push(AssumedNumber {
                     file: assumed.file.clone(),
                     key: assumed.key.clone(),
                     value: value(assumed),
@@ -31,22 +32,7 @@ fn value(assumed: &files::Assumption) -> String {
     format!("{}{}", assumed.value, unit(&assumed.key).replace(' ', "\u{a0}"))
 }
 
-/// Unit of the value at `key` of a robot or scenario file; empty for none and for whole tables.
-fn unit(key: &str) -> &'static str {
-    match key.rsplit('.').next().unwrap_or_default() {
-        "duration" | "control_period" | "settle" | "rise" => " s",
-        "gravity" => " m/s²",
-        "mass" => " kg",
-        "length" | "com" => " m",
-        "inertia" | "motor_inertia" => " kg m²",
-        "stiffness" | "metric" => " N m/rad",
-        "link_damping" | "motor_damping" | "damping" => " N m s/rad",
-        "torque_limit" => " N m",
-        "torque_rate_limit" => " N m/s",
-        "velocity_limit" => " rad/s",
-        "deflection_limit" => " rad",
-        "spring_hardening" | "metric_hardening" => " N m/rad³",
-        "kappa" => " 1/s",
-        _ => "",
-    }
+/// Unit of the value at `key` of a robot or scenario file, behind a blank; empty for none and for whole tables.
+fn unit(key: &str) -> String {
+    Unit::of_key(key).map(|unit| format!(" {}", unit.raised)).unwrap_or_default()
 }

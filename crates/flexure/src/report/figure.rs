@@ -9,6 +9,7 @@ use crate::report::panel::{HEIGHT, Panel, Scale, View, buckets, span};
 use crate::report::sheet::{MARGIN, Sheet};
 use crate::report::style::{INK, Stroke};
 use crate::simulate::Trace;
+use crate::units;
 
 /// What is written above the panels.
 #[derive(Clone, Debug, Default)]
@@ -37,28 +38,28 @@ pub fn four_panel(trace: &Trace, options: &FigureOptions) -> String {
         Panel {
             title: "(a)  positions qₗ, qₘ and reference of qₗ",
             quantity: "position",
-            unit: "rad",
+            unit: units::ANGLE.raised,
             scale: Scale::Linear,
             curves: positions,
         },
         Panel {
             title: "(b)  position errors eₗ, eₘ",
             quantity: "|error|",
-            unit: "rad",
+            unit: units::ANGLE.raised,
             scale: Scale::Decades,
             curves: over(motor("e_m"), link("e_l")),
         },
         Panel {
             title: "(c)  momentum errors σₗ, σₘ",
             quantity: "|momentum error|",
-            unit: "kg m²/s",
+            unit: units::MOMENTUM.raised,
             scale: Scale::Decades,
             curves: over(motor("sigma_m"), link("sigma_l")),
         },
         Panel {
             title: "(d)  motor torques uₘ",
             quantity: "torque",
-            unit: "N m",
+            unit: units::TORQUE.raised,
             scale: Scale::Linear,
             curves: link("u_m"),
         },

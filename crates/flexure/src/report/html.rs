@@ -6,10 +6,11 @@ use crate::files::number::{NONE, engineering};
 use crate::report::certificates::{self, CertificateReport};
 use crate::report::markdown::{ERRATA, body, subscripts};
 use crate::simulate::Summary;
+use crate::units;
 
 /// Everything a report says. The same report gives the same page, byte for byte: no clock is read.
 #[derive(Clone, Debug, Default)]
-pub struct Report {
+pub struct RunsReport {
     /// Heading of the page.
     pub title: String,
     /// What was run and why: paragraphs, separated by empty lines.
@@ -21,12 +22,12 @@ pub struct Report {
     /// What was proved.
     pub certificates: Vec<CertificateReport>,
     /// Numbers that no source gives.
-    pub assumptions: Vec<Assumption>,
+    pub assumptions: Vec<AssumedNumber>,
     /// How the numbers came about: version, seeds, what makes them reproducible.
     pub provenance: Vec<String>,
 }
 
-/// One run of a [`Report`].
+/// One run of a [`RunsReport`].
 #[derive(Clone, Debug)]
 pub struct RunReport {
     /// Its figures of merit.
@@ -39,7 +40,7 @@ pub struct RunReport {
 
 /// A number that was assumed, and why.
 #[derive(Clone, Debug)]
-pub struct Assumption {
+pub struct AssumedNumber {
     /// File in which it stands.
     pub file: String,
     /// Where in the file.
@@ -53,7 +54,7 @@ pub struct Assumption {
 /// The page.
 ///
 /// Every text is escaped. Figures are inserted as they are: they come from this crate.
-pub fn html(report: &Report) -> String {
+pub fn html(report: &RunsReport) -> String {
     markup! {
         (DOCTYPE)
         html lang="en" {
@@ -102,7 +103,7 @@ fn paragraphs(text: &str) -> Markup {
     markup! { @for paragraph in text.split("\n\n").filter(|paragraph| !paragraph.trim().is_empty()) { p { (paragraph.trim()) } } }
 }
 
-fn contents(report: &Report) -> Markup {
+fn contents(report: &RunsReport) -> Markup {
     markup! {
         nav aria-label="Contents" {
             a href="#summary" { "Summary" }
@@ -117,15 +118,15 @@ fn contents(report: &Report) -> Markup {
 
 /// Heading and unit of each number in the summary table.
 const COLUMNS: [(&str, &str); 11] = [
-    ("max |e_l|", "rad"),
-    ("rms e_l", "rad"),
-    ("final |e_l|", "rad"),
-    ("settling time", "s"),
-    ("max |u_m|", "N m"),
-    ("rms u_m", "N m"),
+    ("max |e_l|", units::ANGLE.raised),
+    ("rms e_l", units::ANGLE.raised),
+    ("final |e_l|", units::ANGLE.raised),
+    ("settling time", units::TIME.raised),
+    ("max |u_m|", units::TORQUE.raised),
+    ("rms u_m", units::TORQUE.raised),
     ("saturated", "%"),
-    ("rate sampled", "1/s"),
-    ("rate certified", "1/s"),
+    ("rate sampled", units::RATE.raised),
+    ("rate certified", units::RATE.raised),
     ("energy drift", "–"),
     ("steps", "–"),
 ];
@@ -198,10 +199,10 @@ fn figure(number: usize, run: &RunReport) -> Markup {
     }
 }
 
-pub(super) fn assumptions(assumptions: &[Assumption]) -> Markup {
-    let mut rows: Vec<(&Assumption, Vec<&str>)> = Vec::new();
+pub(super) fn assumptions(assumptions: &[AssumedNumber]) -> Markup {
+    let mut rows: Vec<(&AssumedNumber, Vec<&str>)> = Vec::new();
     for assumption in assumptions {
-        let same = |other: &Assumption| {
+        let same = |other: &AssumedNumber| {
             (&other.key, &other.value, &other.note) == (&assumption.key, &assumption.value, &assumption.note)
         };
         match rows.iter_mut().find(|(first, _)| same(first)) {

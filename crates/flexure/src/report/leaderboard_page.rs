@@ -5,13 +5,13 @@ use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 use crate::compare::{Leaderboard, Loss, Score, TaskScores, is_vcbc};
 use crate::files::number::{NONE, engineering, short, significant};
 use crate::report::effort::{chatter_figure, effort_figure};
-use crate::report::html::{Assumption, assumptions};
+use crate::report::html::{AssumedNumber, assumptions};
 
 const TITLE: &str = "Control laws of flexible-joint robots on the same bench";
 
 /// The page: ranking, where v-CBC loses, errors, figures, gains and what was assumed. The same comparison gives the same
 /// page, byte for byte.
-pub fn leaderboard_page(board: &Leaderboard, assumed: &[Assumption]) -> String {
+pub fn leaderboard_page(board: &Leaderboard, assumed: &[AssumedNumber]) -> String {
     markup! {
         (DOCTYPE)
         html lang="en" {

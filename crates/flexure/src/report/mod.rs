@@ -31,7 +31,7 @@ pub use certificates::CertificateReport;
 pub use comparison::comparison;
 pub use effort::{chatter_figure, effort_figure};
 pub use figure::{FigureOptions, four_panel};
-pub use html::{Assumption, Report, RunReport, html};
+pub use html::{AssumedNumber, RunReport, RunsReport, html};
 pub use leaderboard_page::leaderboard_page;
 pub use leaderboard_table::leaderboard_table;
 pub use margins_table::margins_table;

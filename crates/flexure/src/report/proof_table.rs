@@ -4,10 +4,11 @@ use std::fmt::Write;
 
 use crate::files::number::{NONE, engineering, short, significant};
 use crate::prove::along::Along;
-use crate::prove::engine::certificate::{Norm, Side, StructureName};
+use crate::prove::engine::certificate::{LoopSide, Norm, StructureName};
 use crate::prove::engine::verdict::Verdict;
-use crate::prove::summary::{BlockRates, ProofSummary, WitnessSummary};
+use crate::prove::summary::{BlockSummary, ProofSummary, WitnessSummary};
 use crate::report::table::{headed, right};
+use crate::units::{self, Unit};
 
 /// What was proved, refuted or left undecided, at most 100 columns wide.
 pub fn proof_table(summary: &ProofSummary) -> String {
@@ -52,7 +53,7 @@ pub fn certificate_table(summaries: &[ProofSummary]) -> String {
     table.to_string()
 }
 
-fn rates(summary: &ProofSummary, contraction: BlockRates, convergence: BlockRates) -> String {
+fn rates(summary: &ProofSummary, contraction: BlockSummary, convergence: BlockSummary) -> String {
     let mut table = headed(["block", "contraction\n[1/s]", "convergence\n[1/s]"].into_iter());
     let number = |x: Option<f64>| right(x.map_or(NONE.to_owned(), |x| significant(x, 6)));
     let mut row = |name: &str, contraction, convergence| {
@@ -98,7 +99,7 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
             significant(summary.sampled.rate, 6)
         ));
     }
-    for side in [Side::Link, Side::Motor] {
+    for side in [LoopSide::Link, LoopSide::Motor] {
         let bounds = summary.measures.iter().filter(|measure| measure.side == side).map(|measure| {
             let norm = match measure.norm {
                 Norm::One => "1",
@@ -109,7 +110,7 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
         });
         let bounds = bounds.collect::<Vec<_>>().join(", ");
         if !bounds.is_empty() {
-            let side = if side == Side::Link { "links: " } else { "motors:" };
+            let side = if side == LoopSide::Link { "links: " } else { "motors:" };
             lines.push(format!("measures     of −Θ ∂φ Θ⁻¹, {side} {bounds} 1/s"));
         }
     }
@@ -159,11 +160,6 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
 
 /// What is bounded along the reference.
 fn bounds(along: &Along) -> Vec<String> {
-    let unit = |key: &str| match key {
-        "torque_limit" => "N m",
-        "velocity_limit" => "rad/s",
-        _ => "rad",
-    };
     let mut lines = vec![
         format!(
             "along        while W ≤ {} J: |q̇_l| ≤ {} rad/s",
@@ -178,7 +174,8 @@ fn bounds(along: &Along) -> Vec<String> {
         ),
     ];
     lines.extend(along.limits.iter().map(|limit| {
-        let (joint, key, unit) = (limit.joint + 1, limit.key, unit(limit.key));
+        let (joint, key, unit) =
+            (limit.joint + 1, limit.key, Unit::of_key(limit.key).unwrap_or(units::NONE).plain);
         let verdict = match &limit.verdict {
             Verdict::Proved(bound) => format!("never reached, at most {} {unit}", short(*bound, 3)),
             Verdict::Refuted(state) => {

@@ -9,7 +9,7 @@ use crate::files::number::engineering;
 use crate::prove::question::{Direct, Proof, Question, Region, certified_rate, prove};
 use crate::prove::summary::ProofSummary;
 use crate::report::{
-    CertificateReport, FigureOptions, Report, RunReport, assumptions, comparison, four_panel,
+    CertificateReport, FigureOptions, RunReport, RunsReport, assumptions, comparison, four_panel,
 };
 use crate::scenario::{Hold, Scenario, load_scenario};
 use crate::simulate::{Run, Summary, run};
@@ -131,9 +131,9 @@ pub fn reproduce(progress: &(dyn Fn(usize, f64) + Sync)) -> Result<Vec<Experimen
 }
 
 /// The report of some experiments.
-pub fn report(experiments: &[Experiment], certificates: &[Certified]) -> Report {
+pub fn report(experiments: &[Experiment], certificates: &[Certified]) -> RunsReport {
     let traces: Vec<_> = experiments.iter().map(|e| (e.scenario.name.as_str(), &e.run.trace)).collect();
-    Report {
+    RunsReport {
         title: "Virtual-contraction control of a flexible-joint robot".to_owned(),
         introduction: INTRODUCTION.to_owned(),
         runs: experiments.iter().map(run_report).collect(),

@@ -4,6 +4,9 @@
 //! what can be stiff, namely the mass matrix and the slopes of the springs at the start of the step, and dampers. It
 //! leaves out velocity products and gravity, whose part vanishes with the step. Motors do not couple to each other and
 //! are eliminated; what remains are N × N blocks of one small matrix over the stages.
+//!
+//! The elimination by blocks is here and not in [`linalg`](crate::linalg) because it is the kernel of the simulation, run every
+//! step on the stack: its entries are 4 × 4 matrices that do not commute, so that no factorisation over numbers does it.
 
 use flexure_core::linalg::{Matrix, Vector};
 use flexure_core::model::{Links, Motion};

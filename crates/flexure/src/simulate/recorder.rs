@@ -7,6 +7,7 @@ use flexure_core::model::{Fjr, Links, Motion};
 
 use crate::simulate::Instant;
 use crate::simulate::trace::Trace;
+use crate::units::{self, Unit};
 
 /// Watches a run, instant by instant.
 pub(crate) struct Recorder {
@@ -24,49 +25,57 @@ pub(crate) struct Columns {
     pub(crate) devices: bool,
 }
 
-type Signal = (&'static str, &'static str);
+type Signal = (&'static str, Unit);
 
 /// The columns of every trace, with units; vector signals have one column per joint.
 const MOTION: [Signal; 7] = [
-    ("q_l", "rad"),
-    ("q_m", "rad"),
-    ("dq_l", "rad/s"),
-    ("dq_m", "rad/s"),
-    ("q_ld", "rad"),
-    ("e_l", "rad"),
-    ("u_m", "N m"),
+    ("q_l", units::ANGLE),
+    ("q_m", units::ANGLE),
+    ("dq_l", units::SPEED),
+    ("dq_m", units::SPEED),
+    ("q_ld", units::ANGLE),
+    ("e_l", units::ANGLE),
+    ("u_m", units::TORQUE),
 ];
 /// Those of the v-CBC law.
-const ERRORS: [Signal; 4] =
-    [("e_m", "rad"), ("sigma_l", "kg m^2/s"), ("sigma_m", "kg m^2/s"), ("u_l", "N m")];
+const ERRORS: [Signal; 4] = [
+    ("e_m", units::ANGLE),
+    ("sigma_l", units::MOMENTUM),
+    ("sigma_m", units::MOMENTUM),
+    ("u_l", units::TORQUE),
+];
 /// Those of loops with devices.
 const DEVICES: [Signal; 6] = [
-    ("q_l_seen", "rad"),
-    ("q_m_seen", "rad"),
-    ("dq_l_seen", "rad/s"),
-    ("dq_m_seen", "rad/s"),
-    ("u_command", "N m"),
-    ("disturbance_m", "N m"),
+    ("q_l_seen", units::ANGLE),
+    ("q_m_seen", units::ANGLE),
+    ("dq_l_seen", units::SPEED),
+    ("dq_m_seen", units::SPEED),
+    ("u_command", units::TORQUE),
+    ("disturbance_m", units::TORQUE),
 ];
-const ENERGY: [Signal; 4] =
-    [("hamiltonian", "J"), ("supplied", "J"), ("dissipated", "J"), ("energy_residual", "J")];
-const RATE: Signal = ("rate", "1/s");
+const ENERGY: [Signal; 4] = [
+    ("hamiltonian", units::ENERGY),
+    ("supplied", units::ENERGY),
+    ("dissipated", units::ENERGY),
+    ("energy_residual", units::ENERGY),
+];
+const RATE: Signal = ("rate", units::RATE);
 /// 1 or 0: whether a certificate can hold, and whether the guard has stopped the robot.
-const STATUS: [Signal; 2] = [("certificate", ""), ("stopped", "")];
+const STATUS: [Signal; 2] = [("certificate", units::NONE), ("stopped", units::NONE)];
 
 impl Recorder {
     pub(crate) fn new(joints: usize, columns: Columns) -> Self {
         let per_joint = |(name, unit): Signal| {
-            (1..=joints).map(move |k| (format!("{name}{k}"), unit)).collect::<Vec<_>>()
+            (1..=joints).map(move |k| (format!("{name}{k}"), unit.plain)).collect::<Vec<_>>()
         };
-        let scalar = |(name, unit): Signal| vec![(name.to_owned(), unit)];
+        let scalar = |(name, unit): Signal| vec![(name.to_owned(), unit.plain)];
         let (errors, devices) = (usize::from(columns.errors), usize::from(columns.devices));
         let vectors = MOTION.iter().chain(&ERRORS[..ERRORS.len() * errors]);
         let vectors =
             vectors.chain(&DEVICES[..DEVICES.len() * devices]).flat_map(|&signal| per_joint(signal));
         let scalars = ENERGY.iter().chain([RATE].iter().take(errors));
         let scalars = scalars.chain(&STATUS[..STATUS.len() * devices]).flat_map(|&signal| scalar(signal));
-        let names = scalar(("t", "s")).into_iter().chain(vectors).chain(scalars);
+        let names = scalar(("t", units::TIME)).into_iter().chain(vectors).chain(scalars);
         let trace = Trace::new(names);
         Self { row: Vec::with_capacity(trace.columns().len()), trace, columns }
     }

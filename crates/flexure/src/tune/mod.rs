@@ -2,7 +2,7 @@
 
 mod search;
 
-pub use search::{Best, search};
+pub use search::{BestPoint, search};
 
 use crate::feasible;
 use crate::files::Problems;

@@ -7,7 +7,7 @@ use rand_xoshiro::rand_core::SeedableRng;
 
 /// A point and its cost.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Best {
+pub struct BestPoint {
     /// Where the cost is smallest of all points that were tried.
     pub at: Vec<f64>,
     /// The cost there.
@@ -34,10 +34,10 @@ pub fn search(
     budget: usize,
     seed: u64,
     cost: &dyn Fn(&[f64]) -> f64,
-) -> Best {
+) -> BestPoint {
     let finite = |x: &[f64]| Some(cost(x)).filter(|cost| !cost.is_nan()).unwrap_or(f64::INFINITY);
     let origin = vec![0.0; dimension];
-    let mut best = Best { cost: finite(&origin), at: origin.clone(), evaluations: 1 };
+    let mut best = BestPoint { cost: finite(&origin), at: origin.clone(), evaluations: 1 };
     let along = if dimension == 0 { 0 } else { budget / 4 };
     for i in 0..along {
         let mut at = origin.clone();
@@ -81,7 +81,7 @@ pub fn search(
     tried.into_inner()
 }
 
-impl Best {
+impl BestPoint {
     fn consider(&mut self, at: &[f64], cost: f64) {
         self.evaluations += 1;
         if cost < self.cost {

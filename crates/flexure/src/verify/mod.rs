@@ -25,7 +25,7 @@ mod vector;
 mod verdict;
 mod words;
 
-pub use verdict::{Claim, Rejected, Report};
+pub use verdict::{CheckReport, Claim, Rejected};
 
 /// Checks every claim of a certificate.
 ///
@@ -40,7 +40,7 @@ pub use verdict::{Claim, Rejected, Report};
 ///
 /// # Errors
 /// [`Rejected::Malformed`] if the text is no certificate, [`Rejected::False`] if a claim does not hold.
-pub fn verify(text: &str) -> Result<Report, Rejected> {
+pub fn verify(text: &str) -> Result<CheckReport, Rejected> {
     let certificate = document::read(text)?;
     let checks = [
         robot::check,
@@ -58,7 +58,7 @@ pub fn verify(text: &str) -> Result<Report, Rejected> {
     for check in checks {
         claims.extend(check(&certificate)?);
     }
-    Ok(Report {
+    Ok(CheckReport {
         name: certificate.name,
         assumptions: certificate.assumptions,
         claims,

@@ -21,7 +21,7 @@ impl Claim {
 
 /// A certificate whose claims all hold.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Report {
+pub struct CheckReport {
     /// The scenario it is about, as the file says.
     pub name: String,
     /// What the file says was assumed. Not checked.

@@ -7,14 +7,13 @@ use flexure::core::scalar::Interval;
 use flexure::laws::{AnyShaping, law_over};
 use flexure::prove::engine::envelope::closed_loop::Enclosed;
 use flexure::prove::engine::envelope::slab::Slab;
-use flexure::prove::engine::envelope::tube::Tube;
-use flexure::references::AnyReference;
-use flexure::references::{Profile, Reference};
+use flexure::prove::engine::envelope::tube::ErrorTube;
+use flexure::references::{AnyReference, Profile, Reference};
 use flexure::robot::Links;
-use flexure::scenario::Scenario;
-use flexure::scenario::load_scenario;
+use flexure::scenario::{Scenario, load_scenario};
 
-use super::floats::{self, Numbers};
+use super::floats;
+use super::floats::Numbers;
 
 type Arm = Enclosed<
     PlanarTwoLink<Interval>,
@@ -113,7 +112,7 @@ fn reaches_are_the_dual_norm() {
     for _ in 0..100 {
         let q = Vector([3.0 * r.next(), 3.0 * r.next()]);
         let g: [f64; 8] = std::array::from_fn(|_| r.next());
-        let tube = Tube::new(&system, 1e-16, &q.0.map(Interval::point));
+        let tube = ErrorTube::new(&system, 1e-16, &q.0.map(Interval::point));
         let reach = tube.reach(&g.map(Interval::point)).hi();
         let g_l = Vector([g[4], g[5]]);
         let links = g_l.dot(&floats.robot.links.mass_matrix(&q).ldl().solve(&g_l));

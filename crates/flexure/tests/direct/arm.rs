@@ -1,7 +1,7 @@
 //! The paper's arm and gains in any number, and regions.
 
-use flexure::prove::engine::direct::Twins;
-use flexure::prove::engine::direct::{ClosedLoop, Region, vcbc};
+use flexure::prove::engine::direct::{StateBox, VcbcLoop};
+use flexure::prove::engine::direct::{Twins, vcbc};
 use flexure_core::control::{CoupledTanh, Linear, LinkGains, Metric, MotorGains, Shaping, Tanh, Vcbc};
 use flexure_core::linalg::Vector;
 use flexure_core::model::Fjr;
@@ -58,22 +58,22 @@ pub fn law<C: Decimal, P>(shaping: impl Fn(Vector<C, 2>) -> P) -> Vcbc<C, P, P, 
     }
 }
 
-pub type Arm<C, P> = ClosedLoop<C, PlanarTwoLink<C>, P, P, 2>;
+pub type Arm<C, P> = VcbcLoop<C, PlanarTwoLink<C>, P, P, 2>;
 pub type ArmFlow<PI, P> = Twins<Arm<Interval, PI>, Arm<f64, P>>;
 
 pub fn closed_loop<C: Decimal, P>(shaping: impl Fn(Vector<C, 2>) -> P) -> Arm<C, P> {
-    ClosedLoop { robot: robot(), law: law(shaping) }
+    VcbcLoop { robot: robot(), law: law(shaping) }
 }
 
 /// |q̃_i| ≤ 3, all q_l, |q̇_l| ≤ 5.
-pub fn region() -> Region<2> {
-    Region::within(3.0, 5.0)
+pub fn region() -> StateBox<2> {
+    StateBox::within(3.0, 5.0)
 }
 
 pub fn flow<PI, P>(
     bounds: impl Fn(Vector<Interval, 2>) -> PI,
     point: impl Fn(Vector<f64, 2>) -> P,
-    region: &Region<2>,
+    region: &StateBox<2>,
 ) -> ArmFlow<PI, P>
 where
     PI: Shaping<Interval, 2>,

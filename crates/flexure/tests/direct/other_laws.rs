@@ -1,19 +1,19 @@
 //! What no structure theorem covers: other shaping functions, broken laws, other controllers.
 
-use flexure::prove::engine::direct::best_rate;
-use flexure::prove::engine::direct::jacobian;
-use flexure::prove::engine::direct::prove;
-use flexure::prove::engine::direct::symmetric_part;
-use flexure::prove::engine::direct::{Balance, Form};
-use flexure::prove::engine::direct::{Coordinate, System, Twins};
-use flexure::prove::engine::direct::{Region, vcbc};
+use flexure::linalg::Symmetric;
+use flexure::prove::engine::direct::Balance;
+use flexure::prove::engine::direct::StateBox;
+use flexure::prove::engine::direct::{
+    Coordinate, System, Twins, best_rate, jacobian, prove, symmetric_part, vcbc,
+};
 use flexure::prove::engine::verdict::Verdict;
 use flexure_core::control::{Shaping, Tanh};
 use flexure_core::linalg::Vector;
 use flexure_core::robots::PlanarTwoLink;
 use flexure_core::scalar::{Dual, Interval, Over, Scalar};
 
-use crate::arm::{self, Arm, Decimal, around, closed_loop, flow, region, tanh};
+use crate::arm;
+use crate::arm::{Arm, Decimal, around, closed_loop, flow, region, tanh};
 
 /// φ = Λ (q̃ + q̃³/10): as fast as the linear law at the reference, faster away from it.
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +46,7 @@ impl<C: Decimal> System<C> for Flipped<C> {
     fn balance(&self, at: &[C]) -> Balance<C> {
         let Balance { dissipation, weight } = self.0.balance(at);
         let stiffness = self.0.robot.stiffness;
-        let dissipation = Form::from_fn(8, |i, j| {
+        let dissipation = Symmetric::from_fn(8, |i, j| {
             // Rows s_l, columns q̃_m: −½ (K − K) becomes −½ (K + K).
             let more = if i / 2 == 2 && j / 2 == 1 && i % 2 == j % 2 { stiffness[i % 2] } else { C::ZERO };
             dissipation.at(i, j) - more
@@ -58,7 +58,7 @@ impl<C: Decimal> System<C> for Flipped<C> {
 /// Where slopes are flat the coupling decides: |q̃_i| ≤ 6.
 #[test]
 fn coupling_that_adds_up() {
-    let wide = Region::within(6.0, 5.0);
+    let wide = StateBox::within(6.0, 5.0);
     let rate = 7e-4;
     let right = prove(&flow(tanh, tanh, &wide), rate, 10_000);
     assert!(right.proved().is_some(), "{right:?}");
@@ -129,12 +129,12 @@ impl<C: Decimal> Regulated<C> {
 
 impl<C: Decimal> System<C> for Regulated<C> {
     fn balance(&self, at: &[C]) -> Balance<C> {
-        let columns = jacobian(at, 4, |x| self.rates(x));
+        let slopes = jacobian(at, 4, |x| self.rates(x));
         let product =
-            |i: usize, j: usize| (0..4).fold(C::ZERO, |sum, k| sum + self.metric[i][k] * columns[j][k]);
+            |i: usize, j: usize| (0..4).fold(C::ZERO, |sum, k| sum + self.metric[i][k] * slopes[(k, j)]);
         Balance {
-            dissipation: Form::from_fn(4, |i, j| -symmetric_part(product, i, j)),
-            weight: Form::from_fn(4, |i, j| self.metric[i][j]),
+            dissipation: Symmetric::from_fn(4, |i, j| -symmetric_part(product, i, j)),
+            weight: Symmetric::from_fn(4, |i, j| self.metric[i][j]),
         }
     }
 }
@@ -168,7 +168,10 @@ impl<C: Scalar> System<C> for NoMetric {
     fn balance(&self, at: &[C]) -> Balance<C> {
         let square = at[0].square();
         let weight = C::ONE - (square + square);
-        Balance { dissipation: Form::from_fn(1, |_, _| C::ONE), weight: Form::from_fn(1, |_, _| weight) }
+        Balance {
+            dissipation: Symmetric::from_fn(1, |_, _| C::ONE),
+            weight: Symmetric::from_fn(1, |_, _| weight),
+        }
     }
 }
 
@@ -199,7 +202,7 @@ fn uncertain_constants() {
         [Interval::point(0.159), Interval::point(0.055)],
         [Interval::point(0.0392), Interval::point(0.00808)],
     );
-    let flow: arm::ArmFlow<_, _> = vcbc(uncertain, exact, &Region::within(3.0, 5.0));
+    let flow: arm::ArmFlow<_, _> = vcbc(uncertain, exact, &StateBox::within(3.0, 5.0));
     let verdict = best_rate(&flow, 20_000);
     println!("uncertain: {verdict:?}");
     assert!(verdict.proved().is_some_and(|best| best.rate > 0.2959), "{verdict:?}");

@@ -2,10 +2,9 @@
 
 use std::time::Instant;
 
-use flexure::prove::engine::direct::Flow;
-use flexure::prove::engine::direct::Region;
-use flexure::prove::engine::direct::prove;
-use flexure::prove::engine::direct::{Best, best_rate};
+use flexure::prove::engine::direct::BestRate;
+use flexure::prove::engine::direct::StateBox;
+use flexure::prove::engine::direct::{Flow, best_rate, prove};
 use flexure::prove::engine::verdict::Verdict;
 use flexure_core::scalar::Interval;
 
@@ -14,7 +13,7 @@ use crate::arm::{coupled_tanh, flow, linear, region, tanh};
 /// The digits of the true rate are good to 1e-15 of it.
 const DIGITS: f64 = 2e-15;
 
-fn best(name: &str, flow: &dyn Flow, exact: f64) -> Best {
+fn best(name: &str, flow: &dyn Flow, exact: f64) -> BestRate {
     let start = Instant::now();
     let Verdict::Proved(best) = best_rate(flow, 20_000) else {
         panic!("{name}: {:?}", best_rate(flow, 20_000))
@@ -75,7 +74,7 @@ fn coupled_tanh_contracts() {
 /// φ_2 and φ_3 contract at one rate everywhere, φ_1 does not.
 #[test]
 fn errors_without_a_bound() {
-    let everywhere = Region { error_l: [Interval::ENTIRE; 2], error_m: [Interval::ENTIRE; 2], ..region() };
+    let everywhere = StateBox { error_l: [Interval::ENTIRE; 2], error_m: [Interval::ENTIRE; 2], ..region() };
     best("φ_2 everywhere", &flow(linear, linear, &everywhere), 30.0);
     best("φ_3 everywhere", &flow(coupled_tanh, coupled_tanh, &everywhere), 10.0 - std::f64::consts::SQRT_2);
     let verdict = best_rate(&flow(tanh, tanh, &everywhere), 2_000);
@@ -87,7 +86,7 @@ fn errors_without_a_bound() {
 fn smaller_regions_are_no_slower() {
     let mut last = 0.0;
     for size in [3.0, 2.5, 2.0, 1.0, 0.5, 0.1] {
-        let flow = flow(tanh, tanh, &Region::within(size, size));
+        let flow = flow(tanh, tanh, &StateBox::within(size, size));
         let Verdict::Proved(best) = best_rate(&flow, 20_000) else { panic!("{size}") };
         assert!(best.rate >= last, "{size}: {} after {last}", best.rate);
         last = best.rate;

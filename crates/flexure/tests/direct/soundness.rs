@@ -1,10 +1,9 @@
 //! Interval matrices contain those of points, and what was not shown is not claimed.
 
-use flexure::prove::engine::direct::best_rate;
-use flexure::prove::engine::direct::prove;
-use flexure::prove::engine::direct::{Balance, Form};
-use flexure::prove::engine::direct::{ClosedLoop, Region, vcbc};
-use flexure::prove::engine::direct::{Coordinate, Flow, System, Twins};
+use flexure::linalg::Symmetric;
+use flexure::prove::engine::direct::Balance;
+use flexure::prove::engine::direct::{Coordinate, Flow, System, Twins, best_rate, prove, vcbc};
+use flexure::prove::engine::direct::{StateBox, VcbcLoop};
 use flexure::prove::engine::verdict::Verdict;
 use flexure_core::control::{LinkGains, Metric, MotorGains, Tanh, Vcbc};
 use flexure_core::linalg::Vector;
@@ -33,14 +32,14 @@ pub fn tree<const N: usize>() -> Tree<f64, N> {
 pub fn around_links<C: Scalar + Over<C>, L: Links<C, N>, const N: usize>(
     links: L,
     hardening: bool,
-) -> ClosedLoop<C, L, Tanh<C, N>, Tanh<C, N>, N> {
+) -> VcbcLoop<C, L, Tanh<C, N>, Tanh<C, N>, N> {
     let all = |x: f64| Vector::from_fn(|i| C::from_f64(x * (1.0 + 0.125 * i as f64)));
     let metric = if hardening {
         Metric::Hardening { base: all(32.0), hardening: all(4.0) }
     } else {
         Metric::Constant(all(32.0))
     };
-    ClosedLoop {
+    VcbcLoop {
         robot: Fjr {
             links,
             motor_inertia: all(0.25),
@@ -99,7 +98,7 @@ fn matrices_of_boxes_contain_those_of_points() {
         encloses(&flow(linear, linear, &region()), radius);
         encloses(&flow(coupled_tanh, coupled_tanh, &region()), radius);
         let links = tree::<3>();
-        let region = Region::within(1.0, 1.0);
+        let region = StateBox::within(1.0, 1.0);
         for hardening in [false, true] {
             let bounds = around_links(links.map(Interval::point), hardening);
             encloses(&vcbc(bounds, around_links(links, hardening), &region), radius);
@@ -114,7 +113,7 @@ fn the_balance_is_the_rate_of_the_storage() {
     let links = tree::<3>();
     let system = around_links::<f64, _, 3>(links, true);
     let flow =
-        vcbc(around_links(links.map(Interval::point), true), system.clone(), &Region::within(1.0, 1.0));
+        vcbc(around_links(links.map(Interval::point), true), system.clone(), &StateBox::within(1.0, 1.0));
     let mut r = Numbers(9);
     for _ in 0..20 {
         let at: Vec<f64> = (0..18).map(|_| r.next()).collect();
@@ -127,7 +126,7 @@ fn the_balance_is_the_rate_of_the_storage() {
 
 /// Ẇ without the engine: the core's closed loop in momenta, stepped in time.
 mod numerical {
-    use flexure::prove::engine::direct::ClosedLoop;
+    use flexure::prove::engine::direct::VcbcLoop;
     use flexure_core::control::{Input, Shaping};
     use flexure_core::linalg::Vector;
     use flexure_core::model::{Links, MassFactor, Motion};
@@ -147,11 +146,11 @@ mod numerical {
     }
 
     pub fn storage_rate<L: Links<f64, N>, P: Shaping<f64, N>, const N: usize>(
-        system: &ClosedLoop<f64, L, P, P, N>,
+        system: &VcbcLoop<f64, L, P, P, N>,
         at: &[f64],
         delta: &[f64],
     ) -> f64 {
-        let ClosedLoop { robot, law } = system;
+        let VcbcLoop { robot, law } = system;
         let (q_l, v_l) = (blocks::<N>(at, 4), blocks::<N>(at, 5));
         let momenta = |x: &[f64]| ErrorState {
             e_l: blocks(x, 0),
@@ -185,16 +184,16 @@ mod numerical {
 #[test]
 fn hardening_metric() {
     let links = tree::<2>();
-    let flow = |region: &Region<2>| {
+    let flow = |region: &StateBox<2>| {
         vcbc(around_links(links.map(Interval::point), true), around_links(links, true), region)
     };
-    let small = Region::<2> { velocity_error_l: [around(0.0, 0.125); 2], ..Region::within(0.125, 0.25) };
-    let small = Region { position: [around(0.5, 0.0625); 2], ..small };
+    let small = StateBox::<2> { velocity_error_l: [around(0.0, 0.125); 2], ..StateBox::within(0.125, 0.25) };
+    let small = StateBox { position: [around(0.5, 0.0625); 2], ..small };
     let verdict = best_rate(&flow(&small), 5_000);
     println!("hardening: {verdict:?}");
     let best = verdict.proved().expect("a small region");
     assert!(best.rate > 0.98 * best.upper, "{best:?}");
-    let unbounded = Region { velocity_error_l: [Interval::ENTIRE; 2], ..small };
+    let unbounded = StateBox { velocity_error_l: [Interval::ENTIRE; 2], ..small };
     let verdict = prove(&flow(&unbounded), 0.1, 500);
     assert!(verdict.proved().is_none(), "{verdict:?}");
 }
@@ -209,8 +208,8 @@ impl<C: Scalar> System<C> for Dip {
         let far = (at[0] - C::from_f64(self.place)) * C::from_f64(1e4);
         let dip = C::from_f64(1.5) * (-far.square()).exp();
         Balance {
-            dissipation: Form::from_fn(1, |_, _| C::ONE - dip),
-            weight: Form::from_fn(1, |_, _| C::ONE),
+            dissipation: Symmetric::from_fn(1, |_, _| C::ONE - dip),
+            weight: Symmetric::from_fn(1, |_, _| C::ONE),
         }
     }
 }
@@ -237,15 +236,15 @@ fn a_dip_between_the_samples() {
 #[test]
 fn seven_joints() {
     let links = tree::<7>();
-    let tiny = Region::<7> { position: [around(0.3, 1e-3); 7], ..Region::within(0.1, 1e-2) };
-    let flow = |region: &Region<7>| {
+    let tiny = StateBox::<7> { position: [around(0.3, 1e-3); 7], ..StateBox::within(0.1, 1e-2) };
+    let flow = |region: &StateBox<7>| {
         vcbc(around_links(links.map(Interval::point), false), around_links(links, false), region)
     };
     let start = std::time::Instant::now();
     let verdict = prove(&flow(&tiny), 1.0, 20);
     println!("seven joints, tiny: {verdict:?} in {:?}", start.elapsed());
     assert!(matches!(&verdict, Verdict::Proved(proved) if proved.boxes <= 20), "{verdict:?}");
-    let verdict = prove(&flow(&Region::within(3.0, 5.0)), 1e-3, 3);
+    let verdict = prove(&flow(&StateBox::within(3.0, 5.0)), 1e-3, 3);
     assert!(matches!(&verdict, Verdict::Undecided(undecided) if undecided.spent == 3), "{verdict:?}");
     println!("seven joints, all: {verdict:?} in {:?}", start.elapsed());
 }

@@ -4,20 +4,15 @@ mod fake;
 
 use flexure::prove::question::{Question, prove};
 use flexure::prove::summary::ProofSummary;
-use flexure::report::Assumption;
-use flexure::report::CertificateReport;
-use flexure::report::FigureOptions;
-use flexure::report::Report;
-use flexure::report::RunReport;
-use flexure::report::certificate_table;
+use flexure::report::AssumedNumber;
+use flexure::report::RunsReport;
 use flexure::report::decimate::{bucket_size, decimate, envelope};
-use flexure::report::four_panel;
-use flexure::report::png;
-use flexure::report::summary_table;
-use flexure::report::{comparison, html, proof_table};
+use flexure::report::{
+    CertificateReport, FigureOptions, RunReport, certificate_table, comparison, four_panel, html, png,
+    proof_table, summary_table,
+};
 use flexure::scenario::load_scenario;
-use flexure::simulate::Summary;
-use flexure::simulate::Trace;
+use flexure::simulate::{Summary, Trace};
 use roxmltree::Document;
 
 fn figure(trace: &Trace) -> String {
@@ -191,14 +186,14 @@ fn pictures_are_1600_wide_and_bad_ones_are_errors() {
     assert!(png("<svg xmlns='http://www.w3.org/2000/svg' width='1' height='1000'/>").is_err());
 }
 
-fn report() -> Report {
+fn report() -> RunsReport {
     let trace = fake::trace(2, 3_000, 6.0);
     let run = |name: &str| RunReport {
         summary: fake::summary(name),
         figure_svg: figure(&trace),
         description: "<b>A run".to_owned(),
     };
-    Report {
+    RunsReport {
         title: "<script>title</script>".to_owned(),
         introduction: "One.\n\nTwo & three.".to_owned(),
         runs: vec![run("<script>name</script>"), run("linear")],
@@ -208,7 +203,7 @@ fn report() -> Report {
             phi: "<script>phi</script>".to_owned(),
             file: "<script>.certificate.json".to_owned(),
         }],
-        assumptions: vec![Assumption {
+        assumptions: vec![AssumedNumber {
             file: "robots/<script>.toml".to_owned(),
             key: "joints.stiffness".to_owned(),
             value: "9, 4 N m/rad".to_owned(),

@@ -1,5 +1,5 @@
 //! The certificate: everything that is needed to check a proof without the prover. Its text is JSON; what each number
-//! claims is stated in `docs/certificate.md`.
+//! claims is stated in `docs/certificate.md`. In the published schema the types keep the names that the format gave them first.
 
 use flexure_core::scalar::Interval;
 use schemars::JsonSchema;
@@ -25,13 +25,13 @@ pub struct Certificate {
     /// What no source vouches for, and options that were not given.
     pub assumptions: Vec<String>,
     /// The robot.
-    pub robot: Robot,
+    pub robot: DecimalRobot,
     /// The law with its gains.
-    pub controller: Controller,
+    pub controller: DecimalLaw,
     /// Where the claims hold.
-    pub region: Region,
+    pub region: CertifiedRegion,
     /// The variational closed loop in words.
-    pub closed_loop: ClosedLoop,
+    pub closed_loop: ClosedLoopWords,
     /// The rates of the four blocks.
     pub blocks: Vec<Block>,
     /// Decay rate of the distance between any two virtual solutions [1/s].
@@ -43,21 +43,21 @@ pub struct Certificate {
     /// Matrix measures of the slopes of φ.
     pub measures: Vec<Measure>,
     /// Which structures the closed loop keeps.
-    pub structure: Vec<Structure>,
+    pub structure: Vec<StructureClaim>,
     /// Error tube under a disturbance of the motors.
     pub tube: Option<Tube>,
 }
 
 /// A flexible-joint robot in decimals.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
-pub struct Robot {
+#[schemars(rename = "Robot", deny_unknown_fields)]
+pub struct DecimalRobot {
     /// Its name.
     pub name: String,
     /// Number of joints.
     pub joints: usize,
     /// The links.
-    pub links: Links,
+    pub links: DecimalLinks,
     /// K [N m/rad].
     pub stiffness: Vec<Number>,
     /// M_m [kg m²].
@@ -71,7 +71,8 @@ pub struct Robot {
 /// The links of a robot in decimals.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
-pub enum Links {
+#[schemars(rename = "Links")]
+pub enum DecimalLinks {
     /// Two links in a plane, in closed form.
     PlanarTwoLink {
         /// Masses in kg.
@@ -95,18 +96,18 @@ pub enum Links {
     /// A tree of joints.
     Tree {
         /// Parents before children.
-        bodies: Vec<Body>,
+        bodies: Vec<DecimalBody>,
     },
 }
 
 /// A body of a tree and the joint that carries it.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
-pub struct Body {
+#[schemars(rename = "Body", deny_unknown_fields)]
+pub struct DecimalBody {
     /// Index of the body that carries the joint; none for the base.
     pub parent: Option<usize>,
     /// How the joint moves.
-    pub kind: JointKind,
+    pub kind: JointMotion,
     /// Unit joint axis in the body's frame.
     pub axis: [Number; 3],
     /// The body's frame in the parent's at q = 0, by rows.
@@ -127,7 +128,8 @@ pub struct Body {
 /// How a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub enum JointKind {
+#[schemars(rename = "JointKind")]
+pub enum JointMotion {
     /// About its axis.
     Revolute,
     /// Along its axis.
@@ -136,20 +138,21 @@ pub enum JointKind {
 
 /// The law with its gains.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
-pub struct Controller {
+#[schemars(rename = "Controller", deny_unknown_fields)]
+pub struct DecimalLaw {
     /// Shaping function of both sides.
-    pub phi: Phi,
+    pub phi: CertifiedPhi,
     /// Link side.
-    pub link: Gains,
+    pub link: DecimalGains,
     /// Motor side.
-    pub motor: Gains,
+    pub motor: DecimalGains,
 }
 
 /// A shaping function with a structure theorem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub enum Phi {
+#[schemars(rename = "Phi")]
+pub enum CertifiedPhi {
     /// φ_1 = Λ tanh q̃.
     Tanh,
     /// φ_2 = Λ q̃.
@@ -160,8 +163,8 @@ pub enum Phi {
 
 /// The gains of one side, one number per joint.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
-pub struct Gains {
+#[schemars(rename = "Gains", deny_unknown_fields)]
+pub struct DecimalGains {
     /// Metric Π [N m/rad].
     pub metric: Vec<Number>,
     /// Gain Λ inside φ [1/s].
@@ -174,8 +177,8 @@ pub struct Gains {
 
 /// Where the claims hold.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
-pub struct Region {
+#[schemars(rename = "Region", deny_unknown_fields)]
+pub struct CertifiedRegion {
     /// Largest |q̃_i| in rad, links then motors; none for no bound.
     pub error: Vec<Option<Number>>,
     /// c: {W ≤ c} lies inside and is invariant, in J; none where the errors are not bounded.
@@ -184,8 +187,8 @@ pub struct Region {
 
 /// The variational closed loop in words that do not commute.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
-pub struct ClosedLoop {
+#[schemars(rename = "ClosedLoop", deny_unknown_fields)]
+pub struct ClosedLoopWords {
     /// d/dt of δq̃_l, δq̃_m, δσ_l, δσ_m from δq̃_l, δq̃_m, δs_l, δs_m.
     pub rows: [[String; 4]; 4],
     /// What Ẇ is made of once the coupling has cancelled: the sum of −δz_iᵀ X_i δz_i.
@@ -257,7 +260,7 @@ pub struct MassMatrix {
 #[schemars(deny_unknown_fields)]
 pub struct Measure {
     /// Whose φ.
-    pub side: Side,
+    pub side: LoopSide,
     /// The norm.
     pub norm: Norm,
     /// The bound [1/s].
@@ -267,7 +270,8 @@ pub struct Measure {
 /// Links or motors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Side {
+#[schemars(rename = "Side")]
+pub enum LoopSide {
     /// Links.
     Link,
     /// Motors.
@@ -290,8 +294,8 @@ pub enum Norm {
 
 /// Whether the closed loop keeps a structure.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
-pub struct Structure {
+#[schemars(rename = "Structure", deny_unknown_fields)]
+pub struct StructureClaim {
     /// Which.
     pub name: StructureName,
     /// Whether it does.
@@ -319,7 +323,7 @@ pub enum StructureName {
 #[schemars(deny_unknown_fields)]
 pub struct Witness {
     /// Whose φ.
-    pub side: Side,
+    pub side: LoopSide,
     /// q̃ of that side in rad.
     pub error: Vec<Number>,
     /// Row of the entry.
@@ -347,7 +351,7 @@ pub(crate) fn bounds(numbers: &[Number]) -> Vec<Interval> {
     numbers.iter().map(Number::bounds).collect()
 }
 
-impl Gains {
+impl DecimalGains {
     /// Number of joints.
     pub fn joints(&self) -> usize {
         self.metric.len()

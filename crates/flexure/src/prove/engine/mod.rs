@@ -4,13 +4,14 @@
 //! matrices; its proof is a [`certificate`] that others can check. The direct one knows nothing of that: it takes the whole
 //! inequality from the closed loop's Jacobian, by branch and bound.
 //!
-//! Trusted base: the interval type, the core, and this module; it knows of no files and no simulation.
+
+//! Trusted base: the interval type, the core, [`Symmetric`](crate::linalg::Symmetric) and this module; it knows of no files and no
+//! simulation.
 
 pub mod certificate;
 pub mod coupling;
 pub mod direct;
 pub mod envelope;
-pub mod matrix;
 pub mod momentum;
 pub mod number;
 pub mod position;
@@ -24,7 +25,7 @@ pub mod witness;
 
 pub use certificate::Certificate;
 pub use number::Number;
-pub use region::Request;
-pub use structural::{Problem, certify};
+pub use region::RequestedRegion;
+pub use structural::{Proposition, certify};
 pub use verdict::{Undecided, Verdict};
-pub use witness::{RateWitness, State};
+pub use witness::{RateWitness, WitnessState};

@@ -5,8 +5,8 @@ use flexure_core::model::Links as _;
 use flexure_core::robots::{Pendulum, PlanarTwoLink};
 use flexure_core::scalar::{Interval, Scalar};
 
-use crate::prove::engine::certificate::{Links, Robot, bounds};
-use crate::prove::engine::matrix::Symmetric;
+use crate::linalg::Symmetric;
+use crate::prove::engine::certificate::{DecimalLinks, DecimalRobot, bounds};
 use crate::prove::engine::number::Number;
 use crate::prove::engine::rate::Inequality;
 use crate::prove::engine::reach;
@@ -20,7 +20,7 @@ pub fn damping(plant: &[Number], injected: &[Number]) -> Vec<Interval> {
 ///
 /// # Errors
 /// If the mass matrix has no bound.
-pub fn links(robot: &Robot, damping: &[Interval]) -> Result<Vec<Inequality>, String> {
+pub fn links(robot: &DecimalRobot, damping: &[Interval]) -> Result<Vec<Inequality>, String> {
     Ok(masses(&robot.links)?
         .into_iter()
         .map(|weight| Inequality { form: Symmetric::diagonal(damping), weight })
@@ -28,7 +28,7 @@ pub fn links(robot: &Robot, damping: &[Interval]) -> Result<Vec<Inequality>, Str
 }
 
 /// diag(`damping`) − β M_m.
-pub fn motors(robot: &Robot, damping: &[Interval]) -> Inequality {
+pub fn motors(robot: &DecimalRobot, damping: &[Interval]) -> Inequality {
     Inequality {
         form: Symmetric::diagonal(damping),
         weight: Symmetric::diagonal(&bounds(&robot.motor_inertia)),
@@ -36,26 +36,26 @@ pub fn motors(robot: &Robot, damping: &[Interval]) -> Inequality {
 }
 
 /// The letters of the cases of [`links`].
-pub fn cases(links: &Links) -> Vec<String> {
+pub fn cases(links: &DecimalLinks) -> Vec<String> {
     match links {
-        Links::PlanarTwoLink { .. } => ["L", "H"].map(str::to_owned).to_vec(),
-        Links::Pendulum { .. } | Links::Tree { .. } => vec![String::new()],
+        DecimalLinks::PlanarTwoLink { .. } => ["L", "H"].map(str::to_owned).to_vec(),
+        DecimalLinks::Pendulum { .. } | DecimalLinks::Tree { .. } => vec![String::new()],
     }
 }
 
 /// Lower bounds of pivots that show M(q) to be positive definite for all q, in the order of `docs/certificate.md`.
-pub fn pivots(links: &Links) -> Vec<f64> {
+pub fn pivots(links: &DecimalLinks) -> Vec<f64> {
     match links {
-        Links::Tree { bodies } => reach::own_inertias(bodies),
+        DecimalLinks::Tree { bodies } => reach::own_inertias(bodies),
         closed_form => {
             masses(closed_form).unwrap_or_default().iter().map(Symmetric::smallest_pivot).collect()
         }
     }
 }
 
-fn masses(links: &Links) -> Result<Vec<Symmetric>, String> {
+fn masses(links: &DecimalLinks) -> Result<Vec<Symmetric<Interval>>, String> {
     match links {
-        Links::PlanarTwoLink { mass, length, com, inertia } => {
+        DecimalLinks::PlanarTwoLink { mass, length, com, inertia } => {
             let two = |numbers: &[Number; 2]| numbers.each_ref().map(Number::bounds);
             let arm = PlanarTwoLink::new(two(mass), length.bounds(), two(com), two(inertia));
             // Affine in cos q_2: both ends of its range cover all angles.
@@ -64,15 +64,15 @@ fn masses(links: &Links) -> Result<Vec<Symmetric>, String> {
                 .map(|q| symmetric(&arm.mass_matrix(&Vector([Interval::ZERO, q]))))
                 .to_vec())
         }
-        Links::Pendulum { mass, com, inertia } => {
+        DecimalLinks::Pendulum { mass, com, inertia } => {
             let about_joint = inertia.bounds() + mass.bounds() * com.bounds() * com.bounds();
             let links = Pendulum { inertia: about_joint, weight_moment: Interval::ZERO };
             Ok(vec![symmetric(&links.mass_matrix(&Vector([Interval::ZERO])))])
         }
-        Links::Tree { bodies } => Ok(vec![reach::mass_bound(bodies)?]),
+        DecimalLinks::Tree { bodies } => Ok(vec![reach::mass_bound(bodies)?]),
     }
 }
 
-fn symmetric<const N: usize>(matrix: &Matrix<Interval, N, N>) -> Symmetric {
+fn symmetric<const N: usize>(matrix: &Matrix<Interval, N, N>) -> Symmetric<Interval> {
     Symmetric::from_fn(N, |i, j| matrix[(i, j)])
 }

@@ -3,14 +3,14 @@
 
 use flexure_core::scalar::{Interval, Scalar};
 
-use crate::prove::engine::certificate::{Gains, Phi, bounds};
-use crate::prove::engine::matrix::Symmetric;
+use crate::linalg::Symmetric;
+use crate::prove::engine::certificate::{CertifiedPhi, DecimalGains, bounds};
 use crate::prove::engine::rate::Inequality;
 
 /// φ and Π of one side, enclosed.
 #[derive(Clone, Debug)]
 pub struct Position {
-    phi: Phi,
+    phi: CertifiedPhi,
     metric: Vec<Interval>,
     shaping: Vec<Interval>,
     kappa: Vec<Interval>,
@@ -25,7 +25,7 @@ pub type Ends = Vec<bool>;
 
 impl Position {
     /// From the gains of a side and the largest errors on it in rad.
-    pub fn new(phi: Phi, gains: &Gains, error: &[Option<Interval>]) -> Self {
+    pub fn new(phi: CertifiedPhi, gains: &DecimalGains, error: &[Option<Interval>]) -> Self {
         let shaping = bounds(&gains.shaping);
         Self {
             phi,
@@ -47,10 +47,10 @@ impl Position {
     pub fn cases(&self) -> Vec<Ends> {
         let n = self.joints();
         match self.phi {
-            Phi::Linear => vec![Vec::new()],
-            Phi::CoupledTanh if n == 1 => vec![Vec::new()],
-            Phi::Tanh => vec![vec![false; n]],
-            Phi::CoupledTanh => {
+            CertifiedPhi::Linear => vec![Vec::new()],
+            CertifiedPhi::CoupledTanh if n == 1 => vec![Vec::new()],
+            CertifiedPhi::Tanh => vec![vec![false; n]],
+            CertifiedPhi::CoupledTanh => {
                 (0..1_usize << n).map(|word| (0..n).map(|j| word >> j & 1 == 1).collect()).collect()
             }
         }
@@ -82,11 +82,11 @@ impl Position {
     pub fn slope(&self, a: &[Interval], i: usize, j: usize) -> Interval {
         let others = Interval::point(self.joints().saturating_sub(1).max(1) as f64);
         match (self.phi, i == j) {
-            (Phi::Tanh, true) => self.shaping[i] * a[i],
-            (Phi::Linear, true) => self.shaping[i],
-            (Phi::Tanh | Phi::Linear, false) => Interval::ZERO,
-            (Phi::CoupledTanh, true) => Interval::ONE + self.kappa[i],
-            (Phi::CoupledTanh, false) => self.theta[j] / self.theta[i] * a[j] / others,
+            (CertifiedPhi::Tanh, true) => self.shaping[i] * a[i],
+            (CertifiedPhi::Linear, true) => self.shaping[i],
+            (CertifiedPhi::Tanh | CertifiedPhi::Linear, false) => Interval::ZERO,
+            (CertifiedPhi::CoupledTanh, true) => Interval::ONE + self.kappa[i],
+            (CertifiedPhi::CoupledTanh, false) => self.theta[j] / self.theta[i] * a[j] / others,
         }
     }
 

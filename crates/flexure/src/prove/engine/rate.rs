@@ -2,16 +2,16 @@
 
 use flexure_core::scalar::Interval;
 
-use crate::prove::engine::matrix::Symmetric;
+use crate::linalg::Symmetric;
 use crate::prove::engine::number::Number;
 
 /// A − β W has to be positive definite.
 #[derive(Clone, Debug)]
 pub struct Inequality {
     /// What dissipates.
-    pub form: Symmetric,
+    pub form: Symmetric<Interval>,
     /// What the rate is relative to.
-    pub weight: Symmetric,
+    pub weight: Symmetric<Interval>,
 }
 
 impl Inequality {
@@ -23,7 +23,7 @@ impl Inequality {
 
 /// A rate that is proved, with the margin that each inequality keeps at it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Claim {
+pub struct ClaimedRate {
     /// The rate [1/s].
     pub rate: Number,
     /// Smallest pivots, one an inequality, positive.
@@ -39,7 +39,7 @@ const FASTEST: f64 = 1e30;
 const RESERVE: f64 = 1e-13;
 
 /// The largest rate at which all the inequalities hold; none if no positive one can be shown.
-pub fn largest(inequalities: &[Inequality]) -> Option<Claim> {
+pub fn largest(inequalities: &[Inequality]) -> Option<ClaimedRate> {
     let holds = |beta: f64| inequalities.iter().all(|one| one.margin(Interval::point(beta)) > 0.0);
     // Between a rate that holds and one that does not: by factors first, then by halves.
     let mut low = if holds(1.0) {
@@ -61,12 +61,12 @@ pub fn largest(inequalities: &[Inequality]) -> Option<Claim> {
 }
 
 /// The claim of the rate `beta`, or of one slightly below it.
-pub fn claim(beta: f64, inequalities: &[Inequality]) -> Option<Claim> {
+pub fn claim(beta: f64, inequalities: &[Inequality]) -> Option<ClaimedRate> {
     let below = std::iter::successors(Some(RESERVE), |step| Some(4.0 * step)).take_while(|&step| step < 1e-6);
     std::iter::once(0.0).chain(below).find_map(|step| {
         let rate = Number::decimal(beta * (1.0 - step));
         let margins: Vec<f64> = inequalities.iter().map(|one| one.margin(rate.bounds())).collect();
-        margins.iter().all(|&margin| margin > 0.0).then_some(Claim { rate, margins })
+        margins.iter().all(|&margin| margin > 0.0).then_some(ClaimedRate { rate, margins })
     })
 }
 

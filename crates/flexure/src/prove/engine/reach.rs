@@ -4,8 +4,8 @@
 use flexure_core::scalar::{Interval, Piecewise, Scalar};
 use flexure_core::spatial::Vec3;
 
-use crate::prove::engine::certificate::{Body, JointKind};
-use crate::prove::engine::matrix::Symmetric;
+use crate::linalg::{Dense, Symmetric};
+use crate::prove::engine::certificate::{DecimalBody, JointMotion};
 use crate::prove::engine::number::Number;
 
 type V = Vec3<Interval>;
@@ -38,27 +38,27 @@ struct Reach {
 ///
 /// # Errors
 /// Says which joint slides without limits, if one does.
-pub fn mass_bound(bodies: &[Body]) -> Result<Symmetric, String> {
+pub fn mass_bound(bodies: &[DecimalBody]) -> Result<Symmetric<Interval>, String> {
     let bodies: Vec<Enclosed> = bodies.iter().map(Enclosed::of).collect();
     if let Some(k) = bodies.iter().position(|body| !body.revolute && body.travel.is_none()) {
         return Err(format!("joint {} slides without limits: the mass matrix has no bound", k + 1));
     }
     let n = bodies.len();
-    let mut total = vec![Interval::ZERO; n * n];
+    let mut total = Dense::from_fn(n, n, |_, _| Interval::ZERO);
     for k in 0..n {
         let reaches = reaches(&bodies, k);
         for (position, &(j, at_j)) in reaches.iter().enumerate() {
             for &(i, at_i) in &reaches[position..] {
-                total[j * n + i] += share(&bodies, k, (i, at_i), (j, at_j));
+                total[(j, i)] += share(&bodies, k, (i, at_i), (j, at_j));
             }
         }
     }
-    Ok(Symmetric::from_fn(n, |j, i| total[j * n + i]))
+    Ok(Symmetric::from_fn(n, |j, i| total[(j, i)]))
 }
 
 /// Inertia of each body about, or along, the axis of its joint: lower bounds; 0 where the body's inertia may be
 /// indefinite or its mass negative.
-pub fn own_inertias(bodies: &[Body]) -> Vec<f64> {
+pub fn own_inertias(bodies: &[DecimalBody]) -> Vec<f64> {
     bodies
         .iter()
         .map(|body| {
@@ -77,7 +77,7 @@ pub fn own_inertias(bodies: &[Body]) -> Vec<f64> {
 }
 
 /// The inertia about the centre of mass, without the axes about which there is exactly none; none if there is none at all.
-fn inertia(body: &Body) -> Option<Symmetric> {
+fn inertia(body: &DecimalBody) -> Option<Symmetric<Interval>> {
     let [xx, xy, xz, yy, yz, zz] = body.inertia.each_ref().map(Number::bounds);
     let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
     let axes: Vec<usize> = (0..3).filter(|&i| rows[i] != [Interval::ZERO; 3]).collect();
@@ -85,13 +85,13 @@ fn inertia(body: &Body) -> Option<Symmetric> {
 }
 
 impl Enclosed {
-    fn of(body: &Body) -> Self {
+    fn of(body: &DecimalBody) -> Self {
         let v = |x: &[Number; 3]| Vec3::from_array(x.each_ref().map(Number::bounds));
         let [x, y, z] = body.rotation.each_ref().map(v);
         let [xx, xy, xz, yy, yz, zz] = body.inertia.each_ref().map(Number::bounds);
         Self {
             parent: body.parent,
-            revolute: body.kind == JointKind::Revolute,
+            revolute: body.kind == JointMotion::Revolute,
             axis: v(&body.axis),
             columns: [Vec3::new(x.x, y.x, z.x), Vec3::new(x.y, y.y, z.y), Vec3::new(x.z, y.z, z.z)],
             translation: v(&body.translation),

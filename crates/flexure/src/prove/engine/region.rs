@@ -2,12 +2,12 @@
 
 use flexure_core::scalar::{Interval, Scalar};
 
-use crate::prove::engine::certificate::{Region, Robot, Tube};
+use crate::prove::engine::certificate::{CertifiedRegion, DecimalRobot, Tube};
 use crate::prove::engine::number::Number;
 
 /// The region that is asked for.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Request {
+pub enum RequestedRegion {
     /// Every error.
     Everywhere,
     /// |q̃_i| up to these, links then motors, > 0, in rad.
@@ -17,21 +17,21 @@ pub enum Request {
 }
 
 /// The region for the metric Π of links and motors.
-pub fn region(request: &Request, metric: &[Interval]) -> Region {
+pub fn region(request: &RequestedRegion, metric: &[Interval]) -> CertifiedRegion {
     match request {
-        Request::Everywhere => Region { error: vec![None; metric.len()], level: None },
-        Request::Box(errors) => {
+        RequestedRegion::Everywhere => CertifiedRegion { error: vec![None; metric.len()], level: None },
+        RequestedRegion::Box(errors) => {
             let level = errors.iter().zip(metric).map(|(error, &metric)| level_of(error.bounds(), metric));
             let level = level.fold(f64::INFINITY, f64::min);
-            Region {
+            CertifiedRegion {
                 error: errors.iter().cloned().map(Some).collect(),
                 level: Some(rounded(level, f64::next_down)),
             }
         }
-        Request::Level(level) => {
+        RequestedRegion::Level(level) => {
             let level = Number::decimal(*level);
             let error = metric.iter().map(|&metric| Some(error_of(&level, metric))).collect();
-            Region { error, level: Some(level) }
+            CertifiedRegion { error, level: Some(level) }
         }
     }
 }
@@ -70,11 +70,11 @@ pub fn level_that_holds(errors: &[Number], metric: &[Interval]) -> f64 {
 /// # Errors
 /// If no level inside the region is large enough: says which would be.
 pub fn tube(
-    robot: &Robot,
+    robot: &DecimalRobot,
     disturbance: &[Number],
     (motor_rate, other_rate): (Interval, Interval),
     metric: &[Interval],
-    region: &Region,
+    region: &CertifiedRegion,
 ) -> Result<Tube, String> {
     let delta_squared = disturbance
         .iter()

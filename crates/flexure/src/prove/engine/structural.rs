@@ -4,41 +4,41 @@
 use flexure_core::scalar::Interval;
 
 use crate::prove::engine::certificate::{
-    Block, BlockName, Case, Certificate, ClosedLoop, Controller, MassMatrix, Measure, Norm, Robot, Side,
-    VERSION, bounds,
+    Block, BlockName, Case, Certificate, ClosedLoopWords, DecimalLaw, DecimalRobot, LoopSide, MassMatrix,
+    Measure, Norm, VERSION, bounds,
 };
 use crate::prove::engine::coupling::{DISSIPATION, ROWS, coupling_cancels};
 use crate::prove::engine::momentum;
 use crate::prove::engine::number::Number;
 use crate::prove::engine::position::{Ends, Position};
-use crate::prove::engine::rate::{Claim, Inequality, largest};
-use crate::prove::engine::region::{Request, region, tube};
+use crate::prove::engine::rate::{ClaimedRate, Inequality, largest};
+use crate::prove::engine::region::{RequestedRegion, region, tube};
 use crate::prove::engine::structure::{self, SideOf};
 use crate::prove::engine::verdict::{Undecided, Verdict};
-use crate::prove::engine::witness::{RateWitness, State, against};
+use crate::prove::engine::witness::{RateWitness, WitnessState, against};
 
 /// By how much the bound of a measure stays above what was found, relative to it: others may round differently.
 const RESERVE: f64 = 1e-13;
 
 /// What is to be proved of a closed loop.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Problem {
+pub struct Proposition {
     /// The scenario.
     pub name: String,
     /// What no source vouches for.
     pub assumptions: Vec<String>,
     /// The robot.
-    pub robot: Robot,
+    pub robot: DecimalRobot,
     /// The law.
-    pub controller: Controller,
+    pub controller: DecimalLaw,
     /// Where.
-    pub region: Request,
+    pub region: RequestedRegion,
     /// Largest disturbance torque of each motor [N m], if tubes are asked for.
     pub disturbance: Option<Vec<Number>>,
 }
 
 /// Proves contraction and convergence rates of the closed loop, and what follows from them.
-pub fn certify(problem: &Problem) -> Verdict<Certificate, RateWitness> {
+pub fn certify(problem: &Proposition) -> Verdict<Certificate, RateWitness> {
     match attempt(problem) {
         Ok(certificate) => Verdict::Proved(certificate),
         Err(Failure::Witness(witness)) => Verdict::Refuted(*witness),
@@ -59,7 +59,7 @@ impl From<String> for Failure {
 }
 
 /// The position blocks of links and motors over the errors of the region.
-pub fn positions(controller: &Controller, errors: &[Option<Number>]) -> [Position; 2] {
+pub fn positions(controller: &DecimalLaw, errors: &[Option<Number>]) -> [Position; 2] {
     let errors: Vec<_> = errors.iter().map(|error| error.as_ref().map(Number::bounds)).collect();
     let (links, motors) = errors.split_at(controller.link.joints());
     [
@@ -68,8 +68,8 @@ pub fn positions(controller: &Controller, errors: &[Option<Number>]) -> [Positio
     ]
 }
 
-fn attempt(problem: &Problem) -> Result<Certificate, Failure> {
-    let Problem { robot, controller, .. } = problem;
+fn attempt(problem: &Proposition) -> Result<Certificate, Failure> {
+    let Proposition { robot, controller, .. } = problem;
     if !coupling_cancels() {
         return Err(Failure::Reason("the coupling does not cancel".to_owned()));
     }
@@ -112,7 +112,7 @@ fn attempt(problem: &Problem) -> Result<Certificate, Failure> {
     let sided = |side, gains, position| SideOf { side, gains, position };
     let structure = structure::claims(
         controller.phi,
-        &[sided(Side::Link, &controller.link, links), sided(Side::Motor, &controller.motor, motors)],
+        &[sided(LoopSide::Link, &controller.link, links), sided(LoopSide::Motor, &controller.motor, motors)],
     )?;
     Ok(Certificate {
         format: "flexure-certificate".to_owned(),
@@ -123,7 +123,7 @@ fn attempt(problem: &Problem) -> Result<Certificate, Failure> {
         robot: robot.clone(),
         controller: controller.clone(),
         region,
-        closed_loop: ClosedLoop {
+        closed_loop: ClosedLoopWords {
             rows: ROWS.map(|row| row.map(str::to_owned)),
             dissipation: DISSIPATION.map(str::to_owned),
         },
@@ -137,7 +137,7 @@ fn attempt(problem: &Problem) -> Result<Certificate, Failure> {
     })
 }
 
-fn mass_matrix(robot: &Robot) -> Result<MassMatrix, Failure> {
+fn mass_matrix(robot: &DecimalRobot) -> Result<MassMatrix, Failure> {
     let pivots = momentum::pivots(&robot.links);
     if let Some(k) = pivots.iter().position(|&pivot| pivot <= 0.0) {
         return Err(Failure::Reason(format!(
@@ -149,7 +149,7 @@ fn mass_matrix(robot: &Robot) -> Result<MassMatrix, Failure> {
 }
 
 fn measures(sides: &[&Position; 2], blocks: &[Block]) -> Vec<Measure> {
-    let entries = [Side::Link, Side::Motor].into_iter().zip(sides).zip(blocks);
+    let entries = [LoopSide::Link, LoopSide::Motor].into_iter().zip(sides).zip(blocks);
     entries
         .flat_map(|((side, position), block)| {
             let up = |x: f64| Number::decimal(x + RESERVE * x.abs());
@@ -180,7 +180,7 @@ fn momentum_block(block: BlockName, inequalities: &[Inequality], cases: &[String
 
 fn position_block(block: BlockName, position: &Position) -> Result<Block, Failure> {
     let cases = position.cases();
-    let claimed = |a: &dyn Fn(&Ends) -> Vec<Interval>| -> Result<Claim, Failure> {
+    let claimed = |a: &dyn Fn(&Ends) -> Vec<Interval>| -> Result<ClaimedRate, Failure> {
         let inequalities: Vec<Inequality> = cases.iter().map(|case| position.inequality(&a(case))).collect();
         largest(&inequalities).ok_or_else(|| {
             let refuted = cases.iter().zip(&inequalities).find_map(|(case, inequality)| {
@@ -188,7 +188,7 @@ fn position_block(block: BlockName, position: &Position) -> Result<Block, Failur
                 // Slopes are 1 at no error and smallest at the largest.
                 let far: Vec<bool> = case.iter().map(|high| !high).collect();
                 // A slope that is only approached, where errors have no bound, has no state.
-                let state = State::Error(position.bounded(&far).then(|| position.error_at(&far))?);
+                let state = WitnessState::Error(position.bounded(&far).then(|| position.error_at(&far))?);
                 Some(RateWitness { block, state, direction, rate: value })
             });
             match refuted {

@@ -2,16 +2,18 @@
 
 use flexure_core::scalar::Interval;
 
-use crate::prove::engine::certificate::{Gains, Phi, Side, Structure, StructureName, Witness};
+use crate::prove::engine::certificate::{
+    CertifiedPhi, DecimalGains, LoopSide, StructureClaim, StructureName, Witness,
+};
 use crate::prove::engine::number::Number;
 use crate::prove::engine::position::Position;
 
 /// A side of the robot: whose φ, its gains, and both enclosed.
 pub struct SideOf<'a> {
     /// Links or motors.
-    pub side: Side,
+    pub side: LoopSide,
     /// The gains.
-    pub gains: &'a Gains,
+    pub gains: &'a DecimalGains,
     /// φ and Π, enclosed.
     pub position: &'a Position,
 }
@@ -20,13 +22,13 @@ pub struct SideOf<'a> {
 ///
 /// # Errors
 /// If numbers are known too coarsely.
-pub fn claims(phi: Phi, sides: &[SideOf<'_>]) -> Result<Vec<Structure>, String> {
-    let holding = |name| Structure { name, holds: true, witness: None };
-    let failing = |name, witness| Structure { name, holds: false, witness: Some(witness) };
+pub fn claims(phi: CertifiedPhi, sides: &[SideOf<'_>]) -> Result<Vec<StructureClaim>, String> {
+    let holding = |name| StructureClaim { name, holds: true, witness: None };
+    let failing = |name, witness| StructureClaim { name, holds: false, witness: Some(witness) };
     let n = sides[0].position.joints();
 
     let variational = StructureName::VariationalPh;
-    let kept = phi != Phi::CoupledTanh || n == 1;
+    let kept = phi != CertifiedPhi::CoupledTanh || n == 1;
     let variational = if kept {
         holding(variational)
     } else {
@@ -38,7 +40,7 @@ pub fn claims(phi: Phi, sides: &[SideOf<'_>]) -> Result<Vec<Structure>, String> 
         let pairs = side.gains.metric.iter().zip(&side.gains.shaping);
         pairs.into_iter().all(|(a, b)| matches!((a, b), (Number::Decimal(a), Number::Decimal(b)) if a == b))
     };
-    let ph_like = if phi == Phi::Linear && sides.iter().all(equal) {
+    let ph_like = if phi == CertifiedPhi::Linear && sides.iter().all(equal) {
         holding(ph_like)
     } else {
         failing(ph_like, search(sides, distance).ok_or("∂φ may or may not be Π")?)

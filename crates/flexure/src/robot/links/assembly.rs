@@ -11,6 +11,7 @@ use crate::files::site::Site;
 use crate::robot::links::rigid::{Pose, Rigid};
 use crate::robot::links::written::{Axis, Frame, Hold, Matter};
 use crate::robot::links::{Assembled, Body, JointKind, Links, MovingJoint};
+use crate::units;
 
 /// A joint, with the body that it carries.
 pub(crate) struct Joint<'a> {
@@ -109,14 +110,15 @@ fn check(joints: &[Joint<'_>], bodies: &[Moving<f64>]) -> Option<()> {
     for (i, Moving { joint, kind, parent, axis, pose, .. }) in bodies.iter().enumerate().rev() {
         let outer = composites[i];
         let axis = Vector(*axis);
-        let (moved, unit) = match kind {
-            JointKind::Revolute => (axis.dot(&(outer.inertia_about(&Vector::ZERO) * axis)), "kg m^2"),
-            JointKind::Prismatic => (outer.mass(), "kg"),
+        let moved = match kind {
+            JointKind::Revolute => axis.dot(&(outer.inertia_about(&Vector::ZERO) * axis)),
+            JointKind::Prismatic => outer.mass(),
         };
         let massless = moved <= 1e-15;
         if massless && !faulty[i] {
             let site = &joints[*joint].site;
-            let message = format!("{} moves {moved:e} {unit}, must be > 0", site.path);
+            let message =
+                format!("{} moves {moved:e} {}, must be > 0", site.path, units::INERTIA.of(*kind).plain);
             site.error(
                 "massless",
                 message,

@@ -2,10 +2,10 @@
 
 use flexure_core::linalg::Matrix;
 
-use crate::eigenvalues::eigenvalues;
 use crate::files::quantity;
 use crate::files::site::Site;
 use crate::files::table::Table;
+use crate::linalg::{Leading, eigenvalues};
 use crate::robot::links::written::symmetric;
 
 /// What rounding in a file with few digits may take away, relative to the largest principal inertia.
@@ -50,7 +50,11 @@ pub(crate) fn check(site: &Site<'_>, six: [f64; 6]) -> Option<()> {
 
 /// Principal inertias in ascending order.
 fn principal(inertia: &Matrix<f64, 3, 3>) -> [f64; 3] {
-    let mut values = eigenvalues(*inertia).0;
+    let mut axes = *inertia;
+    let mut values = [0.0; 3];
+    for (value, found) in values.iter_mut().zip(eigenvalues(Leading::of(&mut axes.0, 3))) {
+        *value = found;
+    }
     values.sort_by(f64::total_cmp);
     values
 }

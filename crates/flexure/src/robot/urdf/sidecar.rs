@@ -10,6 +10,7 @@ use crate::files::{Problem, Problems, source};
 use crate::robot::document::DAMPING;
 use crate::robot::links::{Assembled, DriveDefaults, JointKind, MovingJoint};
 use crate::robot::urdf::{LIMIT, Locks, Urdf};
+use crate::units;
 
 /// A robot file that lacks what a URDF does not say.
 #[derive(Clone, Debug)]
@@ -99,15 +100,15 @@ fn sources(toml: &mut String, path: &str, damping: bool) {
 
 /// The table of one joint.
 fn drive(toml: &mut String, MovingJoint { name, kind, drive }: &MovingJoint) {
-    let (word, units) = match kind {
-        JointKind::Revolute => ("revolute", ["N m/rad", "kg m²", "N m s/rad", "N m", "rad/s", "rad"]),
-        JointKind::Prismatic => ("prismatic", ["N/m", "kg", "N s/m", "N", "m/s", "m"]),
+    let (word, gear) = match kind {
+        JointKind::Revolute => ("revolute", "the rotor's times the gear ratio squared"),
+        JointKind::Prismatic => {
+            ("prismatic", "the rotor's inertia in kg m² times the gear ratio in rad/m squared")
+        }
     };
-    let [stiffness, inertia, damping, torque, velocity, position] = units;
-    let gear = match kind {
-        JointKind::Revolute => "the rotor's times the gear ratio squared",
-        JointKind::Prismatic => "the rotor's inertia in kg m² times the gear ratio in rad/m squared",
-    };
+    let [stiffness, inertia, damping, torque, velocity, position] =
+        [units::STIFFNESS, units::INERTIA, units::DAMPING, units::TORQUE, units::SPEED, units::ANGLE]
+            .map(|unit| unit.of(*kind).raised);
     let _ = writeln!(toml, "\n[joints.{}]  # {word}", key(name));
     let mut line = |key: &str, value: String, comment: String| {
         let _ = writeln!(toml, "{:<34} # {comment}", format!("{key} = {value}"));

@@ -3,18 +3,18 @@
 use crate::prove::engine::direct::bisection::{Proved, bisect};
 use crate::prove::engine::direct::flow::Flow;
 use crate::prove::engine::direct::samples;
-use crate::prove::engine::direct::witness::{Sample, State, Witness};
+use crate::prove::engine::direct::witness::{DirectWitness, NamedState, Sample};
 use crate::prove::engine::verdict::{Undecided, Verdict};
 
 /// A rate that holds over the region, and a state that no larger one survives.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Best {
+pub struct BestRate {
     /// β [1/s], proved.
     pub rate: f64,
     /// An upper bound of the rate at the weakest state that was seen [1/s], by intervals: the true rate is at most this.
     pub upper: f64,
     /// That state.
-    pub at: State,
+    pub at: NamedState,
     /// Boxes looked at, attempts that failed included.
     pub boxes: usize,
 }
@@ -40,7 +40,7 @@ const FACTORS: [f64; 13] = [
 ///
 /// Attempts share the budget: each has its part of what those before it left. Refuted where some state shows that W grows, or
 /// does not shrink, in some direction.
-pub fn best_rate(flow: &dyn Flow, budget: usize) -> Verdict<Best, Witness> {
+pub fn best_rate(flow: &dyn Flow, budget: usize) -> Verdict<BestRate, DirectWitness> {
     let undecided = |at: String, spent| Verdict::Undecided(Undecided { at, spent });
     let Some(mut weakest) = samples::weakest(flow) else {
         return undecided("the metric is positive definite at no sample".to_owned(), 0);
@@ -60,7 +60,7 @@ pub fn best_rate(flow: &dyn Flow, budget: usize) -> Verdict<Best, Witness> {
             spent += boxes;
             match verdict {
                 Verdict::Proved(Proved { rate, .. }) => {
-                    return Verdict::Proved(Best { rate, upper, at: weakest.state(flow), boxes: spent });
+                    return Verdict::Proved(BestRate { rate, upper, at: weakest.state(flow), boxes: spent });
                 }
                 Verdict::Refuted(witness) => {
                     let sample = Sample::new(flow, witness.at.values()).filter(|_| witness.rate < upper);

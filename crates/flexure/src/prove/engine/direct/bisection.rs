@@ -2,11 +2,11 @@
 
 use flexure_core::scalar::Interval;
 
+use crate::linalg::Symmetric;
 use crate::prove::engine::direct::definite::{Definite, definite};
-use crate::prove::engine::direct::flow::Flow;
-use crate::prove::engine::direct::witness::{Sample, Witness};
+use crate::prove::engine::direct::flow::{Balance, Flow};
+use crate::prove::engine::direct::witness::{DirectWitness, Sample};
 use crate::prove::engine::direct::{samples, split};
-use crate::prove::engine::matrix::Symmetric;
 use crate::prove::engine::verdict::{Undecided, Verdict};
 
 /// A rate that holds at every state of the region.
@@ -21,7 +21,7 @@ pub struct Proved {
 /// Whether `flow` contracts at the rate `beta` [1/s] at every state of its region, looking at no more than `budget` boxes.
 ///
 /// [`Verdict::Proved`] is rigorous for every value of constants that are intervals, and so is [`Verdict::Refuted`].
-pub fn prove(flow: &dyn Flow, beta: f64, budget: usize) -> Verdict<Proved, Witness> {
+pub fn prove(flow: &dyn Flow, beta: f64, budget: usize) -> Verdict<Proved, DirectWitness> {
     /// Boxes before samples: most rates that hold with room to spare take no more, and samples cost as much as hundreds.
     const FEW: usize = 32;
     let (verdict, spent) = bisect(flow, beta, budget.min(FEW));
@@ -39,7 +39,7 @@ pub fn prove(flow: &dyn Flow, beta: f64, budget: usize) -> Verdict<Proved, Witne
 }
 
 /// [`prove`] without looking at samples first, only boxes that resist are searched for witnesses; and the boxes it took.
-pub(crate) fn bisect(flow: &dyn Flow, beta: f64, budget: usize) -> (Verdict<Proved, Witness>, usize) {
+pub(crate) fn bisect(flow: &dyn Flow, beta: f64, budget: usize) -> (Verdict<Proved, DirectWitness>, usize) {
     let root: Vec<Interval> = flow.coordinates().iter().map(|c| c.range).collect();
     let undecided = |at: String, spent| (Verdict::Undecided(Undecided { at, spent }), spent);
     if !beta.is_finite() {
@@ -84,12 +84,11 @@ enum About {
 }
 
 impl About {
-    fn matrix(self, flow: &dyn Flow, at: &[Interval], beta: f64) -> Symmetric {
+    fn matrix(self, flow: &dyn Flow, at: &[Interval], beta: f64) -> Symmetric<Interval> {
         let balance = flow.enclosure(at);
-        let weight = balance.weight.symmetric();
         match self {
-            Self::Rate => balance.dissipation.symmetric().minus(&weight, Interval::point(beta)),
-            Self::Weight => weight,
+            Self::Rate => balance.dissipation.minus(&balance.weight, Interval::point(beta)),
+            Self::Weight => balance.weight,
         }
     }
 }
@@ -102,11 +101,10 @@ struct Doubt {
 
 /// `None` where both inequalities hold on the whole box `at`.
 fn decide(flow: &dyn Flow, at: &[Interval], beta: f64) -> Option<Doubt> {
-    let balance = flow.enclosure(at);
-    let weight = balance.weight.symmetric();
-    let rate = balance.dissipation.symmetric().minus(&weight, Interval::point(beta));
+    let Balance { dissipation, weight } = flow.enclosure(at);
+    let rate = dissipation.minus(&weight, Interval::point(beta));
     // Before anything is known of a factor, rows count by the size of the metric.
-    let unit = |a: &Symmetric, i: usize| {
+    let unit = |a: &Symmetric<Interval>, i: usize| {
         let size = a.at(i, i).magnitude();
         if size.is_finite() && size > 0.0 { size.sqrt().recip() } else { 1.0 }
     };

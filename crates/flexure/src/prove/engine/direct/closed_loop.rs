@@ -6,9 +6,10 @@ use flexure_core::model::{Fjr, LinkMatrices, Links};
 use flexure_core::scalar::{Dual, Interval, Over, Scalar};
 use flexure_core::virtual_system::{ErrorState, VelocityErrors, velocity_error_rates};
 
-use crate::prove::engine::direct::flow::{Coordinate, System, Twins, VcbcFlow};
-use crate::prove::engine::direct::form::{Balance, Form};
+use crate::linalg::Symmetric;
+use crate::prove::engine::direct::flow::{Balance, Coordinate, System, Twins, VcbcFlow};
 use crate::prove::engine::direct::jacobian::{jacobian, symmetric_part};
+use crate::units::{self, Unit};
 
 /// A robot under the v-CBC law, constants of type `C`.
 ///
@@ -16,7 +17,7 @@ use crate::prove::engine::direct::jacobian::{jacobian, symmetric_part};
 /// those of the errors, δz = (δq̃_l, δq̃_m, δs_l, δs_m) with δs = M⁻¹ δσ at the real motion, which needs no inverse of M:
 /// W = ½ δzᵀ diag(Π_l, Π_m, M_l, M_m) δz.
 #[derive(Clone, Debug)]
-pub struct ClosedLoop<C, L, Pl, Pm, const N: usize> {
+pub struct VcbcLoop<C, L, Pl, Pm, const N: usize> {
     /// The robot.
     pub robot: Fjr<C, L, N>,
     /// The law.
@@ -25,7 +26,7 @@ pub struct ClosedLoop<C, L, Pl, Pm, const N: usize> {
 
 /// A box of states of the closed loop; what is not said is unbounded.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Region<const N: usize> {
+pub struct StateBox<const N: usize> {
     /// Link position errors q̃_l in rad.
     pub error_l: [Interval; N],
     /// Motor position errors q̃_m in rad.
@@ -47,7 +48,7 @@ pub fn full_turn() -> Interval {
     Interval::point(-turn).hull(Interval::point(turn))
 }
 
-impl<const N: usize> Region<N> {
+impl<const N: usize> StateBox<N> {
     /// Position errors within ±`error` in rad on both sides, link velocities within ±`velocity` [rad/s], all angles, all
     /// velocity errors.
     pub fn within(error: f64, velocity: f64) -> Self {
@@ -62,19 +63,22 @@ impl<const N: usize> Region<N> {
         }
     }
 
-    /// The coordinates in the order of [`ClosedLoop`].
+    /// The coordinates in the order of [`VcbcLoop`].
     pub fn coordinates(&self) -> Vec<Coordinate> {
         let blocks = [
-            ("e_l", "rad", &self.error_l),
-            ("e_m", "rad", &self.error_m),
-            ("s_l", "rad/s", &self.velocity_error_l),
-            ("s_m", "rad/s", &self.velocity_error_m),
-            ("q_l", "rad", &self.position),
-            ("v_l", "rad/s", &self.velocity),
+            ("e_l", units::ANGLE, &self.error_l),
+            ("e_m", units::ANGLE, &self.error_m),
+            ("s_l", units::SPEED, &self.velocity_error_l),
+            ("s_m", units::SPEED, &self.velocity_error_m),
+            ("q_l", units::ANGLE, &self.position),
+            ("v_l", units::SPEED, &self.velocity),
         ];
-        let named = |(name, unit, ranges): (&str, &'static str, &[Interval; N])| {
-            let coordinate =
-                |(i, &range): (usize, &Interval)| Coordinate { name: format!("{name}[{i}]"), unit, range };
+        let named = |(name, unit, ranges): (&str, Unit, &[Interval; N])| {
+            let coordinate = |(i, &range): (usize, &Interval)| Coordinate {
+                name: format!("{name}[{i}]"),
+                unit: unit.plain,
+                range,
+            };
             ranges.iter().enumerate().map(coordinate).collect::<Vec<_>>()
         };
         blocks.into_iter().flat_map(named).collect()
@@ -83,14 +87,14 @@ impl<const N: usize> Region<N> {
 
 /// The v-CBC law's closed loop over a region: robot and law with constants enclosed, and again in `f64`.
 pub fn vcbc<LI, PlI, PmI, L, Pl, Pm, const N: usize>(
-    bounds: ClosedLoop<Interval, LI, PlI, PmI, N>,
-    point: ClosedLoop<f64, L, Pl, Pm, N>,
-    region: &Region<N>,
+    bounds: VcbcLoop<Interval, LI, PlI, PmI, N>,
+    point: VcbcLoop<f64, L, Pl, Pm, N>,
+    region: &StateBox<N>,
 ) -> VcbcFlow<LI, PlI, PmI, L, Pl, Pm, N> {
     Twins { bounds, point, coordinates: region.coordinates() }
 }
 
-impl<C, L, Pl, Pm, const N: usize> System<C> for ClosedLoop<C, L, Pl, Pm, N>
+impl<C, L, Pl, Pm, const N: usize> System<C> for VcbcLoop<C, L, Pl, Pm, N>
 where
     C: Scalar + Over<C>,
     L: Links<C, N>,
@@ -105,16 +109,16 @@ where
         let model = LinkMatrices::new(&self.robot.links, &q_l, &v_l);
         let E_l = model.workless();
 
-        let columns = jacobian(&at[..4 * N], 4 * N, |z| self.rates(z, &E_l));
+        let F = jacobian(&at[..4 * N], 4 * N, |z| self.rates(z, &E_l));
         let (Pi_l, Pi_l_rate) = self.link_metric(at, &E_l);
         let half = C::from_f64(0.5);
         let carried = |i: usize, j: usize| match i / N {
-            0 => Pi_l[i] * columns[j][i],
-            1 => self.law.motor.metric[i - N] * columns[j][i],
-            _ => columns[j][i],
+            0 => Pi_l[i] * F[(i, j)],
+            1 => self.law.motor.metric[i - N] * F[(i, j)],
+            _ => F[(i, j)],
         };
         let inside = |i: usize, j: usize, k: usize| i / N == k && j / N == k;
-        let dissipation = Form::from_fn(4 * N, |i, j| {
+        let dissipation = Symmetric::from_fn(4 * N, |i, j| {
             let metric_rate = if i == j && inside(i, j, 0) {
                 half * Pi_l_rate[i]
             } else if inside(i, j, 2) {
@@ -124,7 +128,7 @@ where
             };
             -(symmetric_part(carried, i, j) + metric_rate)
         });
-        let weight = Form::from_fn(4 * N, |i, j| match i / N {
+        let weight = Symmetric::from_fn(4 * N, |i, j| match i / N {
             2 if inside(i, j, 2) => model.mass[(i - 2 * N, j - 2 * N)],
             _ if i != j => C::ZERO,
             0 => Pi_l[i],
@@ -135,7 +139,7 @@ where
     }
 }
 
-impl<C, L, Pl, Pm, const N: usize> ClosedLoop<C, L, Pl, Pm, N>
+impl<C, L, Pl, Pm, const N: usize> VcbcLoop<C, L, Pl, Pm, N>
 where
     C: Scalar + Over<C>,
     L: Links<C, N>,

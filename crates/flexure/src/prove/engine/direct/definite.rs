@@ -2,9 +2,7 @@
 
 use flexure_core::scalar::{Interval, Scalar};
 
-use crate::prove::engine::direct::dense;
-use crate::prove::engine::direct::form::Form;
-use crate::prove::engine::matrix::Symmetric;
+use crate::linalg::{Dense, Symmetric, cholesky, lower_inverse};
 
 /// The answer for one interval matrix.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,15 +15,14 @@ pub(crate) enum Definite {
 
 /// Tries elimination on `a` as it is, then on R `a` Rᵀ with R the inverse factor of the midpoint. R is triangular with
 /// positive diagonal, hence regular: the one is positive definite if the other is, whatever rounding did to R.
-pub(crate) fn definite(a: &Symmetric) -> Definite {
+pub(crate) fn definite(a: &Symmetric<Interval>) -> Definite {
     if a.smallest_pivot() > 0.0 {
         return Definite::Yes;
     }
-    let midpoint = Form::from_fn(a.size(), |i, j| a.at(i, j).midpoint());
-    let Some(root) = dense::cholesky(&midpoint).map(|lower| dense::inverse(&lower)) else {
+    let Some(root) = cholesky(&a.map(Interval::midpoint)).map(|lower| lower_inverse(&lower)) else {
         return Definite::Unknown(None);
     };
-    let regular = (0..root.len()).all(|i| root[i][i] > 0.0 && root[i].iter().all(|x| x.is_finite()));
+    let regular = (0..a.size()).all(|i| root[(i, i)] > 0.0 && root.row(i).iter().all(|x| x.is_finite()));
     if !regular {
         return Definite::Unknown(None);
     }
@@ -34,20 +31,20 @@ pub(crate) fn definite(a: &Symmetric) -> Definite {
         return Definite::Yes;
     }
     // An entry's width reaches R a Rᵀ through column i of R from one side, and column j from the other.
-    let reach = |j: usize| root.iter().map(|row| row[j].abs()).sum();
-    Definite::Unknown(Some((0..root.len()).map(reach).collect()))
+    let reach = |j: usize| root.rows().map(|row| row[j].abs()).sum();
+    Definite::Unknown(Some((0..a.size()).map(reach).collect()))
 }
 
 /// R `a` Rᵀ for a lower triangular R. What multiplies an entry of `a` is summed first: each is used once.
-fn congruent(a: &Symmetric, root: &[Vec<f64>]) -> Symmetric {
+fn congruent(a: &Symmetric<Interval>, root: &Dense<f64>) -> Symmetric<Interval> {
     let product = |x: f64, y: f64| Interval::point(x) * Interval::point(y);
     Symmetric::from_fn(a.size(), |i, j| {
         let mut sum = Interval::ZERO;
         for k in 0..=i {
             for l in 0..=k.min(j) {
-                let mut factor = product(root[i][k], root[j][l]);
+                let mut factor = product(root[(i, k)], root[(j, l)]);
                 if l < k && k <= j {
-                    factor += product(root[i][l], root[j][k]);
+                    factor += product(root[(i, l)], root[(j, k)]);
                 }
                 sum += a.at(k, l) * factor;
             }
@@ -57,7 +54,7 @@ fn congruent(a: &Symmetric, root: &[Vec<f64>]) -> Symmetric {
 }
 
 /// Whether a_ii x_i > Σ_j |a_ij| x_j for some x > 0: diagonally dominant after a scaling, hence positive definite.
-fn dominant(a: &Symmetric) -> bool {
+fn dominant(a: &Symmetric<Interval>) -> bool {
     let n = a.size();
     let off = |i: usize| (0..n).filter(move |&j| j != i);
     // Towards the eigenvector of the scaled off-diagonal part, damped: it is no wrong x, only a better or a worse one.
@@ -83,7 +80,7 @@ fn dominant(a: &Symmetric) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{Definite, Form, Interval, Symmetric, congruent, definite, dense, dominant};
+    use super::{Definite, Dense, Interval, Symmetric, cholesky, congruent, definite, dominant};
 
     fn around(x: f64, radius: f64) -> Interval {
         Interval::new(x - radius, x + radius).expect("ordered")
@@ -139,10 +136,11 @@ mod tests {
     #[test]
     fn congruence() {
         let a = Symmetric::from_fn(3, |i, j| Interval::point((1 + 4 * i + 2 * j) as f64));
-        let root = vec![vec![2.0, 0.0, 0.0], vec![-1.0, 3.0, 0.0], vec![5.0, -2.0, 1.0]];
+        let rows = [[2.0, 0.0, 0.0], [-1.0, 3.0, 0.0], [5.0, -2.0, 1.0]];
+        let root = Dense::from_fn(3, 3, |i, j| rows[i][j]);
         let got = congruent(&a, &root);
-        for (i, row) in root.iter().enumerate() {
-            for (j, other) in root.iter().enumerate() {
+        for (i, row) in rows.iter().enumerate() {
+            for (j, other) in rows.iter().enumerate() {
                 let product = |k: usize, l: usize| row[k] * a.at(k, l).midpoint() * other[l];
                 let sum: f64 = (0..9).map(|k| product(k / 3, k % 3)).sum();
                 assert_eq!(got.at(i, j), Interval::point(sum), "({i}, {j})");
@@ -170,11 +168,11 @@ mod tests {
             }
             decided += 1;
             for _ in 0..40 {
-                let corner = Form::from_fn(4, |i, j| {
+                let corner = Symmetric::from_fn(4, |i, j| {
                     let x = matrix.at(i, j);
                     if next() > 0.0 { x.lo() } else { x.hi() }
                 });
-                assert!(dense::cholesky(&corner).is_some(), "{corner:?}");
+                assert!(cholesky(&corner).is_some(), "{corner:?}");
             }
         }
         assert!((200..1_800).contains(&decided), "{decided}");

@@ -2,8 +2,19 @@
 
 use flexure_core::scalar::Interval;
 
-use crate::prove::engine::direct::closed_loop::ClosedLoop;
-use crate::prove::engine::direct::form::Balance;
+use crate::linalg::Symmetric;
+use crate::prove::engine::direct::closed_loop::VcbcLoop;
+
+/// How a quadratic storage W = ½ δzᵀ `weight` δz balances: Ẇ = −δzᵀ `dissipation` δz.
+///
+/// √W decays at least at the rate β where `dissipation − β weight` and `weight` are positive definite.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Balance<T> {
+    /// What is lost.
+    pub dissipation: Symmetric<T>,
+    /// The metric P.
+    pub weight: Symmetric<T>,
+}
 
 /// One coordinate of a region.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,7 +60,7 @@ pub struct Twins<A, B> {
 
 /// [`Twins`] of the v-CBC law's closed loop.
 pub type VcbcFlow<LI, PlI, PmI, L, Pl, Pm, const N: usize> =
-    Twins<ClosedLoop<Interval, LI, PlI, PmI, N>, ClosedLoop<f64, L, Pl, Pm, N>>;
+    Twins<VcbcLoop<Interval, LI, PlI, PmI, N>, VcbcLoop<f64, L, Pl, Pm, N>>;
 
 impl<A: System<Interval>, B: System<f64>> Flow for Twins<A, B> {
     fn coordinates(&self) -> &[Coordinate] {

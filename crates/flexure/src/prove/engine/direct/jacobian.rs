@@ -2,22 +2,25 @@
 
 use flexure_core::scalar::{Dual, Scalar};
 
-/// The Jacobian of `rates` with respect to the first `size` numbers of `at`: entry `[j][i]` is ∂ rate_i / ∂ at_j, a column
-/// after the other. The numbers beyond are constants.
+use crate::linalg::Dense;
+
+/// The Jacobian of `rates` with respect to the first `size` numbers of `at`: entry (i, j) is ∂ rate_i / ∂ at_j. The
+/// numbers beyond are constants.
 pub fn jacobian<C: Scalar>(
     at: &[C],
     size: usize,
     mut rates: impl FnMut(&[Dual<C, 1>]) -> Vec<Dual<C, 1>>,
-) -> Vec<Vec<C>> {
+) -> Dense<C> {
     let mut variables: Vec<Dual<C, 1>> = at.iter().map(|&x| Dual::constant(x)).collect();
-    (0..size)
+    let columns: Vec<Vec<C>> = (0..size)
         .map(|j| {
             variables[j] = Dual::variable(at[j], 0);
             let column = rates(&variables).iter().map(|rate| rate.gradient[0]).collect();
             variables[j] = Dual::constant(at[j]);
             column
         })
-        .collect()
+        .collect();
+    Dense::from_columns(&columns)
 }
 
 /// Entry (i, j) of ½ (G + Gᵀ) for the matrix `entry`.

@@ -9,11 +9,11 @@
 //! | part | does |
 //! | --- | --- |
 //! | [`Flow`], [`System`], [`Twins`] | what is proved about: two matrices over a box of coordinates |
-//! | [`ClosedLoop`], [`vcbc`] | the v-CBC law's closed loop as such |
+//! | [`VcbcLoop`], [`vcbc`] | the v-CBC law's closed loop as such |
 //! | [`prove`], [`best_rate`] | branch and bound |
 //! | [`law_agreement`] | whether the closed form is what the law's code gives |
 //!
-//! **Trusted:** intervals, dual numbers, [`Symmetric`](super::matrix::Symmetric), `definite`, `bisection` and the
+//! **Trusted:** intervals, dual numbers, [`Symmetric`](crate::linalg::Symmetric), `definite`, `bisection` and the
 //! [`Flow`]'s matrices on intervals. What runs in `f64` (samples, eigenvectors, preconditioners, the choice of what to bisect)
 //! only makes proofs quicker: a wrong number there costs time.
 //!
@@ -25,19 +25,16 @@ mod best;
 mod bisection;
 mod closed_loop;
 mod definite;
-mod dense;
 mod flow;
-mod form;
 mod jacobian;
 mod samples;
 mod split;
 mod witness;
 
 pub use agreement::{Agreement, law_agreement};
-pub use best::{Best, best_rate};
+pub use best::{BestRate, best_rate};
 pub use bisection::{Proved, prove};
-pub use closed_loop::{ClosedLoop, Region, full_turn, vcbc};
-pub use flow::{Coordinate, Flow, System, Twins};
-pub use form::{Balance, Form};
+pub use closed_loop::{StateBox, VcbcLoop, full_turn, vcbc};
+pub use flow::{Balance, Coordinate, Flow, System, Twins};
 pub use jacobian::{jacobian, symmetric_part};
-pub use witness::{State, Witness};
+pub use witness::{DirectWitness, NamedState};

@@ -2,8 +2,8 @@
 
 use flexure_core::scalar::Interval;
 
+use crate::linalg::Symmetric;
 use crate::prove::engine::direct::flow::Flow;
-use crate::prove::engine::matrix::Symmetric;
 
 /// Both parts of a range; `None` where there is nothing to gain: a point, neighbouring floats, or an end so far out that
 /// what lies beyond will not become decidable.
@@ -26,7 +26,7 @@ pub(crate) fn halves(range: Interval) -> Option<(Interval, Interval)> {
 /// The uncertainty of a matrix: how many entries are unbounded, and the widths of the others, weighted.
 type Spread = (usize, f64);
 
-fn spread(a: &Symmetric, reach: &[f64]) -> Spread {
+fn spread(a: &Symmetric<Interval>, reach: &[f64]) -> Spread {
     let (mut unbounded, mut sum) = (0, 0.0);
     for i in 0..a.size() {
         for j in 0..=i {
@@ -63,7 +63,7 @@ pub(crate) fn most_effective(
     flow: &dyn Flow,
     at: &[Interval],
     candidates: &[usize],
-    matrix: impl Fn(&[Interval]) -> Symmetric,
+    matrix: impl Fn(&[Interval]) -> Symmetric<Interval>,
     reach: &[f64],
 ) -> Option<usize> {
     let splittable: Vec<usize> = candidates.iter().copied().filter(|&i| halves(at[i]).is_some()).collect();

@@ -2,17 +2,17 @@
 
 use flexure_core::scalar::Interval;
 
-use crate::prove::engine::direct::dense;
+use crate::linalg::weakest;
 use crate::prove::engine::direct::flow::Flow;
 
 /// A state: every coordinate by its name.
 #[derive(Clone, Debug, PartialEq)]
-pub struct State {
+pub struct NamedState {
     /// Name and value of each coordinate, in the flow's order and units.
     pub coordinates: Vec<(String, f64)>,
 }
 
-impl std::fmt::Display for State {
+impl std::fmt::Display for NamedState {
     /// `e_l[0] = 0.5, …`
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         for (i, (name, value)) in self.coordinates.iter().enumerate() {
@@ -27,9 +27,9 @@ impl std::fmt::Display for State {
 /// Plain `f64` found it and intervals confirmed it: the real value at this very state is at most `value`, for all constants
 /// that the flow encloses.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Witness {
+pub struct DirectWitness {
     /// The state.
-    pub at: State,
+    pub at: NamedState,
     /// δz.
     pub direction: Vec<f64>,
     /// An upper bound of δzᵀ (dissipation − β weight) δz, where δzᵀ weight δz is about 1: negative.
@@ -50,7 +50,7 @@ impl Sample {
     /// At the point `at`; `None` where the metric is not one.
     pub(crate) fn new(flow: &dyn Flow, at: Vec<f64>) -> Option<Self> {
         let balance = flow.value(&at);
-        let (rate, direction) = dense::weakest(&balance.dissipation, &balance.weight)?;
+        let (rate, direction) = weakest(&balance.dissipation, &balance.weight)?;
         Some(Self { at, rate, direction })
     }
 
@@ -66,22 +66,22 @@ impl Sample {
     }
 
     /// The witness against `beta`, if intervals confirm it.
-    pub(crate) fn refutes(&self, flow: &dyn Flow, beta: f64) -> Option<Witness> {
+    pub(crate) fn refutes(&self, flow: &dyn Flow, beta: f64) -> Option<DirectWitness> {
         if self.rate >= beta {
             return None;
         }
         let (rate, value) = self.bounds(flow, beta)?;
         let direction = self.direction.clone();
-        (value < 0.0).then(|| Witness { at: self.state(flow), direction, value, rate })
+        (value < 0.0).then(|| DirectWitness { at: self.state(flow), direction, value, rate })
     }
 
-    pub(crate) fn state(&self, flow: &dyn Flow) -> State {
+    pub(crate) fn state(&self, flow: &dyn Flow) -> NamedState {
         let names = flow.coordinates().iter().map(|c| c.name.clone());
-        State { coordinates: names.zip(self.at.iter().copied()).collect() }
+        NamedState { coordinates: names.zip(self.at.iter().copied()).collect() }
     }
 }
 
-impl State {
+impl NamedState {
     /// The value of the coordinate `name`.
     pub fn get(&self, name: &str) -> Option<f64> {
         self.coordinates.iter().find(|(n, _)| n == name).map(|(_, x)| *x)

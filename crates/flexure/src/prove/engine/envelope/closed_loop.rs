@@ -7,7 +7,7 @@ use flexure_core::model::{Fjr, Links, MassFactor, Motion};
 use flexure_core::reference::Reference;
 use flexure_core::scalar::{Interval, Jet, Scalar};
 
-use crate::prove::engine::matrix::Symmetric;
+use crate::linalg::Symmetric;
 
 /// A number over a box as a series in one direction: its value, its first derivative and half its second.
 pub type Slope = Jet<Interval, 3>;
@@ -43,7 +43,7 @@ pub struct Answer {
 }
 
 /// A robot under its law along a reference.
-pub trait ClosedLoop: Sync {
+pub trait TrackingLoop: Sync {
     /// Number of joints.
     fn joints(&self) -> usize;
     /// Taylor coefficients of the reference in rad/sᵏ over the times `t` in s.
@@ -57,7 +57,7 @@ pub trait ClosedLoop: Sync {
     /// What the law says at `x`, with the Taylor coefficients `q_ld` of the reference in rad/sᵏ.
     fn command(&self, x: &Place, q_ld: &[[Slope; 5]]) -> Answer;
     /// M_l⁻¹ [1/(kg m²)] at `q_l` in rad.
-    fn inverse_mass(&self, q_l: &[Interval]) -> Symmetric;
+    fn inverse_mass(&self, q_l: &[Interval]) -> Symmetric<Interval>;
     /// s_lᵀ M_l s_l in J at `q_l` in rad.
     fn link_energy(&self, q_l: &[Interval], s_l: &[Interval]) -> Interval;
     /// The diagonals of Π_l, Π_m [N m/rad] and M_m [kg m²].
@@ -79,7 +79,7 @@ pub struct Enclosed<L, Pl, Pm, R, const N: usize> {
     pub kinks: Vec<Interval>,
 }
 
-impl<L, Pl, Pm, R, const N: usize> ClosedLoop for Enclosed<L, Pl, Pm, R, N>
+impl<L, Pl, Pm, R, const N: usize> TrackingLoop for Enclosed<L, Pl, Pm, R, N>
 where
     L: Links<Interval, N> + Sync,
     Pl: Shaping<Interval, N> + Sync,
@@ -116,7 +116,7 @@ where
         Answer { u_m, q_md, e_l, e_m, s_l, s_m }
     }
 
-    fn inverse_mass(&self, q_l: &[Interval]) -> Symmetric {
+    fn inverse_mass(&self, q_l: &[Interval]) -> Symmetric<Interval> {
         let factor = self.robot.links.factor(&vector(q_l));
         let unit = |j: usize| Vector::from_fn(|i| if i == j { Interval::ONE } else { Interval::ZERO });
         let columns: Vec<Vector<Interval, N>> = (0..N).map(|j| factor.solve(&unit(j))).collect();

@@ -10,14 +10,14 @@ pub mod witness;
 
 use std::collections::BTreeSet;
 
-use closed_loop::ClosedLoop;
+use closed_loop::TrackingLoop;
 use flexure_core::scalar::Interval;
 use rayon::prelude::*;
 use slab::Slab;
 
 /// What to bound.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Request {
+pub struct AlongRequest {
     /// c in J.
     pub level: f64,
     /// End of the reference in s; it begins at 0.
@@ -47,7 +47,7 @@ const TIGHT: f64 = 0.01;
 const GAIN: f64 = 0.002;
 
 /// Bounds everything that `request` asks for.
-pub fn course(system: &dyn ClosedLoop, request: &Request) -> Course {
+pub fn course(system: &dyn TrackingLoop, request: &AlongRequest) -> Course {
     let first = request.budget.clamp(1, FIRST);
     let cut =
         |i: usize| if i == first { request.duration } else { request.duration * (i as f64 / first as f64) };
@@ -78,7 +78,7 @@ pub fn course(system: &dyn ClosedLoop, request: &Request) -> Course {
 }
 
 /// Which pieces to cut next: those that are farthest above their goals, at most `most`.
-fn marked(pieces: &[Piece], request: &Request, most: usize) -> BTreeSet<usize> {
+fn marked(pieces: &[Piece], request: &AlongRequest, most: usize) -> BTreeSet<usize> {
     let goals = goals(pieces, &request.limits);
     let excess = pieces.iter().map(|piece| piece.excess(&goals)).enumerate();
     let mut marked: Vec<(usize, f64)> = excess.filter(|(_, excess)| *excess > 1.0).collect();

@@ -7,12 +7,13 @@
 
 use flexure_core::scalar::{Interval, Jet, Scalar};
 
-use crate::prove::engine::envelope::closed_loop::{Answer, ClosedLoop, Place, Slope};
-use crate::prove::engine::envelope::tube::Tube;
+use crate::linalg::Dense;
+use crate::prove::engine::envelope::closed_loop::{Answer, Place, Slope, TrackingLoop};
+use crate::prove::engine::envelope::tube::ErrorTube;
 
 /// Quantities per joint that are bounded, in the order of a slab's ranges: those of all joints, one quantity after the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
+pub enum BoundedQuantity {
     /// Link velocity q̇_l [rad/s].
     Velocity,
     /// Deflection of the spring q_m − q_l in rad.
@@ -22,7 +23,8 @@ pub enum Quantity {
 }
 
 /// All of them.
-pub const QUANTITIES: [Quantity; 3] = [Quantity::Velocity, Quantity::Deflection, Quantity::Torque];
+pub const QUANTITIES: [BoundedQuantity; 3] =
+    [BoundedQuantity::Velocity, BoundedQuantity::Deflection, BoundedQuantity::Torque];
 
 /// The tube over a slab of time.
 #[derive(Clone, Debug)]
@@ -30,20 +32,20 @@ pub struct Slab {
     /// Its times in s.
     pub time: Interval,
     /// The errors and the metric of W.
-    pub tube: Tube,
+    pub tube: ErrorTube,
     /// The quantities on the reference at the middle.
     pub nominal: Vec<Interval>,
-    /// Their derivatives by the errors q̃_l, q̃_m, s_l, s_m.
-    pub gradients: Vec<Vec<Interval>>,
+    /// Their derivatives by the errors q̃_l, q̃_m, s_l, s_m: a row per quantity, a column per error.
+    pub gradients: Dense<Interval>,
     /// The quantities.
     pub ranges: Vec<Interval>,
 }
 
 impl Slab {
     /// The tube of level `level` in J over the times `time` in s.
-    pub fn new(system: &dyn ClosedLoop, level: f64, time: Interval) -> Self {
+    pub fn new(system: &dyn TrackingLoop, level: f64, time: Interval) -> Self {
         let jets = system.reference(time);
-        let tube = Tube::new(system, level, &jets.iter().map(|jet| jet[0]).collect::<Vec<_>>());
+        let tube = ErrorTube::new(system, level, &jets.iter().map(|jet| jet[0]).collect::<Vec<_>>());
         let middle = Interval::point(time.midpoint());
         let way = Way {
             n: system.joints(),
@@ -82,7 +84,7 @@ impl Slab {
     /// About the largest absolute value that quantity `k` takes at the slab's middle, as far as its derivatives are known.
     pub fn seen(&self, k: usize) -> f64 {
         let near_zero = |g: &Interval| Interval::point(g.lo().max(0.0) + g.hi().min(0.0));
-        let gradient: Vec<_> = self.gradients[k].iter().map(near_zero).collect();
+        let gradient: Vec<_> = self.gradients.row(k).iter().map(near_zero).collect();
         self.nominal[k].midpoint().abs() + self.tube.reach(&gradient).hi()
     }
 }
@@ -99,7 +101,7 @@ enum Smooth {
 }
 
 impl Smooth {
-    fn over(system: &dyn ClosedLoop, time: Interval) -> Self {
+    fn over(system: &dyn TrackingLoop, time: Interval) -> Self {
         let meets = |times: &[Interval]| times.iter().any(|at| at.intersection(time).is_some());
         match (meets(system.breaks()), meets(system.kinks())) {
             (true, _) => Self::Not,
@@ -135,13 +137,13 @@ impl Seeded {
     }
 
     /// q_l = q_ld + q̃_l and q̇_l = q̇_ld − φ_l(q̃_l) + s_l.
-    fn links(&self, system: &dyn ClosedLoop) -> (Vec<Slope>, Vec<Slope>) {
+    fn links(&self, system: &dyn TrackingLoop) -> (Vec<Slope>, Vec<Slope>) {
         let order = |k: usize| self.q_ld.iter().map(|jet| jet[k]).collect::<Vec<_>>();
         let v_lr = differences(&order(1), &system.approach(self.part(0)));
         (sums(&order(0), self.part(0)), sums(&v_lr, self.part(2)))
     }
 
-    fn answer(&self, system: &dyn ClosedLoop, q_m: &[Slope], v_m: &[Slope]) -> Answer {
+    fn answer(&self, system: &dyn TrackingLoop, q_m: &[Slope], v_m: &[Slope]) -> Answer {
         let (q_l, v_l) = self.links(system);
         system.command(&Place { q_l, q_m: q_m.to_vec(), v_l, v_m: v_m.to_vec() }, &self.q_ld)
     }
@@ -159,7 +161,7 @@ struct Way<'a> {
     offset: Interval,
     /// The box around the tube.
     errors: Vec<Interval>,
-    tube: &'a Tube,
+    tube: &'a ErrorTube,
 }
 
 /// Numbers in all views.
@@ -168,8 +170,8 @@ struct Spread {
     track: Vec<Slope>,
     /// Over slab and tube.
     ranges: Vec<Interval>,
-    /// Their derivatives by the errors.
-    gradients: Vec<Vec<Interval>>,
+    /// Their derivatives by the errors: a row per number.
+    gradients: Dense<Interval>,
 }
 
 impl Way<'_> {
@@ -203,14 +205,13 @@ impl Way<'_> {
         let track: Vec<_> =
             middle.iter().zip(track).map(|(middle, track)| self.expanded(middle, &track)).collect();
         let passes: Vec<Vec<Slope>> = (0..4 * self.n).map(|i| f(&self.seeded(View::Tube(i)))).collect();
-        let gradients: Vec<Vec<_>> =
-            (0..track.len()).map(|k| passes.iter().map(|pass| pass[k].coefficient(1)).collect()).collect();
-        let range = |(k, gradient): (usize, &Vec<Interval>)| {
+        let gradients = Dense::from_fn(track.len(), passes.len(), |k, i| passes[i][k].coefficient(1));
+        let range = |(k, gradient): (usize, &[Interval])| {
             let mean = track[k].coefficient(0) + self.tube.reach(gradient);
             // Both enclose it.
             mean.intersection(passes[0][k].coefficient(0)).unwrap_or(mean)
         };
-        let ranges = gradients.iter().enumerate().map(range).collect();
+        let ranges = gradients.rows().enumerate().map(range).collect();
         Spread { middle, track, ranges, gradients }
     }
 
@@ -242,7 +243,7 @@ impl Spread {
             View::Middle => self.middle.clone(),
             View::Track => self.track.clone(),
             View::Tube(i) => {
-                let slopes = self.gradients.iter().map(|gradient| gradient[i]);
+                let slopes = self.gradients.rows().map(|gradient| gradient[i]);
                 self.ranges
                     .iter()
                     .zip(slopes)

@@ -2,24 +2,24 @@
 
 use flexure_core::scalar::{Interval, Scalar};
 
-use crate::prove::engine::envelope::closed_loop::ClosedLoop;
-use crate::prove::engine::matrix::Symmetric;
+use crate::linalg::Symmetric;
+use crate::prove::engine::envelope::closed_loop::TrackingLoop;
 
 /// Errors q̃_l, q̃_m, s_l, s_m with W ≤ c, W = ½ (q̃_lᵀ Π_l q̃_l + q̃_mᵀ Π_m q̃_m + s_lᵀ M_l s_l + s_mᵀ M_m s_m), and what the
 /// inverse of diag(Π_l, Π_m, M_l, M_m) is there.
 #[derive(Clone, Debug)]
-pub struct Tube {
+pub struct ErrorTube {
     /// 2 c in J.
     twice_level: Interval,
     /// Π_l⁻¹, Π_m⁻¹, M_m⁻¹.
     inverses: [Vec<Interval>; 3],
     /// M_l⁻¹ over the tube's link positions.
-    inverse_mass: Symmetric,
+    inverse_mass: Symmetric<Interval>,
 }
 
-impl Tube {
+impl ErrorTube {
     /// The tube of level `level` in J around the link positions `q_ld` in rad.
-    pub fn new(system: &dyn ClosedLoop, level: f64, q_ld: &[Interval]) -> Self {
+    pub fn new(system: &dyn TrackingLoop, level: f64, q_ld: &[Interval]) -> Self {
         let twice_level = Interval::point(2.0) * Interval::point(level);
         let inverses = system.metrics().map(|metric| metric.into_iter().map(Interval::recip).collect());
         let [link, ..]: &[Vec<Interval>; 3] = &inverses;

@@ -3,7 +3,7 @@
 use flexure_core::scalar::Interval;
 
 use crate::prove::engine::envelope::Course;
-use crate::prove::engine::envelope::closed_loop::ClosedLoop;
+use crate::prove::engine::envelope::closed_loop::TrackingLoop;
 use crate::prove::engine::envelope::slab::Slab;
 
 /// A time and an error in the tube.
@@ -22,7 +22,7 @@ const INSIDE: f64 = 1.0 - 1e-9;
 const TRIED: usize = 3;
 
 /// Where quantity `k` is about largest: on the reference, then where the gradient of W's dual norm points.
-pub fn candidates(system: &dyn ClosedLoop, level: f64, course: &Course, k: usize) -> Vec<Candidate> {
+pub fn candidates(system: &dyn TrackingLoop, level: f64, course: &Course, k: usize) -> Vec<Candidate> {
     let best = |value: &dyn Fn(&Slab) -> f64| {
         let mut order: Vec<&Slab> = course.slabs.iter().collect();
         order.sort_by(|a, b| value(b).total_cmp(&value(a)));
@@ -36,9 +36,9 @@ pub fn candidates(system: &dyn ClosedLoop, level: f64, course: &Course, k: usize
 }
 
 /// √(2c) P⁻¹ g / √(gᵀ P⁻¹ g), away from zero, for the derivatives g of quantity `k` at `time` in s.
-fn corner(system: &dyn ClosedLoop, level: f64, time: f64, k: usize) -> Candidate {
+fn corner(system: &dyn TrackingLoop, level: f64, time: f64, k: usize) -> Candidate {
     let slab = Slab::new(system, level, Interval::point(time));
-    let gradient: Vec<_> = slab.gradients[k].iter().map(|g| Interval::point(g.midpoint())).collect();
+    let gradient: Vec<_> = slab.gradients.row(k).iter().map(|g| Interval::point(g.midpoint())).collect();
     let pull: Vec<f64> = slab.tube.pull(&gradient).iter().map(|x| x.midpoint()).collect();
     let length = gradient.iter().zip(&pull).map(|(g, x)| g.midpoint() * x).sum::<f64>().sqrt();
     let scale = if length > 0.0 { INSIDE * (2.0 * level).sqrt() / length } else { 0.0 };

@@ -1,24 +1,19 @@
-//! Symmetric matrices of intervals, of a size known when the program runs, and whether they are positive definite.
+//! Symmetric matrices, and whether all matrices inside one of intervals are positive definite.
 
 use flexure_core::scalar::{Interval, Scalar};
 
-/// A symmetric matrix of intervals: its lower triangle, row by row.
+/// A symmetric matrix, or the quadratic form that it makes: its lower triangle, row by row.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Symmetric {
+pub struct Symmetric<T> {
     size: usize,
-    lower: Vec<Interval>,
+    lower: Vec<T>,
 }
 
-impl Symmetric {
+impl<T: Copy> Symmetric<T> {
     /// The matrix whose entries on and below the diagonal are `entry(i, j)`, `j ≤ i`.
-    pub fn from_fn(size: usize, mut entry: impl FnMut(usize, usize) -> Interval) -> Self {
+    pub fn from_fn(size: usize, mut entry: impl FnMut(usize, usize) -> T) -> Self {
         let lower = (0..size).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|(i, j)| entry(i, j)).collect();
         Self { size, lower }
-    }
-
-    /// diag(`d`).
-    pub fn diagonal(d: &[Interval]) -> Self {
-        Self::from_fn(d.len(), |i, j| if i == j { d[i] } else { Interval::ZERO })
     }
 
     /// Number of rows.
@@ -27,24 +22,52 @@ impl Symmetric {
     }
 
     /// Entry (i, j), whichever triangle it is in.
-    pub fn at(&self, i: usize, j: usize) -> Interval {
+    pub fn at(&self, i: usize, j: usize) -> T {
         let (i, j) = if i < j { (j, i) } else { (i, j) };
         self.lower[i * (i + 1) / 2 + j]
     }
 
+    /// Every entry through `f`.
+    #[must_use]
+    pub fn map<U>(&self, f: impl FnMut(T) -> U) -> Symmetric<U> {
+        Symmetric { size: self.size, lower: self.lower.iter().copied().map(f).collect() }
+    }
+}
+
+impl<T: Scalar> Symmetric<T> {
+    /// diag(`d`).
+    pub fn diagonal(d: &[T]) -> Self {
+        Self::from_fn(d.len(), |i, j| if i == j { d[i] } else { T::ZERO })
+    }
+
     /// `self − other · scale`, entry by entry.
     #[must_use]
-    pub fn minus(&self, other: &Self, scale: Interval) -> Self {
+    pub fn minus(&self, other: &Self, scale: T) -> Self {
         let lower = self.lower.iter().zip(&other.lower).map(|(&a, &b)| a - b * scale).collect();
         Self { size: self.size, lower }
     }
 
+    /// xᵀ A x.
+    pub fn value(&self, x: &[T]) -> T {
+        let mut sum = T::ZERO;
+        for i in 0..self.size {
+            sum += self.at(i, i) * x[i].square();
+            for j in 0..i {
+                let product = self.at(i, j) * x[i] * x[j];
+                sum += product + product;
+            }
+        }
+        sum
+    }
+}
+
+impl Symmetric<Interval> {
     /// A lower bound of the smallest pivot of L D Lᵀ, without pivoting: the matrix is positive definite if it is
     /// positive, whichever reals of the intervals are its entries. Elimination ends at the first pivot that may not be
     /// positive.
     pub fn smallest_pivot(&self) -> f64 {
         let n = self.size;
-        let mut a: Vec<Interval> = self.lower.clone();
+        let mut a = self.lower.clone();
         let at = |i: usize, j: usize| i * (i + 1) / 2 + j;
         let mut smallest = f64::INFINITY;
         for k in 0..n {
@@ -72,7 +95,7 @@ impl Symmetric {
 mod tests {
     use super::{Interval, Symmetric};
 
-    fn second_difference(size: usize, shift: f64) -> Symmetric {
+    fn second_difference(size: usize, shift: f64) -> Symmetric<Interval> {
         Symmetric::from_fn(size, |i, j| {
             Interval::point(match i - j {
                 0 => 2.0 - shift,

@@ -1,0 +1,25 @@
+//! Linear algebra of sizes known at run time: one dense matrix, one symmetric matrix, one eigenvalue solver, one
+//! factorisation in floats and one elimination in intervals.
+//!
+//! | part | what for |
+//! | --- | --- |
+//! | [`Dense`] | any matrix: rows of numbers |
+//! | [`Symmetric`] | quadratic forms: the lower triangle, and in intervals whether every matrix inside is positive definite |
+//! | [`eigenvalues`], [`eigenvectors`] | Jacobi rotations, in place in the leading block of any storage |
+//! | [`cholesky`], [`lower_inverse`], [`direction_of_descent`], [`weakest`] | floats that suggest, and never prove |
+//!
+//! Kernels that a robot's controller runs have sizes known at compile time and are in
+//! [`flexure_core::linalg`]. `verify` has an elimination of its own: a checker shares nothing with what it checks but the
+//! number type.
+
+mod dense;
+mod eigen;
+mod factor;
+mod leading;
+mod symmetric;
+
+pub use dense::Dense;
+pub use eigen::{eigenvalues, eigenvectors};
+pub use factor::{cholesky, direction_of_descent, lower_inverse, weakest};
+pub use leading::Leading;
+pub use symmetric::Symmetric;
