@@ -90,7 +90,7 @@ impl<C: Float, const N: usize> Memory<C> for DisturbanceObserver<C, N> {
     fn memory(&mut self, port: &mut dyn Port<C>) {
         port.joints("link", "N m", &mut self.residual.link.0);
         port.joints("motor", "N m", &mut self.residual.motor.0);
-        port.optional("started", &mut self.last, Balance::ZERO, |last, port| last.memory(port));
+        port.optional("started", &mut self.last, Balance::ZERO, Balance::memory);
     }
 }
 

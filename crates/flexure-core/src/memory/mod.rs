@@ -99,7 +99,7 @@ impl<S> dyn Port<S> + '_ {
         name: &'static str,
         x: &mut Option<T>,
         absent: T,
-        walk: impl FnOnce(&mut T, &mut Self),
+        walk: impl FnOnce(&mut T, &mut dyn Port<S>),
     ) {
         let (mut there, mut value) = (x.is_some(), x.unwrap_or(absent));
         self.flag(name, &mut there);

@@ -145,11 +145,15 @@ struct Each<F> {
 
 impl<S, F: FnMut(Piece<'_, S>)> Port<S> for Each<F> {
     fn numbers(&mut self, _: &'static str, _: &'static str, x: &mut [S]) {
-        x.iter_mut().for_each(|x| (self.visit)(Piece::Number(x)));
+        for x in x {
+            (self.visit)(Piece::Number(x));
+        }
     }
 
     fn joints(&mut self, _: &'static str, _: &'static str, x: &mut [S]) {
-        x.iter_mut().take(self.joints).for_each(|x| (self.visit)(Piece::Number(x)));
+        for x in x.iter_mut().take(self.joints) {
+            (self.visit)(Piece::Number(x));
+        }
     }
 
     fn word(&mut self, _: &'static str, x: &mut u32) {
