@@ -169,7 +169,7 @@ impl<C: Scalar, const N: usize> Tree<C, N> {
         &'a self,
         poses: &'a [Pose<T>; N],
     ) -> impl DoubleEndedIterator<Item = (usize, (&'a Joint<C>, &'a Pose<T>))> {
-        self.joints.iter().zip(poses).take(self.count).enumerate()
+        (0..self.count).filter_map(|i| Some((i, (self.joints.get(i)?, poses.get(i)?))))
     }
 
     /// The same robot with constants of another type.
