@@ -1,5 +1,6 @@
 //! Progress on stderr, and only on a terminal.
 
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -27,14 +28,15 @@ impl Progress {
         Self { bar: bar.with_style(style).with_prefix(name.to_owned()), parts }
     }
 
-    /// The fraction of a part that is done; it only grows.
+    /// The fraction of a part that is done; it only grows. Nothing is broken off.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to [0, 1]")]
-    pub fn set(&self, part: usize, fraction: f64) {
+    pub fn set(&self, part: usize, fraction: f64) -> ControlFlow<()> {
         let now = (fraction.clamp(0.0, 1.0) * RESOLUTION as f64) as u64;
         let before = self.parts[part].swap(now, Ordering::Relaxed);
         if now > before {
             self.bar.inc(now - before);
         }
+        ControlFlow::Continue(())
     }
 }
 

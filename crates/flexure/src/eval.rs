@@ -1,16 +1,12 @@
 //! The law and the model at given states.
 
-use flexure_core::linalg::{Matrix, Vector};
-use flexure_core::model::{Fjr, LinkMatrices, Links, Motion};
-use flexure_core::reference::Reference;
 use flexure_core::scalar::Jet;
 use serde::Serialize;
 
 use crate::files::{Problem, Problems, StateFile, StateRow};
-use crate::laws::{self, AnyLaw, any_law};
-use crate::references::AnyReference;
-use crate::robot::{Robot, RobotVisitor, vector, with_robot};
+use crate::robot::{Arm, Mismatch, PortHamiltonian, Robot};
 use crate::scenario::Scenario;
+use crate::simulate::{Commanded, Errors, Loop};
 
 /// The law at one state: a line of `flexure eval`. What is none is known of v-CBC only.
 #[expect(non_snake_case, reason = "keys of the contract")]
@@ -76,9 +72,50 @@ pub struct ModelRow {
 /// Evaluates the law of `scenario` at `states`.
 ///
 /// # Errors
-/// If the robot has too many joints, the reference is no path, or a number is not finite at one of the states.
+/// If the loop cannot be [opened](Scenario::open), or a number is not finite at one of the states.
 pub fn evaluate_law(scenario: &Scenario, states: &StateFile) -> Result<Vec<LawRow>, Problems> {
-    with_robot(&scenario.robot, EvaluateLaw { scenario, states })?
+    let held = scenario.open()?;
+    let row = |state: &StateRow| -> Result<LawRow, Problem> {
+        let row = law_row(&*held, state);
+        let given = |values: &Option<Vec<f64>>| values.clone().unwrap_or_default();
+        let numbers: [(_, &[f64]); 8] = [
+            ("u_m", &row.u_m),
+            ("u_l", &given(&row.u_l)),
+            ("q_md", &given(&row.q_md)),
+            ("e_l", &row.e_l),
+            ("e_m", &given(&row.e_m)),
+            ("sigma_l", &given(&row.sigma_l)),
+            ("sigma_m", &given(&row.sigma_m)),
+            ("H", &[row.H]),
+        ];
+        finite(states, state, numbers)?;
+        Ok(row)
+    };
+    Ok(states.rows.iter().map(row).collect::<Result<_, Problem>>()?)
+}
+
+/// The law at a state; what only v-CBC computes on the way is left out for other laws.
+fn law_row(held: &dyn Loop, state: &StateRow) -> LawRow {
+    let Commanded { u_m, e_l, energy, errors } = held.command(state.t, &motion(state)).expect(CHECKED);
+    let mut row = LawRow {
+        t: state.t,
+        u_m,
+        u_l: None,
+        q_md: None,
+        e_l,
+        e_m: None,
+        sigma_l: None,
+        sigma_m: None,
+        H: energy,
+    };
+    if let Some(Errors { u_l, q_md, e_m, sigma_l, sigma_m, .. }) = errors {
+        row.u_l = Some(u_l);
+        row.q_md = Some(q_md);
+        row.e_m = Some(e_m);
+        row.sigma_l = Some(sigma_l);
+        row.sigma_m = Some(sigma_m);
+    }
+    row
 }
 
 /// Evaluates the model of `robot` at `states`.
@@ -86,141 +123,79 @@ pub fn evaluate_law(scenario: &Scenario, states: &StateFile) -> Result<Vec<LawRo
 /// # Errors
 /// If the robot has too many joints, or a number is not finite at one of the states.
 pub fn evaluate_model(robot: &Robot, states: &StateFile) -> Result<Vec<ModelRow>, Problems> {
-    Ok(with_robot(robot, EvaluateModel { states })??)
-}
-
-struct EvaluateLaw<'a> {
-    scenario: &'a Scenario,
-    states: &'a StateFile,
-}
-
-impl RobotVisitor for EvaluateLaw<'_> {
-    type Output = Result<Vec<LawRow>, Problems>;
-
-    fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) -> Self::Output {
-        let law: AnyLaw<f64, N> = any_law(&self.scenario.controller, |x| x);
-        let reference = AnyReference::new(self.scenario)?;
-        let row = |state: &StateRow| -> Result<LawRow, Problem> {
-            let x = motion(state);
-            let row = law_row(&law, &robot, state.t, &x, &reference.at(state.t));
-            let given = |values: &Option<Vec<f64>>| values.clone().unwrap_or_default();
-            let numbers: [(_, &[f64]); 8] = [
-                ("u_m", &row.u_m),
-                ("u_l", &given(&row.u_l)),
-                ("q_md", &given(&row.q_md)),
-                ("e_l", &row.e_l),
-                ("e_m", &given(&row.e_m)),
-                ("sigma_l", &given(&row.sigma_l)),
-                ("sigma_m", &given(&row.sigma_m)),
-                ("H", &[row.H]),
-            ];
-            finite(self.states, state, numbers)?;
-            Ok(row)
-        };
-        Ok(self.states.rows.iter().map(row).collect::<Result<_, Problem>>()?)
-    }
-}
-
-/// The law at the motion `x`; what only v-CBC computes on the way is left out for other laws.
-fn law_row<L: Links<f64, N>, const N: usize>(
-    law: &AnyLaw<f64, N>,
-    robot: &Fjr<f64, L, N>,
-    t: f64,
-    x: &Motion<f64, N>,
-    q_ld: &Vector<Jet<f64, 5>, N>,
-) -> LawRow {
-    let mut row = LawRow {
-        t,
-        u_m: Vec::new(),
-        u_l: None,
-        q_md: None,
-        e_l: list(&(x.q_l - q_ld.map(|jet| jet.coefficient(0)))),
-        e_m: None,
-        sigma_l: None,
-        sigma_m: None,
-        H: robot.total_energy(x),
+    let arm = robot.arm()?;
+    let row = |state: &StateRow| -> Result<ModelRow, Problem> {
+        let row = model_row(&*arm, state).expect(CHECKED);
+        let numbers: [(_, &[f64]); 11] = [
+            ("M_l", &row.M_l.concat()),
+            ("E_l", &row.E_l.concat()),
+            ("S_l", &row.S_l.concat()),
+            ("dM_l", &row.dM_l.concat()),
+            ("bias", &row.bias),
+            ("H", &[row.H]),
+            ("ddq_l", &row.ddq_l),
+            ("dx", row.dx.as_deref().unwrap_or_default()),
+            ("tau_l", row.tau_l.as_deref().unwrap_or_default()),
+            ("dtau_l", row.dtau_l.as_deref().unwrap_or_default()),
+            ("ddtau_l", row.ddtau_l.as_deref().unwrap_or_default()),
+        ];
+        finite(states, state, numbers)?;
+        Ok(row)
     };
-    if let AnyLaw::Vcbc(law) = law {
-        let command = laws::command(law, robot, x, q_ld);
-        let sigma = robot.state(&Motion { v_l: command.s_l, v_m: command.s_m, ..*x });
-        row.u_m = list(&command.u_m);
-        row.u_l = Some(list(&command.u_l));
-        row.q_md = Some(list(&command.q_md));
-        row.e_m = Some(list(&command.e_m));
-        row.sigma_l = Some(list(&sigma.p_l));
-        row.sigma_m = Some(list(&sigma.p_m));
-    } else {
-        row.u_m = list(&laws::torque(law, robot, x, q_ld));
-    }
-    row
+    Ok(states.rows.iter().map(row).collect::<Result<_, Problem>>()?)
 }
 
-struct EvaluateModel<'a> {
-    states: &'a StateFile,
-}
-
-impl RobotVisitor for EvaluateModel<'_> {
-    type Output = Result<Vec<ModelRow>, Problem>;
-
-    fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) -> Self::Output {
-        let row = |state: &StateRow| -> Result<ModelRow, Problem> {
-            let row = model_row(&robot, state);
-            let numbers: [(_, &[f64]); 11] = [
-                ("M_l", &row.M_l.concat()),
-                ("E_l", &row.E_l.concat()),
-                ("S_l", &row.S_l.concat()),
-                ("dM_l", &row.dM_l.concat()),
-                ("bias", &row.bias),
-                ("H", &[row.H]),
-                ("ddq_l", &row.ddq_l),
-                ("dx", row.dx.as_deref().unwrap_or_default()),
-                ("tau_l", row.tau_l.as_deref().unwrap_or_default()),
-                ("dtau_l", row.dtau_l.as_deref().unwrap_or_default()),
-                ("ddtau_l", row.ddtau_l.as_deref().unwrap_or_default()),
-            ];
-            finite(self.states, state, numbers)?;
-            Ok(row)
-        };
-        self.states.rows.iter().map(row).collect()
-    }
-}
-
-fn model_row<L: Links<f64, N>, const N: usize>(robot: &Fjr<f64, L, N>, state: &StateRow) -> ModelRow {
-    let x = motion(state);
-    let matrices = LinkMatrices::new(&robot.links, &x.q_l, &x.v_l);
-    let dx = state.u_m.as_deref().map(|u_m| {
-        let dx = robot.workless_dynamics(&robot.state(&x), &vector(u_m));
-        [dx.q_l, dx.q_m, dx.p_l, dx.p_m].iter().flat_map(list).collect()
+fn model_row(arm: &dyn Arm, state: &StateRow) -> Result<ModelRow, Mismatch> {
+    let (n, x, zero) = (arm.joints(), motion(state), vec![0.0; arm.joints()]);
+    let [mut mass, mut skew, mut workless, mut mass_rate] = [(); 4].map(|()| vec![0.0; n * n]);
+    arm.mass_matrix(&state.q_l, &mut mass)?;
+    let matrices = PortHamiltonian { skew: &mut skew, workless: &mut workless, mass_rate: &mut mass_rate };
+    arm.matrices(&state.q_l, &state.dq_l, matrices)?;
+    let mut bias = zero.clone();
+    arm.inverse_dynamics(&state.q_l, &state.dq_l, &zero, &mut bias)?;
+    let mut acceleration = vec![0.0; 2 * n];
+    arm.forward_dynamics(&x, state.u_m.as_deref().unwrap_or(&zero), &mut acceleration)?;
+    acceleration.truncate(n);
+    let dx = state.u_m.as_ref().map(|u_m| {
+        let mut rates = vec![0.0; 4 * n];
+        arm.hamiltonian_rates(&x, u_m, &mut rates).map(|()| rates)
     });
-    let [tau_l, dtau_l, ddtau_l] = torques(&robot.links, &x, state);
-    ModelRow {
-        M_l: rows(&matrices.mass),
-        E_l: rows(&matrices.workless()),
-        S_l: rows(&matrices.skew),
-        dM_l: rows(&matrices.mass_rate),
-        bias: list(&robot.links.inverse_dynamics(&x.q_l, &x.v_l, &x.v_l, &Vector::ZERO)),
-        H: robot.total_energy(&x),
-        ddq_l: list(&robot.link_acceleration(&x)),
-        dx,
+    let [tau_l, dtau_l, ddtau_l] = torques(arm, state)?;
+    let rows = |matrix: &[f64]| matrix.chunks(n).map(<[f64]>::to_vec).collect();
+    Ok(ModelRow {
+        M_l: rows(&mass),
+        E_l: rows(&workless),
+        S_l: rows(&skew),
+        dM_l: rows(&mass_rate),
+        bias,
+        H: arm.energy(&x)?,
+        ddq_l: acceleration,
+        dx: dx.transpose()?,
         tau_l,
         dtau_l,
         ddtau_l,
-    }
+    })
 }
 
 /// The torque on the links and its first two rates, each if the derivatives it depends on are given. Of those that are
 /// not, none is in the torque that is asked for: zero does.
-fn torques<L: Links<f64, N>, const N: usize>(
-    links: &L,
-    x: &Motion<f64, N>,
-    state: &StateRow,
-) -> [Option<Vec<f64>>; 3] {
+fn torques(arm: &dyn Arm, state: &StateRow) -> Result<[Option<Vec<f64>>; 3], Mismatch> {
     let given = [&state.ddq_l, &state.d3q_l, &state.d4q_l];
-    let [a, jerk, snap] = given.map(|x| x.as_deref().map_or(Vector::ZERO, vector));
-    let torque = links.torque_along::<_, 3, 5>(&Vector::from_derivatives(&[x.q_l, x.v_l, a, jerk, snap]));
-    let rates = torque.derivatives();
-    std::array::from_fn(|k| given[k].as_ref().map(|_| list(&rates[k])))
+    let at = |values: &Option<Vec<f64>>, i: usize| values.as_ref().map_or(0.0, |values| values[i]);
+    let series = |i: usize| {
+        let [a, jerk, snap] = given.map(|values| at(values, i));
+        let jet = Jet::<f64, 5>::from_derivatives([state.q_l[i], state.dq_l[i], a, jerk, snap]);
+        std::array::from_fn(|k| jet.coefficient(k))
+    };
+    let q_l: Vec<[f64; 5]> = (0..arm.joints()).map(series).collect();
+    let mut torque = vec![[0.0; 3]; arm.joints()];
+    arm.torque_along(&q_l, &mut torque)?;
+    let rate = |k: usize| torque.iter().map(|series| Jet::new(*series).derivative(k)).collect();
+    Ok(std::array::from_fn(|k| given[k].as_ref().map(|_| rate(k))))
 }
+
+/// Why slices fit.
+const CHECKED: &str = "the reader has checked the lengths of the states";
 
 /// A problem if some of the numbers computed at `state` are not finite: JSON has no word for them.
 fn finite<const K: usize>(
@@ -239,19 +214,7 @@ fn finite<const K: usize>(
     }
 }
 
-fn motion<const N: usize>(state: &StateRow) -> Motion<f64, N> {
-    Motion {
-        q_l: vector(&state.q_l),
-        q_m: vector(&state.q_m),
-        v_l: vector(&state.dq_l),
-        v_m: vector(&state.dq_m),
-    }
-}
-
-fn list<const N: usize>(v: &Vector<f64, N>) -> Vec<f64> {
-    v.0.to_vec()
-}
-
-fn rows<const N: usize>(m: &Matrix<f64, N, N>) -> Vec<Vec<f64>> {
-    m.0.iter().map(|row| row.to_vec()).collect()
+/// (q_l, q_m, q̇_l, q̇_m).
+fn motion(state: &StateRow) -> Vec<f64> {
+    [&state.q_l, &state.q_m, &state.dq_l, &state.dq_m].into_iter().flatten().copied().collect()
 }

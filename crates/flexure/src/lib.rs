@@ -12,6 +12,7 @@ pub mod laws;
 pub mod linalg;
 pub mod margins;
 pub mod plant;
+pub mod progress;
 pub mod prove;
 pub mod references;
 pub mod report;

@@ -29,7 +29,9 @@ pub fn compare(options: &Compare, json: bool) -> Result<(), Failure> {
     prepare(out)?;
     let leaderboard = {
         let progress = Progress::new("comparing", tasks.len() * entrants.len());
-        compared(&tasks, &entrants, options.budget, options.seed, &|pair| progress.set(pair, 1.0))?
+        compared(&tasks, &entrants, options.budget, options.seed, &|pair, fraction| {
+            progress.set(pair, fraction)
+        })?
     };
     let files = write_leaderboard(out, &leaderboard, &tasks)?;
     if json {

@@ -3,6 +3,7 @@
 use flexure::compare::{Entrant, check_budget, entrants};
 use flexure::files::Problems;
 use flexure::margins::{Margins as Found, margins as measured};
+use flexure::progress::unwatched;
 use flexure::report::margins_table;
 use flexure::scenario::{Scenario, load_scenario};
 use flexure::tune::tune;
@@ -24,9 +25,9 @@ pub fn margins(options: &Margins, json: bool) -> Result<(), Failure> {
     let scenario = load_scenario(&options.scenario)?;
     say(&scenario.warnings);
     let loops = if chosen.is_empty() {
-        vec![measured(&scenario)?]
+        vec![measured(&scenario, &unwatched)?]
     } else {
-        let tuned = |entrant: &Entrant| measured(&tuned(&scenario, *entrant, options)?);
+        let tuned = |entrant: &Entrant| measured(&tuned(&scenario, *entrant, options)?, &unwatched);
         chosen.iter().map(tuned).collect::<Result<_, Problems>>()?
     };
     if json {
@@ -53,6 +54,6 @@ pub fn margins(options: &Margins, json: bool) -> Result<(), Failure> {
 fn tuned(scenario: &Scenario, entrant: Entrant, options: &Margins) -> Result<Scenario, Problems> {
     let mut scenario = scenario.clone();
     scenario.controller = entrant.controller(&scenario.robot)?;
-    scenario.controller = tune(&scenario, options.budget, options.seed)?.controller;
+    scenario.controller = tune(&scenario, options.budget, options.seed, &unwatched)?.controller;
     Ok(scenario)
 }

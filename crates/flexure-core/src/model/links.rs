@@ -13,6 +13,13 @@ pub trait Links<C: Scalar, const N: usize> {
     where
         Self: 'a;
 
+    /// Joints that are the robot's own, at most `N`: the first ones. The others only fill a capacity
+    /// ([`Tree`](crate::robots::Tree)).
+    #[inline]
+    fn joints(&self) -> usize {
+        N
+    }
+
     /// Mass matrix M_l(q) [kg m²], symmetric positive definite.
     fn mass_matrix<T: Over<C>>(&self, q: &Vector<T, N>) -> Matrix<T, N, N>;
 

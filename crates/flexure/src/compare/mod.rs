@@ -11,9 +11,12 @@ mod ranking;
 mod score;
 mod task;
 
+use std::ops::ControlFlow;
+
 use rayon::prelude::*;
 
 use crate::files::{Problem, Problems};
+use crate::progress::{PartProgress, Progress};
 use crate::simulate::measure;
 use crate::tune::tune;
 
@@ -26,8 +29,7 @@ pub use task::{Task, tasks};
 /// Runs that each law may simulate on each task.
 pub const BUDGET: usize = 40;
 
-/// Compares laws on tasks, on all cores. `progress` is told when a pair of task and law is done, by its number, task by
-/// task.
+/// Compares laws on tasks, on all cores. `progress` is told how far each pair of task and law is, by its number, task by task.
 ///
 /// # Errors
 /// If a task can be run with no law at all. A law that cannot run a task that others can is in the leaderboard, with why.
@@ -36,7 +38,7 @@ pub fn compare(
     entrants: &[Entrant],
     budget: usize,
     seed: u64,
-    progress: &(dyn Fn(usize) + Sync),
+    progress: PartProgress<'_>,
 ) -> Result<Leaderboard, Problems> {
     let pairs: Vec<(&Task, &Entrant)> =
         tasks.iter().flat_map(|task| entrants.iter().map(move |entrant| (task, entrant))).collect();
@@ -44,11 +46,16 @@ pub fn compare(
         .par_iter()
         .enumerate()
         .map(|(number, (task, entrant))| {
-            let score = score(task, **entrant, budget, seed);
-            progress(number);
-            score
+            let score = score(task, **entrant, budget, seed, &|fraction| progress(number, fraction));
+            match progress(number, 1.0) {
+                ControlFlow::Continue(()) => score,
+                ControlFlow::Break(()) => Err(Problems::interrupted()),
+            }
         })
         .collect();
+    if let Some(Err(broken_off)) = tried.iter().find(|score| is_interrupted(score)) {
+        return Err(broken_off.clone());
+    }
     let mut tried = tried.into_iter();
     let scored: Result<Vec<TaskScores>, Problems> = tasks
         .iter()
@@ -60,11 +67,21 @@ pub fn compare(
     Ok(Leaderboard::new(budget, seed, scored?))
 }
 
+fn is_interrupted(score: &Result<Score, Problems>) -> bool {
+    score.as_ref().is_err_and(Problems::is_interrupted)
+}
+
 /// A law on a task, with the gains that the search finds.
-fn score(task: &Task, entrant: Entrant, budget: usize, seed: u64) -> Result<Score, Problems> {
+fn score(
+    task: &Task,
+    entrant: Entrant,
+    budget: usize,
+    seed: u64,
+    progress: Progress<'_>,
+) -> Result<Score, Problems> {
     let mut scenario = task.scenario.clone();
     scenario.controller = entrant.controller(&scenario.robot)?;
-    let tuned = tune(&scenario, budget, seed)?;
+    let tuned = tune(&scenario, budget, seed, progress)?;
     scenario.controller = tuned.controller.clone();
     let run = measure(&scenario)?;
     Ok(Score::new(&entrant.name(), &tuned, &run))

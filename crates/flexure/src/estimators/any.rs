@@ -2,6 +2,7 @@
 
 use flexure_core::estimate::{Estimator, FilteredDifference, LowPass, MotorObserver, Observer};
 use flexure_core::linalg::Vector;
+use flexure_core::memory::{Memory, Port};
 use flexure_core::model::{Fjr, Links, Motion};
 
 use crate::estimators::{self, Encoders};
@@ -60,6 +61,16 @@ pub fn estimator<const N: usize>(
         VelocityFilter::Second { cutoff, damping } => LowPass::second_order(cutoff, damping, period),
     };
     Some(AnyEstimator::FilteredDifference(FilteredDifference::new(filter.expect(CHECKED))))
+}
+
+impl<const N: usize> Memory<f64> for AnyEstimator<N> {
+    fn memory(&mut self, port: &mut dyn Port<f64>) {
+        match self {
+            Self::FilteredDifference(estimator) => estimator.memory(port),
+            Self::Observer(estimator) => estimator.memory(port),
+            Self::MotorObserver(estimator) => estimator.memory(port),
+        }
+    }
 }
 
 impl<const N: usize> Estimator<f64, N> for AnyEstimator<N> {

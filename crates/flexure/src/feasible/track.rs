@@ -1,14 +1,12 @@
 //! What a robot must do to follow a reference.
 
-use flexure_core::linalg::Vector;
-use flexure_core::model::{Fjr, Links};
 use flexure_core::reference::Reference as _;
-use flexure_core::scalar::Jet;
 
 use crate::feasible::bounds::{Bound, LimitKind};
 use crate::files::Problems;
 use crate::references::AnyReference;
-use crate::robot::{RobotVisitor, with_robot};
+use crate::robot::Arm;
+use crate::robot::sized::sized;
 use crate::scenario::Scenario;
 
 /// A robot and a reference, whatever their types.
@@ -45,47 +43,40 @@ impl Demand {
 
 /// Hands robot and reference of `scenario` to `then`.
 pub fn with_track<R>(scenario: &Scenario, then: impl Fn(&dyn Track) -> R) -> Result<R, Problems> {
-    with_robot(&scenario.robot, Visitor { scenario, then: &then })?
+    let arm = scenario.robot.arm()?;
+    Ok(sized!(&scenario.robot, L, N => {
+        then(&Pair { arm, reference: AnyReference::<f64, N>::at_speed(scenario, 1.0)? })
+    }))
 }
 
-struct Visitor<'a, R> {
-    scenario: &'a Scenario,
-    then: &'a dyn Fn(&dyn Track) -> R,
-}
-
-impl<R> RobotVisitor for Visitor<'_, R> {
-    type Output = Result<R, Problems>;
-
-    fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) -> Self::Output {
-        let reference = AnyReference::<f64, N>::at_speed(self.scenario, 1.0)?;
-        Ok((self.then)(&Pair { robot, reference }))
-    }
-}
-
-struct Pair<L, const N: usize> {
-    robot: Fjr<f64, L, N>,
+struct Pair<const N: usize> {
+    arm: Box<dyn Arm>,
     reference: AnyReference<f64, N>,
 }
 
-impl<L: Links<f64, N>, const N: usize> Track for Pair<L, N> {
+impl<const N: usize> Track for Pair<N> {
     fn at_speed(&self, speed: f64) -> Box<Demands<'_>> {
         let reference = self.reference.paced(speed);
-        Box::new(move |t| demand(&self.robot, &reference.at(t)))
+        let n = self.arm.joints();
+        Box::new(move |t| {
+            let q_l = reference.at::<6>(t);
+            let series: Vec<[f64; 6]> =
+                q_l.iter().take(n).map(|q| std::array::from_fn(|k| q.coefficient(k))).collect();
+            demand(&*self.arm, &series)
+        })
     }
 }
 
 /// By exact inverse dynamics.
-#[inline(never)]
-fn demand<L: Links<f64, N>, const N: usize>(robot: &Fjr<f64, L, N>, q_ld: &Vector<Jet<f64, 6>, N>) -> Demand {
-    let forward = robot.inverse_dynamics::<_, 2, 4, 6>(q_ld);
-    let order = |k: usize, x: &Vector<Jet<f64, 2>, N>| x.iter().map(|x| x.derivative(k)).collect();
-    let q_l = q_ld.map(|x| x.truncate());
-    let deflection = forward.q_m.map(|x| x.truncate()) - q_l;
+fn demand(arm: &dyn Arm, q_l: &[[f64; 6]]) -> Demand {
+    let (mut q_m, mut u_m) = (vec![[0.0; 4]; q_l.len()], vec![[0.0; 2]; q_l.len()]);
+    arm.feed_forward(q_l, &mut q_m, &mut u_m).expect("a series a joint");
+    let of = |k: usize| q_l.iter().map(|q| q[k]).collect();
     Demand {
-        torque: order(0, &forward.u_m),
-        torque_rate: order(1, &forward.u_m),
-        velocity: order(1, &q_l),
-        deflection: order(0, &deflection),
-        position: order(0, &q_l),
+        torque: u_m.iter().map(|u| u[0]).collect(),
+        torque_rate: u_m.iter().map(|u| u[1]).collect(),
+        velocity: of(1),
+        deflection: q_m.iter().zip(q_l).map(|(q_m, q_l)| q_m[0] - q_l[0]).collect(),
+        position: of(0),
     }
 }

@@ -105,6 +105,21 @@ impl Problems {
     }
 }
 
+/// The code of the problem of a job that was broken off.
+const INTERRUPTED: &str = "interrupted";
+
+impl Problems {
+    /// That a long job was broken off by whoever watched it.
+    pub fn interrupted() -> Self {
+        Problem::new(INTERRUPTED, "broken off before the end", "what was finished until then is lost").into()
+    }
+
+    /// Whether this says that a job was [broken off](Self::interrupted).
+    pub fn is_interrupted(&self) -> bool {
+        self.first.code == INTERRUPTED
+    }
+}
+
 impl From<Problem> for Problems {
     fn from(first: Problem) -> Self {
         Self { first: Box::new(first), rest: Vec::new() }

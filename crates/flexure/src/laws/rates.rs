@@ -35,6 +35,7 @@ impl BlockRates {
         Pl: Shaping<f64, N>,
         Pm: Shaping<f64, N>,
     {
+        let n = robot.links.joints();
         // ė_l = −φ_l + M_l⁻¹ σ_l carries Π_l along.
         let e_rate = command.s_l - law.link.shaping.eval(&command.e_l);
         let moving: Vector<Dual<f64, 1>, N> =
@@ -44,10 +45,10 @@ impl BlockRates {
         let damping_l = robot.link_damping + law.link.damping;
         let damping_m = robot.motor_damping + law.motor.damping;
         Self {
-            phi_l: shaping_rate(&law.link.shaping, &command.e_l, &Pi_l.map(|x| x.value), &Pi_l_rate),
-            phi_m: shaping_rate(&law.motor.shaping, &command.e_m, &law.motor.metric, &Vector::ZERO),
-            sigma_l: 1.0 / relative(&robot.links.mass_matrix(q_l), &damping_l).1,
-            sigma_m: (0..N).fold(f64::INFINITY, |m, i| m.min(damping_m[i] / robot.motor_inertia[i])),
+            phi_l: shaping_rate(&law.link.shaping, &command.e_l, &Pi_l.map(|x| x.value), &Pi_l_rate, n),
+            phi_m: shaping_rate(&law.motor.shaping, &command.e_m, &law.motor.metric, &Vector::ZERO, n),
+            sigma_l: 1.0 / relative(&robot.links.mass_matrix(q_l), &damping_l, n).1,
+            sigma_m: (0..n).fold(f64::INFINITY, |m, i| m.min(damping_m[i] / robot.motor_inertia[i])),
         }
     }
 
@@ -57,26 +58,28 @@ impl BlockRates {
     }
 }
 
-/// λ_min of sym(Π ∂φ) − ½ Π̇ relative to Π, at the error `e`.
+/// λ_min of sym(Π ∂φ) − ½ Π̇ relative to Π, at the error `e` of the first `n` joints.
 fn shaping_rate<const N: usize>(
     phi: &impl Shaping<f64, N>,
     e: &Vector<f64, N>,
     metric: &Vector<f64, N>,
     metric_rate: &Vector<f64, N>,
+    n: usize,
 ) -> f64 {
     let slope = phi.slope(e);
     let symmetric = Matrix::from_fn(|i, j| {
         let own = if i == j { metric_rate[i] } else { 0.0 };
         0.5 * (metric[i] * slope[(i, j)] + metric[j] * slope[(j, i)] - own)
     });
-    relative(&symmetric, metric).0
+    relative(&symmetric, metric, n).0
 }
 
-/// Smallest and largest eigenvalue of the symmetric `a` relative to the positive diagonal `weight`.
-fn relative<const N: usize>(a: &Matrix<f64, N, N>, weight: &Vector<f64, N>) -> (f64, f64) {
+/// Smallest and largest eigenvalue of the leading `n` × `n` block of the symmetric `a` relative to the positive diagonal
+/// `weight`.
+fn relative<const N: usize>(a: &Matrix<f64, N, N>, weight: &Vector<f64, N>, n: usize) -> (f64, f64) {
     let root = weight.map(f64::sqrt);
     let mut scaled: Matrix<f64, N, N> = Matrix::from_fn(|i, j| a[(i, j)] / (root[i] * root[j]));
-    eigenvalues(Leading::of(&mut scaled.0, N))
+    eigenvalues(Leading::of(&mut scaled.0, n))
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
 }
 
@@ -86,7 +89,7 @@ mod tests {
 
     #[test]
     fn weights_scale_eigenvalues() {
-        let (low, high) = relative(&Matrix([[4.0, 0.0], [0.0, 9.0]]), &Vector([2.0, 3.0]));
+        let (low, high) = relative(&Matrix([[4.0, 0.0], [0.0, 9.0]]), &Vector([2.0, 3.0]), 2);
         assert!((low - 2.0).abs() < 1e-15 && (high - 3.0).abs() < 1e-15);
     }
 }

@@ -2,12 +2,9 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use flexure_core::linalg::Vector;
-use flexure_core::model::{Fjr, Links, MassFactor};
-
 use crate::files::{Problem, Problems};
 use crate::laws::{BASELINES, Baseline, Controller, Drive, Phi, SideGains, VcbcGains};
-use crate::robot::{Robot, RobotVisitor, with_robot};
+use crate::robot::Robot;
 
 impl Controller {
     /// The law of this kind with gains made from stiffness, motor inertia and link inertia of each joint: where tuning
@@ -18,7 +15,7 @@ impl Controller {
     /// # Errors
     /// For an unknown kind, and if the robot has more joints than this program was built for.
     pub fn default_for(kind: &str, robot: &Robot) -> Result<Self, Problems> {
-        let drives = with_robot(robot, Drives)?;
+        let drives = drives(robot)?;
         let of = |start: &dyn Fn(&Drive) -> f64| drives.iter().map(start).collect::<Vec<_>>();
         if kind == "vcbc" {
             let side = |inertia: fn(&Drive) -> f64, metric: &dyn Fn(&Drive) -> f64| SideGains {
@@ -45,26 +42,30 @@ impl Controller {
 }
 
 /// What each joint has to move.
-struct Drives;
-
-impl RobotVisitor for Drives {
-    type Output = Vec<Drive>;
-
-    fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) -> Vec<Drive> {
-        let mass = robot.links.mass_matrix::<f64>(&Vector::ZERO);
-        let turned = |joint: usize| Vector::from_fn(|i| if i == joint { FRAC_PI_2 } else { 0.0 });
-        let postures: Vec<Vector<f64, N>> = (0..N).map(turned).chain([Vector::ZERO]).collect();
-        let free_inertia = |i: usize| {
-            let push = Vector::from_fn(|j| if i == j { 1.0 } else { 0.0 });
-            let at = |q| 1.0 / robot.links.factor::<f64>(q).solve(&push)[i];
-            postures.iter().map(at).fold(f64::INFINITY, f64::min)
+fn drives(robot: &Robot) -> Result<Vec<Drive>, Problems> {
+    const SIZES: &str = "slices of n joints";
+    let (n, arm) = (robot.joint_count(), robot.arm()?);
+    let mut mass = vec![0.0; n * n];
+    arm.mass_matrix(&vec![0.0; n], &mut mass).expect(SIZES);
+    let only = |joint: usize, value: f64| {
+        let mut q = vec![0.0; n];
+        q[joint] = value;
+        q
+    };
+    let postures: Vec<_> = (0..n).map(|joint| only(joint, FRAC_PI_2)).chain([vec![0.0; n]]).collect();
+    let free_inertia = |i: usize| {
+        let at = |q: &Vec<f64>| {
+            let mut acceleration = vec![0.0; n];
+            arm.solve_mass(q, &only(i, 1.0), &mut acceleration).expect(SIZES);
+            1.0 / acceleration[i]
         };
-        let drive = |i: usize| Drive {
-            stiffness: robot.stiffness[i],
-            motor_inertia: robot.motor_inertia[i],
-            link_inertia: mass[(i, i)],
-            free_inertia: free_inertia(i),
-        };
-        (0..N).map(drive).collect()
-    }
+        postures.iter().map(at).fold(f64::INFINITY, f64::min)
+    };
+    let drive = |i: usize| Drive {
+        stiffness: robot.stiffness[i],
+        motor_inertia: robot.motor_inertia[i],
+        link_inertia: mass[i * (n + 1)],
+        free_inertia: free_inertia(i),
+    };
+    Ok((0..n).map(drive).collect())
 }

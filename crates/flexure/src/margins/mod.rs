@@ -3,11 +3,14 @@
 mod change;
 mod edge;
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::feasible;
 use crate::files::{Problem, Problems};
+use crate::progress::{Progress, tell};
 use crate::scenario::{Hold, Scenario};
 use crate::simulate::{Run, measure};
 
@@ -59,6 +62,9 @@ const BY: f64 = 0.01;
 /// what encoders show.
 const LITTLE: f64 = 0.1;
 
+/// Runs that margins take about.
+const USUAL: f64 = 60.0;
+
 /// What is changed, and how far.
 type Search = (fn(f64) -> Change, edge::Way);
 
@@ -73,7 +79,7 @@ const LOST: f64 = 0.1;
 ///
 /// # Panics
 /// Never: there are as many edges as searches.
-pub fn margins(scenario: &Scenario) -> Result<Margins, Problems> {
+pub fn margins(scenario: &Scenario, progress: Progress<'_>) -> Result<Margins, Problems> {
     if scenario.hold == Hold::Continuous {
         let message = "hold is \"continuous\": margins are of loops with control periods";
         let help = "remove hold: the torque is then held between control instants";
@@ -85,7 +91,13 @@ pub fn margins(scenario: &Scenario) -> Result<Margins, Problems> {
     let followed = rms.filter(|&rms| rms <= LOST);
     let allowed = followed.map_or(BY, |rms| (TIMES * rms).max(rms + BY).min(2.0 * LOST));
     let holds = |run: &Run| run.divergence.is_none() && run.summary.rms_e_l <= allowed;
-    let try_change = |change: Change| Ok(holds(&measure(&change.of(&scenario))?));
+    let tried = AtomicUsize::new(0);
+    let try_change = |change: Change| {
+        let done = tried.fetch_add(1, Ordering::Relaxed) as f64;
+        // How many there will be is not known: the fraction grows ever slower.
+        tell(progress, done / (done + USUAL))?;
+        Ok(holds(&measure(&change.of(&scenario))?))
+    };
     let period = scenario.control_period;
     let searches: [Search; 6] = [
         (Change::Delay, edge::Way::outward(0.0, 0.125 * period, scenario.duration / 4.0)),

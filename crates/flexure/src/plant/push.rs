@@ -32,6 +32,17 @@ impl<const N: usize> Push<N> {
         self.from + self.duration
     }
 
+    /// Its torque at the time `t` in s [N m].
+    pub fn at(&self, t: f64) -> Vector<f64, N> {
+        let since = t - self.from;
+        let part = match self.shape {
+            _ if !(0.0..self.duration).contains(&since) => 0.0,
+            Shape::Rectangle => 1.0,
+            Shape::HalfSine => (PI * since / self.duration).sin(),
+        };
+        self.torque.scaled(part)
+    }
+
     /// Its mean torque over `[t, t + interval]` in s [N m], exactly: the impulse is that of the push however time is divided.
     pub fn mean(&self, t: f64, interval: f64) -> Vector<f64, N> {
         let begin = (t - self.from).clamp(0.0, self.duration);

@@ -6,7 +6,6 @@
 
 mod exceeding;
 
-use flexure_core::model::{Fjr, Links};
 use flexure_core::scalar::{Interval, Scalar};
 use serde::Serialize;
 
@@ -20,7 +19,7 @@ use crate::prove::engine::envelope::{AlongRequest, Course, course};
 use crate::prove::engine::number::Number;
 use crate::prove::engine::verdict::{Undecided, Verdict};
 use crate::references::{self, AnyReference, Profile};
-use crate::robot::{RobotVisitor, with_enclosed_robot};
+use crate::robot::sized::{OF_THE_KIND, fjr, sized};
 use crate::scenario::Scenario;
 
 pub use exceeding::Exceeding;
@@ -76,10 +75,7 @@ pub struct Limit {
 /// third derivative jumps, which no tube outlives.
 pub fn along(scenario: &Scenario, level: &Number, budget: usize) -> Result<Along, Problems> {
     let level = level.bounds().hi();
-    with_enclosed_robot(
-        &scenario.robot,
-        Build { scenario, then: &|system| bounds(scenario, system, level, budget) },
-    )?
+    Ok(bounds(scenario, &*enclosed(scenario)?, level, budget))
 }
 
 /// An upper bound of W in J at the scenario's initial state: 0 where the robot starts on its reference, but for rounding.
@@ -87,26 +83,20 @@ pub fn along(scenario: &Scenario, level: &Number, budget: usize) -> Result<Along
 /// # Errors
 /// As [`along`].
 pub fn start_level(scenario: &Scenario) -> Result<f64, Problems> {
-    with_enclosed_robot(&scenario.robot, Build { scenario, then: &|system| storage(scenario, system) })?
+    Ok(storage(scenario, &*enclosed(scenario)?))
 }
 
-/// Hands the scenario's closed loop over intervals to `then`.
-struct Build<'a, R> {
-    scenario: &'a Scenario,
-    then: &'a dyn Fn(&dyn TrackingLoop) -> R,
-}
-
-impl<R> RobotVisitor<Interval> for Build<'_, R> {
-    type Output = Result<R, Problems>;
-
-    fn visit<L: Links<Interval, N> + Sync, const N: usize>(self, robot: Fjr<Interval, L, N>) -> Self::Output {
-        let scenario = self.scenario;
-        suitable(scenario)?;
+/// The scenario's closed loop over intervals.
+fn enclosed(scenario: &Scenario) -> Result<Box<dyn TrackingLoop>, Problems> {
+    suitable(scenario)?;
+    let robot = &scenario.robot;
+    Ok(sized!(robot, L, N => {
+        let links = fjr::<Interval, L<Interval>, N>(robot, &robot.enclosed, |x| robot.bounds(x), &Interval::midpoint);
         let reference = AnyReference::<Interval, N>::enclosed(scenario)?;
         let law = law_over(scenario.vcbc()?, |x| scenario.bounds(x));
         let [breaks, kinks] = [reference.breaks(), reference.kinks()];
-        Ok((self.then)(&Enclosed { robot, law, reference, breaks, kinks }))
-    }
+        Box::new(Enclosed { robot: links.expect(OF_THE_KIND), law, reference, breaks, kinks })
+    }))
 }
 
 /// Whether W is what the bounds take it to be, and continuous.

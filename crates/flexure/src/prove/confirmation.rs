@@ -1,15 +1,15 @@
 //! A certified rate once more, by the engine that knows nothing of how it was found.
 
-use flexure_core::model::{Fjr, Links};
-use flexure_core::scalar::Interval;
+use flexure_core::scalar::{Interval, Scalar};
 
 use crate::files::Problems;
-use crate::laws::{VcbcGains, law, law_over};
+use crate::laws::{law, law_over};
 use crate::prove::engine::certificate::Certificate;
 use crate::prove::engine::direct::{DirectWitness, Proved, StateBox, VcbcLoop, full_turn, prove, vcbc};
 use crate::prove::engine::number::Number;
 use crate::prove::engine::verdict::Verdict;
-use crate::robot::{JointKind, Robot, TwinVisitor, with_twins};
+use crate::robot::sized::{OF_THE_KIND, fjr, sized};
+use crate::robot::{JointKind, Robot};
 use crate::scenario::Scenario;
 
 /// What is left of a certified rate for the direct engine to prove: the certificate's last digits are those of its own
@@ -31,42 +31,36 @@ pub fn confirm(
     budget: usize,
 ) -> Result<Confirmation, Problems> {
     let gains = scenario.vcbc()?;
-    with_twins(&scenario.robot, Confirm { scenario, gains, certificate, speed, budget })
-}
-
-struct Confirm<'a> {
-    scenario: &'a Scenario,
-    gains: &'a VcbcGains,
-    certificate: &'a Certificate,
-    speed: f64,
-    budget: usize,
-}
-
-impl TwinVisitor for Confirm<'_> {
-    type Output = Confirmation;
-
-    fn visit<E: Links<Interval, N>, F: Links<f64, N>, const N: usize>(
-        self,
-        enclosed: Fjr<Interval, E, N>,
-        point: Fjr<f64, F, N>,
-    ) -> Confirmation {
-        let Self { scenario, gains, certificate, speed, budget } = self;
-        let errors = &certificate.region.error;
-        let around = |x: f64| Interval::point(-x).hull(Interval::point(x));
-        let error =
-            |i: usize| errors[i].as_ref().map_or(Interval::ENTIRE, |e: &Number| around(e.bounds().hi()));
-        let region = StateBox {
-            error_l: std::array::from_fn(error),
-            error_m: std::array::from_fn(|i| error(N + i)),
-            velocity_error_l: [Interval::ENTIRE; N],
-            velocity_error_m: [Interval::ENTIRE; N],
-            position: std::array::from_fn(|i| range(&scenario.robot, i)),
-            velocity: [around(speed); N],
+    let robot = &scenario.robot;
+    let rate = certificate.contraction_rate.bounds().lo() * SHARE;
+    Ok(sized!(robot, L, N => {
+        let enclosed = fjr(robot, &robot.enclosed, |x| robot.bounds(x), &Interval::midpoint);
+        let point = fjr(robot, &robot.links, |x| x, &|x| x);
+        let bounds = VcbcLoop::<Interval, L<Interval>, _, _, N> {
+            robot: enclosed.expect(OF_THE_KIND),
+            law: law_over(gains, |x| scenario.bounds(x)),
         };
-        let bounds = VcbcLoop { robot: enclosed, law: law_over(gains, |x| scenario.bounds(x)) };
-        let point = VcbcLoop { robot: point, law: law(gains) };
-        let rate = certificate.contraction_rate.bounds().lo() * SHARE;
-        prove(&vcbc(bounds, point, &region), rate, budget)
+        let point = VcbcLoop::<f64, L<f64>, _, _, N> { robot: point.expect(OF_THE_KIND), law: law(gains) };
+        prove(&vcbc(bounds, point, &region(scenario, certificate, speed)), rate, budget)
+    }))
+}
+
+/// The region of `certificate` with link speeds of up to `speed` [rad/s].
+fn region<const N: usize>(scenario: &Scenario, certificate: &Certificate, speed: f64) -> StateBox<N> {
+    let n = scenario.robot.joint_count();
+    let errors = &certificate.region.error;
+    let around = |x: f64| Interval::point(-x).hull(Interval::point(x));
+    let error = |i: usize| errors[i].as_ref().map_or(Interval::ENTIRE, |e: &Number| around(e.bounds().hi()));
+    let of_joints = |range: &dyn Fn(usize) -> Interval| {
+        std::array::from_fn(|i| if i < n { range(i) } else { Interval::ZERO })
+    };
+    StateBox {
+        error_l: of_joints(&error),
+        error_m: of_joints(&|i| error(n + i)),
+        velocity_error_l: of_joints(&|_| Interval::ENTIRE),
+        velocity_error_m: of_joints(&|_| Interval::ENTIRE),
+        position: of_joints(&|i| range(&scenario.robot, i)),
+        velocity: of_joints(&|_| around(speed)),
     }
 }
 

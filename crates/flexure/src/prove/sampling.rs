@@ -1,12 +1,10 @@
 //! Dense samples of the mass matrix over all configurations: how tight a proved bound is.
 
-use flexure_core::linalg::{Matrix, Vector};
-use flexure_core::model::{Fjr, Links};
 use serde::Serialize;
 
 use crate::files::Problems;
-use crate::linalg::{Leading, Symmetric, eigenvalues};
-use crate::robot::{self, RobotVisitor, with_robot};
+use crate::linalg::{Dense, Leading, Symmetric, eigenvalues};
+use crate::robot::{JointKind, MovingJoint, Robot};
 
 /// Configurations looked at before the worst are refined.
 const SAMPLES: u32 = 20_000;
@@ -34,82 +32,82 @@ pub struct Sampled {
 ///
 /// # Errors
 /// If the robot has too many joints.
-pub fn sample(robot: &robot::Robot, damping: &[f64]) -> Result<Sampled, Problems> {
-    with_robot(robot, Sampler { robot, damping })
-}
-
-struct Sampler<'a> {
-    robot: &'a robot::Robot,
-    damping: &'a [f64],
-}
-
-impl RobotVisitor for Sampler<'_> {
-    type Output = Sampled;
-
-    fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) -> Sampled {
-        let root = Vector::<f64, N>::from_fn(|i| self.damping[i].sqrt());
-        let ranges = ranges::<N>(self.robot);
-        let rate = |q: &Vector<f64, N>| {
-            let m = robot.links.mass_matrix(q);
-            1.0 / largest::<N>(Matrix::from_fn(|i, j| m[(i, j)] / (root[i] * root[j])))
-        };
-        let inertia = |q: &Vector<f64, N>| -largest(robot.links.mass_matrix(q));
-        let (rate, configuration) = smallest(&ranges, &rate);
-        let (negative, _) = smallest(&ranges, &inertia);
-        let mass = robot.links.mass_matrix(&configuration);
-        let mass_matrix = Symmetric::from_fn(N, |i, j| mass[(i, j)]);
-        let configuration = configuration.0.to_vec();
-        Sampled { rate, configuration, mass_matrix, largest_inertia: -negative }
-    }
+pub fn sample(robot: &Robot, damping: &[f64]) -> Result<Sampled, Problems> {
+    let (n, arm) = (robot.joint_count(), robot.arm()?);
+    let root: Vec<f64> = damping.iter().map(|d| d.sqrt()).collect();
+    let ranges = ranges(robot);
+    let mass_matrix = |q: &[f64]| {
+        let mut mass = vec![0.0; n * n];
+        arm.mass_matrix(q, &mut mass).expect("n joints");
+        mass
+    };
+    let rate = |q: &[f64]| {
+        let mass = mass_matrix(q);
+        1.0 / largest(n, |i, j| mass[i * n + j] / (root[i] * root[j]))
+    };
+    let inertia = |q: &[f64]| {
+        let mass = mass_matrix(q);
+        -largest(n, |i, j| mass[i * n + j])
+    };
+    let (rate, configuration) = smallest(&ranges, &rate);
+    let (negative, _) = smallest(&ranges, &inertia);
+    let mass = mass_matrix(&configuration);
+    let mass_matrix = Symmetric::from_fn(n, |i, j| mass[i * n + j]);
+    Ok(Sampled { rate, configuration, mass_matrix, largest_inertia: -negative })
 }
 
 /// A full turn for joints that turn, the travel for those that slide.
-fn ranges<const N: usize>(robot: &robot::Robot) -> Vector<(f64, f64), N> {
+fn ranges(robot: &Robot) -> Vec<(f64, f64)> {
     let turn = std::f64::consts::PI;
-    Vector::from_fn(|i| match robot.joints[i].kind {
-        robot::JointKind::Revolute => (-turn, turn),
-        robot::JointKind::Prismatic => {
+    let range = |(i, joint): (usize, &MovingJoint)| match joint.kind {
+        JointKind::Revolute => (-turn, turn),
+        JointKind::Prismatic => {
             let end = |limit: f64| if limit.is_finite() { limit } else { 0.0 };
             (end(robot.limits.lower[i]), end(robot.limits.upper[i]))
         }
-    })
+    };
+    robot.joints.iter().enumerate().map(range).collect()
 }
 
-fn largest<const N: usize>(mut m: Matrix<f64, N, N>) -> f64 {
-    eigenvalues(Leading::of(&mut m.0, N)).fold(f64::NEG_INFINITY, f64::max)
+/// The largest eigenvalue of the symmetric `n` × `n` matrix of `entry`.
+fn largest(n: usize, entry: impl Fn(usize, usize) -> f64) -> f64 {
+    let mut matrix = Dense::from_fn(n, n, entry);
+    eigenvalues(Leading::whole(&mut matrix)).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// The smallest value found of `f` over the ranges, and where.
-fn smallest<const N: usize>(
-    ranges: &Vector<(f64, f64), N>,
-    f: &dyn Fn(&Vector<f64, N>) -> f64,
-) -> (f64, Vector<f64, N>) {
-    // Kronecker sequence of the root of x^(N+1) = x + 1 (M. Roberts, 2018): even in every dimension.
-    let root = (0..50).fold(2.0_f64, |x, _| (1.0 + x).powf(1.0 / (N as f64 + 1.0)));
+fn smallest(ranges: &[(f64, f64)], f: &dyn Fn(&[f64]) -> f64) -> (f64, Vec<f64>) {
+    let n = ranges.len();
+    // Kronecker sequence of the root of x^(n+1) = x + 1 (M. Roberts, 2018): even in every dimension.
+    let root = (0..50).fold(2.0_f64, |x, _| (1.0 + x).powf(1.0 / (n as f64 + 1.0)));
     let mut power = 1.0;
-    let steps = Vector::<f64, N>::from_fn(|_| {
-        power /= root;
-        power
-    });
-    let at = |k: u32| {
-        Vector::<f64, N>::from_fn(|i| {
-            let phase = (0.5 + f64::from(k) * steps[i]).fract();
-            let (low, high) = ranges[i];
-            low + (high - low) * phase
+    let steps: Vec<f64> = ranges
+        .iter()
+        .map(|_| {
+            power /= root;
+            power
         })
+        .collect();
+    let at = |k: u32| -> Vec<f64> {
+        let place = |(step, (low, high)): (&f64, &(f64, f64))| {
+            let phase = (0.5 + f64::from(k) * step).fract();
+            low + (high - low) * phase
+        };
+        steps.iter().zip(ranges).map(place).collect()
     };
-    let best = (0..SAMPLES).map(|k| (f(&at(k)), at(k))).min_by(|(a, _), (b, _)| a.total_cmp(b));
-    let (mut value, mut q) = best.unwrap_or((f64::INFINITY, at(0)));
+    let best = (0..SAMPLES).map(|k| (f(&at(k)), k)).min_by(|(a, _), (b, _)| a.total_cmp(b));
+    let (mut value, mut q) = best.map_or((f64::INFINITY, at(0)), |(value, k)| (value, at(k)));
     let mut step = 0.3;
     for _ in 0..ROUNDS {
-        for i in 0..N {
+        for (i, (low, high)) in ranges.iter().enumerate() {
             for sign in [-1.0, 1.0] {
-                let mut next = q;
-                let (low, high) = ranges[i];
-                next[i] = (next[i] + sign * step * (high - low) / std::f64::consts::TAU).clamp(low, high);
-                let found = f(&next);
+                let here = q[i];
+                q[i] = (here + sign * step * (high - low) / std::f64::consts::TAU).clamp(*low, *high);
+                let found = f(&q);
                 if found < value {
-                    (value, q) = (found, next);
+                    value = found;
+                } else {
+                    q[i] = here;
                 }
             }
         }

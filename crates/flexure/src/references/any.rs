@@ -1,15 +1,14 @@
 //! The references by name.
 
 use flexure_core::linalg::Vector;
-use flexure_core::model::{Fjr, Links, Motion};
 use flexure_core::reference::{
     Clock, Multisine, PointToPoint, Reference, Retimed, Sine, SmoothStart, Smoothstep, Stop, Term,
 };
 use flexure_core::scalar::{Interval, Jet, Over, Piecewise, Scalar};
 
-use crate::files::{self, Entry};
+use crate::files::{Entry, Problems};
 use crate::references::{self, Samples, when};
-use crate::robot::{RobotVisitor, vector, with_enclosed_robot, with_robot};
+use crate::robot::{Arm, vector};
 use crate::{feasible, scenario};
 
 /// The registered references.
@@ -49,13 +48,15 @@ impl<const N: usize> AnyReference<f64, N> {
     ///
     /// # Errors
     /// If there is no spline through the samples, the robot has too many joints, or no speed keeps it inside its limits.
-    pub fn new(scenario: &scenario::Scenario) -> Result<Self, files::Problems> {
+    pub fn new(scenario: &scenario::Scenario) -> Result<Self, Problems> {
         Self::at_speed(scenario, feasible::speed(scenario)?)
     }
 
     /// The reference of a scenario at the speed of its time scaling, if it has one, replaced by `speed`.
-    pub(crate) fn at_speed(scenario: &scenario::Scenario, speed: f64) -> Result<Self, files::Problems> {
-        Self::over(scenario, speed, &|x| x, |start| with_robot(&scenario.robot, start))
+    pub(crate) fn at_speed(scenario: &scenario::Scenario, speed: f64) -> Result<Self, Problems> {
+        Self::over(scenario, speed, &|x| x, || {
+            link_motion(&*scenario.robot.arm()?, &scenario.initial, &|x| x)
+        })
     }
 }
 
@@ -65,33 +66,28 @@ impl<const N: usize> AnyReference<Interval, N> {
     ///
     /// # Errors
     /// As for [`new`](AnyReference::new).
-    pub fn enclosed(scenario: &scenario::Scenario) -> Result<Self, files::Problems> {
+    pub fn enclosed(scenario: &scenario::Scenario) -> Result<Self, Problems> {
         let speed = match scenario.time_scaling.map(|scaling| scaling.speed) {
             Some(references::Speed::Given(speed)) => scenario.bounds(speed),
             _ => Interval::point(feasible::speed(scenario)?),
         };
-        let start = |start: Start<'_, _>| with_enclosed_robot(&scenario.robot, start);
+        let start =
+            || link_motion(&*scenario.robot.enclosed_arm()?, &scenario.initial, &|x| scenario.bounds(x));
         Self::over(scenario, speed, &|x| scenario.bounds(x), start)
     }
 }
 
 /// The links' motion when a scenario begins, to the jerk: what the state says, by the model that the law has.
-///
-/// The conversion stands behind a reference: one type a number, or every joint count would compile this for every robot.
-struct Start<'a, C> {
-    initial: &'a scenario::Initial,
-    number: &'a dyn Fn(f64) -> C,
-}
-
-impl<C: Over<C>> RobotVisitor<C> for Start<'_, C> {
-    type Output = Vec<Jet<C, 4>>;
-
-    fn visit<L: Links<C, N> + Sync, const N: usize>(self, robot: Fjr<C, L, N>) -> Vec<Jet<C, 4>> {
-        let numbers = |values: &[f64]| vector(values).map(self.number);
-        let scenario::Initial { q_l, q_m, dq_l, dq_m } = self.initial;
-        let x = Motion { q_l: numbers(q_l), q_m: numbers(q_m), v_l: numbers(dq_l), v_m: numbers(dq_m) };
-        robot.link_motion(&robot.links.factor(&x.q_l), &x).0.to_vec()
-    }
+fn link_motion<C: Scalar>(
+    arm: &dyn Arm<C>,
+    initial: &scenario::Initial,
+    number: &dyn Fn(f64) -> C,
+) -> Result<Vec<Jet<C, 4>>, Problems> {
+    let scenario::Initial { q_l, q_m, dq_l, dq_m } = initial;
+    let motion: Vec<C> = [q_l, q_m, dq_l, dq_m].into_iter().flatten().map(|&x| number(x)).collect();
+    let mut series = vec![[C::ZERO; 4]; arm.joints()];
+    arm.link_motion(&motion, &mut series).expect("the reader has checked the lengths");
+    Ok(series.into_iter().map(Jet::new).collect())
 }
 
 impl<C: Scalar, const N: usize> AnyReference<C, N> {
@@ -101,8 +97,8 @@ impl<C: Scalar, const N: usize> AnyReference<C, N> {
         scenario: &scenario::Scenario,
         speed: C,
         number: &dyn Fn(f64) -> C,
-        motion: impl FnOnce(Start<'_, C>) -> Result<Vec<Jet<C, 4>>, files::Problems>,
-    ) -> Result<Self, files::Problems> {
+        motion: impl FnOnce() -> Result<Vec<Jet<C, 4>>, Problems>,
+    ) -> Result<Self, Problems> {
         let path = Self::path(scenario, number)?;
         let timed = match scenario.time_scaling {
             Some(references::TimeScaling { rise, .. }) => {
@@ -117,13 +113,17 @@ impl<C: Scalar, const N: usize> AnyReference<C, N> {
         let Some(references::SmoothStart { duration, settle }) = scenario.smooth_start else {
             return Ok(timed);
         };
-        let jets = motion(Start { initial: &scenario.initial, number })?;
-        let from = Stop { from: Vector::from_fn(|i| jets[i]), start: C::ZERO, duration: number(settle) };
+        let jets = motion()?;
+        let from = Stop {
+            from: Vector::from_fn(|i| jets.get(i).copied().unwrap_or(Jet::ZERO)),
+            start: C::ZERO,
+            duration: number(settle),
+        };
         Ok(Self::SmoothStart(Box::new(SmoothStart { from, duration: number(duration), then: timed })))
     }
 
     /// The path of a scenario at its own speed, without smooth start.
-    fn path(scenario: &scenario::Scenario, number: impl Fn(f64) -> C) -> Result<Self, files::Problems> {
+    fn path(scenario: &scenario::Scenario, number: impl Fn(f64) -> C) -> Result<Self, Problems> {
         let vector = |values: &[f64]| vector(values).map(&number);
         let sine = |term: &references::Term| Term {
             amplitude: vector(&term.amplitude),
@@ -227,7 +227,7 @@ fn spline<const N: usize>(
     scenario: &scenario::Scenario,
     t: &[f64],
     q: &[Vec<f64>],
-) -> Result<Samples<f64, N>, files::Problems> {
+) -> Result<Samples<f64, N>, Problems> {
     let samples: Vec<_> = t.iter().copied().zip(q.iter().map(|q| vector(q))).collect();
     Samples::new(&samples).map_err(|error| {
         let help = "the path must be a smooth motion: check the numbers of that sample";

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use crate::files::Problems;
 use crate::files::number::engineering;
+use crate::progress::{PartProgress, Progress};
 use crate::prove::question::{Direct, Proof, Question, Region, certified_rate, prove};
 use crate::prove::summary::ProofSummary;
 use crate::report::{
@@ -41,8 +42,8 @@ impl Experiment {
     /// Runs `scenario`; `progress` is told the fraction done.
     ///
     /// # Errors
-    /// If the robot has too many joints or the reference is no path.
-    pub fn new(scenario: Scenario, progress: &(dyn Fn(f64) + Sync)) -> Result<Self, Problems> {
+    /// As [`run`].
+    pub fn new(scenario: Scenario, progress: Progress<'_>) -> Result<Self, Problems> {
         let mut run = run(&scenario, progress)?;
         run.summary.rate_certified = certified_rate(&scenario)?;
         let ended = run.divergence.map(|divergence| format!("; diverged at t = {:.3} s", divergence.time));
@@ -78,7 +79,7 @@ pub struct Certified {
 /// Proves the rates of the paper's experiments.
 ///
 /// # Errors
-/// Only if a built-in file is broken.
+/// If a built-in file is broken, or it was broken off.
 pub fn certificates() -> Result<Vec<Certified>, Problems> {
     CERTIFIED
         .par_iter()
@@ -121,8 +122,8 @@ fn unknown(options: &[&str]) -> Option<String> {
 /// it that is done.
 ///
 /// # Errors
-/// Only if a built-in file is broken.
-pub fn reproduce(progress: &(dyn Fn(usize, f64) + Sync)) -> Result<Vec<Experiment>, Problems> {
+/// If a built-in file is broken, or it was broken off.
+pub fn reproduce(progress: PartProgress<'_>) -> Result<Vec<Experiment>, Problems> {
     REPRODUCED
         .par_iter()
         .enumerate()

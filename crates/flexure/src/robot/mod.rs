@@ -1,22 +1,23 @@
 //! Robots: their files, URDFs, and what can be asked of them.
 
+mod arm;
 pub(crate) mod document;
 pub(crate) mod joints;
 pub(crate) mod links;
 mod load;
 mod overview;
 pub(crate) mod sized;
+pub(crate) mod slices;
 pub(crate) mod urdf;
 
+pub use arm::{Arm, PortHamiltonian};
 pub use document::{Robot, robot_from_text};
 pub use joints::Limits;
 pub use links::{Body, DriveDefaults, JointKind, Links, MovingJoint};
 pub use load::load_robot;
 pub(crate) use load::robot;
 pub use overview::{JointRow, overview};
-pub use sized::{
-    MAX_JOINTS, PairVisitor, RobotVisitor, TwinVisitor, supported, with_enclosed_robot, with_pair,
-    with_robot, with_twins,
-};
+pub use sized::{MAX_JOINTS, supported};
 pub(crate) use sized::{padded, vector};
+pub use slices::Mismatch;
 pub use urdf::{Import, import};

@@ -2,12 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use flexure_core::linalg::Vector;
-use flexure_core::model::{Fjr, Links};
 use serde::Serialize;
 
 use crate::files::Problems;
-use crate::robot::{self, JointKind, Robot, RobotVisitor, with_robot};
+use crate::robot::{self, JointKind, Robot};
 
 /// A moving joint of a robot. For a prismatic one read m for rad, N for N m and kg for kg m².
 #[derive(Clone, Debug, Serialize)]
@@ -49,7 +47,10 @@ pub struct JointRow {
 /// # Errors
 /// If the robot has more joints than this program was built for.
 pub fn overview(robot: &Robot) -> Result<Vec<JointRow>, Problems> {
-    let link_inertia = with_robot(robot, Diagonal)?;
+    let n = robot.joint_count();
+    let mut mass = vec![0.0; n * n];
+    robot.arm()?.mass_matrix(&vec![0.0; n], &mut mass).expect("n joints");
+    let link_inertia: Vec<f64> = mass.iter().step_by(n + 1).copied().collect();
     let parents: Vec<Option<usize>> = match &robot.links {
         robot::Links::Tree(bodies) => bodies.iter().map(|body| body.parent).collect(),
         _ => (0..robot.joint_count()).map(|i| i.checked_sub(1)).collect(),
@@ -79,16 +80,4 @@ pub fn overview(robot: &Robot) -> Result<Vec<JointRow>, Problems> {
         }
     };
     Ok(robot.joints.iter().enumerate().map(row).collect())
-}
-
-/// The diagonal of the mass matrix at q = 0.
-struct Diagonal;
-
-impl RobotVisitor for Diagonal {
-    type Output = Vec<f64>;
-
-    fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) -> Vec<f64> {
-        let mass = robot.links.mass_matrix::<f64>(&Vector::ZERO);
-        (0..N).map(|i| mass[(i, i)]).collect()
-    }
 }

@@ -1,153 +1,150 @@
-//! Robots by their links, and the one place that turns a joint count read from a file into a type.
+//! The one place where a joint count read from a file becomes a type.
+//!
+//! Robots in closed form have a size of their own; trees run in the smallest capacity that holds them. The joints beyond a
+//! robot's own are phantoms ([`Tree`]): unit inertia, stiffness and motor inertia, at rest.
 
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links};
-use flexure_core::robots::{self, Body, Tree};
-use flexure_core::scalar::{Interval, Scalar};
+use flexure_core::robots::{Pendulum, PlanarTwoLink, Tree};
+use flexure_core::scalar::Scalar;
 
-use crate::{files, robot};
+use crate::files::{Problem, Problems};
+use crate::robot;
 
-/// Something to do with a robot whose links and joint count are known only when it runs, over constants of type `C`.
-pub trait RobotVisitor<C: Scalar = f64> {
-    /// What comes of it.
-    type Output;
-    /// Does it.
-    fn visit<L: Links<C, N> + Sync, const N: usize>(self, robot: Fjr<C, L, N>) -> Self::Output;
+/// Largest joint count of a tree. To raise it, add a capacity to [`Size`] and to the list below and build again.
+pub const MAX_JOINTS: usize = 16;
+
+/// A type of links, as chosen by [`size`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Size {
+    Pendulum,
+    PlanarTwoLink,
+    Tree4,
+    Tree8,
+    Tree16,
 }
 
-/// Something to do with a robot twice over: with the decimals of its files enclosed, and in `f64`.
-pub trait TwinVisitor {
-    /// What comes of it.
-    type Output;
-    /// Does it.
-    fn visit<E: Links<Interval, N>, F: Links<f64, N>, const N: usize>(
-        self,
-        enclosed: Fjr<Interval, E, N>,
-        point: Fjr<f64, F, N>,
-    ) -> Self::Output;
+/// Evaluates `$then` with `$L<C>` the links of the robot file `$data` over constants of type `C`, and `$N` their capacity.
+/// Returns with the problem from the function that it stands in if the robot has more than [`MAX_JOINTS`] joints.
+macro_rules! sized {
+    ($data:expr, $L:ident, $N:ident => $then:expr) => {
+        match $crate::robot::sized::size($data)? {
+            $crate::robot::sized::Size::Pendulum => sized!(@ $L = Pendulum<C>, $N = 1, $then),
+            $crate::robot::sized::Size::PlanarTwoLink => sized!(@ $L = PlanarTwoLink<C>, $N = 2, $then),
+            $crate::robot::sized::Size::Tree4 => sized!(@ $L = Tree<C, 4>, $N = 4, $then),
+            $crate::robot::sized::Size::Tree8 => sized!(@ $L = Tree<C, 8>, $N = 8, $then),
+            $crate::robot::sized::Size::Tree16 => sized!(@ $L = Tree<C, 16>, $N = 16, $then),
+        }
+    };
+    (@ $L:ident = $links:ident<C $(, $capacity:literal)?>, $N:ident = $size:literal, $then:expr) => {{
+        #[allow(dead_code, reason = "some callers need the type, some the size")]
+        type $L<C> = flexure_core::robots::$links<C $(, $capacity)?>;
+        const $N: usize = $size;
+        $then
+    }};
 }
+pub(crate) use sized;
 
-/// Something to do with two robots of the same kind: the one that a law knows and the one that is there.
-pub trait PairVisitor {
-    /// What comes of it.
-    type Output;
-    /// Does it.
-    fn visit<L: Links<f64, N> + Clone + Sync, const N: usize>(
-        self,
-        model: Fjr<f64, L, N>,
-        plant: Fjr<f64, L, N>,
-    ) -> Self::Output;
-}
-
-/// Largest joint count of a tree. To raise it, add the numbers to the list below and build again.
-pub const MAX_JOINTS: usize = 10;
-
-/// Hands the joint counts that this program is built for to another macro, after its other arguments.
-macro_rules! joint_counts {
-    ($then:ident, $($argument:expr),+) => { $then!($($argument),+, 1 2 3 4 5 6 7 8 9 10) };
-}
-
-/// Calls `visitor` with the robot that `data` describes.
+/// Which type of links the robot in `data` gets.
 ///
 /// # Errors
 /// For a tree with more than [`MAX_JOINTS`] moving joints.
-pub fn with_robot<V: RobotVisitor>(data: &robot::Robot, visitor: V) -> Result<V::Output, files::Problems> {
-    over(data, &data.links, |x| x, |x| x, visitor)
-}
-
-/// Calls `visitor` with the robot over intervals that encloses what the decimals in its files say.
-///
-/// # Errors
-/// For a tree with more than [`MAX_JOINTS`] moving joints.
-pub fn with_enclosed_robot<V: RobotVisitor<Interval>>(
-    data: &robot::Robot,
-    visitor: V,
-) -> Result<V::Output, files::Problems> {
-    over(data, &data.enclosed, |x| data.bounds(x), Interval::midpoint, visitor)
-}
-
-/// Calls `visitor` with the robot that `data` describes, enclosed and in `f64`.
-///
-/// # Errors
-/// For a tree with more than [`MAX_JOINTS`] moving joints.
-pub fn with_twins<V: TwinVisitor>(data: &robot::Robot, visitor: V) -> Result<V::Output, files::Problems> {
-    let bounds = |x| data.bounds(x);
-    let gravity = data.gravity.map(bounds);
-    macro_rules! tree {
-        ($enclosed:expr, $bodies:expr, $($n:literal)*) => {
-            match $bodies.len() {
-                $($n => visitor.visit(
-                    robot(data, tree::<_, $n>($enclosed, gravity, Interval::midpoint), bounds),
-                    robot(data, tree::<_, $n>($bodies, data.gravity, |x| x), |x| x),
-                ),)*
-                joints => return Err(too_many(data, joints)),
-            }
-        };
+pub(crate) fn size(data: &robot::Robot) -> Result<Size, Problems> {
+    match &data.links {
+        robot::Links::Pendulum { .. } => Ok(Size::Pendulum),
+        robot::Links::PlanarTwoLink { .. } => Ok(Size::PlanarTwoLink),
+        robot::Links::Tree(bodies) => match bodies.len() {
+            0..=4 => Ok(Size::Tree4),
+            5..=8 => Ok(Size::Tree8),
+            9..=MAX_JOINTS => Ok(Size::Tree16),
+            joints => Err(too_many(data, joints)),
+        },
     }
-    Ok(match (&data.enclosed, &data.links) {
-        (robot::Links::Tree(enclosed), robot::Links::Tree(bodies)) => joint_counts!(tree, enclosed, bodies),
-        (
-            &robot::Links::PlanarTwoLink { mass, length, com, inertia },
-            &robot::Links::PlanarTwoLink { mass: m, length: l, com: c, inertia: i },
-        ) => visitor.visit::<_, _, 2>(
-            robot(data, robots::PlanarTwoLink::new(mass, length[0], com, inertia), bounds),
-            robot(data, robots::PlanarTwoLink::new(m, l[0], c, i), |x| x),
-        ),
-        (
-            &robot::Links::Pendulum { mass, com, inertia },
-            &robot::Links::Pendulum { mass: m, com: c, inertia: i },
-        ) => visitor.visit::<_, _, 1>(
-            robot(data, pendulum(mass, com, inertia, gravity), bounds),
-            robot(data, pendulum(m, c, i, data.gravity), |x| x),
-        ),
-        _ => unreachable!("enclosed links are of the same kind"),
+}
+
+/// Whether this program is built for the robot's joint count.
+///
+/// # Errors
+/// For a robot with more than [`MAX_JOINTS`] moving joints.
+pub fn supported(data: &robot::Robot) -> Result<(), Problems> {
+    size(data).map(drop)
+}
+
+fn too_many(data: &robot::Robot, joints: usize) -> Problems {
+    let message = format!(
+        "robot {} has {joints} moving joints; this program is built for at most {MAX_JOINTS}",
+        data.name
+    );
+    let help = "lock joints, or add a capacity to the list in robot/sized.rs and build again";
+    data.places.problem("links", "joints", message, help).into()
+}
+
+/// Links of a type that is known when the program is built, made from those of a robot file.
+pub(crate) trait FromFile<C: Scalar, const N: usize>: Links<C, N> + Sized {
+    /// None if `links` are of another kind, or do not fit. `gravity` is that of the base frame [m/s²]; `approximate` gives a
+    /// float near a constant.
+    fn from_file(links: &robot::Links<C>, gravity: [C; 3], approximate: &dyn Fn(C) -> f64) -> Option<Self>;
+}
+
+impl<C: Scalar, const N: usize> FromFile<C, N> for Tree<C, N> {
+    fn from_file(links: &robot::Links<C>, gravity: [C; 3], approximate: &dyn Fn(C) -> f64) -> Option<Self> {
+        let robot::Links::Tree(bodies) = links else { return None };
+        Self::from_bodies(bodies, gravity, approximate)
+    }
+}
+
+impl<C: Scalar> FromFile<C, 2> for PlanarTwoLink<C> {
+    fn from_file(links: &robot::Links<C>, _: [C; 3], _: &dyn Fn(C) -> f64) -> Option<Self> {
+        let &robot::Links::PlanarTwoLink { mass, length, com, inertia } = links else { return None };
+        Some(Self::new(mass, length[0], com, inertia))
+    }
+}
+
+impl<C: Scalar> FromFile<C, 1> for Pendulum<C> {
+    fn from_file(links: &robot::Links<C>, gravity: [C; 3], _: &dyn Fn(C) -> f64) -> Option<Self> {
+        let &robot::Links::Pendulum { mass, com, inertia } = links else { return None };
+        let [x, y, z] = gravity.map(C::square);
+        Some(Self { inertia: inertia + mass * com.square(), weight_moment: mass * com * (x + y + z).sqrt() })
+    }
+}
+
+/// Why links are of the type that [`sized`] chose.
+pub(crate) const OF_THE_KIND: &str = "links of the kind that their size was chosen by";
+
+/// The robot of `links`, either those of `data` or the same enclosed, with the other numbers of `data` through `number`.
+///
+/// None if the links are not of the type `L`.
+pub(crate) fn fjr<C: Scalar, L: FromFile<C, N>, const N: usize>(
+    data: &robot::Robot,
+    links: &robot::Links<C>,
+    number: impl Fn(f64) -> C,
+    approximate: &dyn Fn(C) -> f64,
+) -> Option<Fjr<C, L, N>> {
+    Some(Fjr {
+        links: L::from_file(links, data.gravity.map(&number), approximate)?,
+        motor_inertia: padded(&data.motor_inertia, 1.0).map(&number),
+        stiffness: padded(&data.stiffness, 1.0).map(&number),
+        link_damping: padded(&data.link_damping, 0.0).map(&number),
+        motor_damping: padded(&data.motor_damping, 0.0).map(&number),
     })
 }
 
-/// Calls `visitor` with the robot that a law knows, `model`, and the one that is there, `plant`.
+/// The robot that a law knows, `model`, and the one that is there, `plant`.
 ///
 /// # Errors
-/// For a tree with more than [`MAX_JOINTS`] moving joints, and for robots of different kinds or joint counts.
-pub fn with_pair<V: PairVisitor>(
+/// If they are of different kinds or joint counts.
+pub(crate) fn pair<L: FromFile<f64, N>, const N: usize>(
     model: &robot::Robot,
     plant: &robot::Robot,
-    visitor: V,
-) -> Result<V::Output, files::Problems> {
-    let point = |x: f64| x;
-    macro_rules! tree {
-        ($model:expr, $plant:expr, $($n:literal)*) => {
-            match $model.len() {
-                $($n => visitor.visit(
-                    robot(model, tree::<_, $n>($model, model.gravity, point), point),
-                    robot(plant, tree::<_, $n>($plant, plant.gravity, point), point),
-                ),)*
-                joints => return Err(too_many(model, joints)),
-            }
-        };
+) -> Result<[Fjr<f64, L, N>; 2], Problems> {
+    let point = |robot: &robot::Robot| fjr(robot, &robot.links, |x| x, &|x| x);
+    match (point(model), point(plant)) {
+        (Some(known), Some(there)) if model.joint_count() == plant.joint_count() => Ok([known, there]),
+        _ => Err(no_pair(model, plant).into()),
     }
-    Ok(match (&model.links, &plant.links) {
-        (robot::Links::Tree(known), robot::Links::Tree(real)) if known.len() == real.len() => {
-            joint_counts!(tree, known, real)
-        }
-        (
-            &robot::Links::PlanarTwoLink { mass, length, com, inertia },
-            &robot::Links::PlanarTwoLink { mass: m, length: l, com: c, inertia: i },
-        ) => visitor.visit::<_, 2>(
-            robot(model, robots::PlanarTwoLink::new(mass, length[0], com, inertia), point),
-            robot(plant, robots::PlanarTwoLink::new(m, l[0], c, i), point),
-        ),
-        (
-            &robot::Links::Pendulum { mass, com, inertia },
-            &robot::Links::Pendulum { mass: m, com: c, inertia: i },
-        ) => visitor.visit::<_, 1>(
-            robot(model, pendulum(mass, com, inertia, model.gravity), point),
-            robot(plant, pendulum(m, c, i, plant.gravity), point),
-        ),
-        _ => return Err(no_pair(model, plant)),
-    })
 }
 
-fn no_pair(model: &robot::Robot, plant: &robot::Robot) -> files::Problems {
+fn no_pair(model: &robot::Robot, plant: &robot::Robot) -> Problem {
     let what = |robot: &robot::Robot| {
         let kind = match robot.links {
             robot::Links::PlanarTwoLink { .. } => "a planar two-link arm",
@@ -159,83 +156,7 @@ fn no_pair(model: &robot::Robot, plant: &robot::Robot) -> files::Problems {
     let message = format!("a law for one robot cannot move the other: {}; {}", what(model), what(plant));
     let help =
         "the robot that is simulated has the kind of links and the joint count of the one that the law knows";
-    plant.places.problem("links", "pair", message, help).into()
-}
-
-/// The robot of `links` with the other numbers of `data` through `number`; `approximate` gives a float near a constant.
-fn over<C: Scalar + Sync, V: RobotVisitor<C>>(
-    data: &robot::Robot,
-    links: &robot::Links<C>,
-    number: impl Fn(f64) -> C,
-    approximate: impl Fn(C) -> f64,
-    visitor: V,
-) -> Result<V::Output, files::Problems> {
-    let gravity = data.gravity.map(&number);
-    macro_rules! tree {
-        ($bodies:expr, $($n:literal)*) => {
-            match $bodies.len() {
-                $($n => visitor.visit(robot(data, tree::<C, $n>($bodies, gravity, approximate), number)),)*
-                joints => return Err(too_many(data, joints)),
-            }
-        };
-    }
-    Ok(match links {
-        robot::Links::PlanarTwoLink { mass, length, com, inertia } => {
-            let links = robots::PlanarTwoLink::new(*mass, length[0], *com, *inertia);
-            visitor.visit::<_, 2>(robot(data, links, number))
-        }
-        &robot::Links::Pendulum { mass, com, inertia } => {
-            visitor.visit::<_, 1>(robot(data, pendulum(mass, com, inertia, gravity), number))
-        }
-        robot::Links::Tree(bodies) => joint_counts!(tree, bodies),
-    })
-}
-
-fn pendulum<C: Scalar>(mass: C, com: C, inertia: C, gravity: [C; 3]) -> robots::Pendulum<C> {
-    let [x, y, z] = gravity.map(C::square);
-    robots::Pendulum {
-        inertia: inertia + mass * com.square(),
-        weight_moment: mass * com * (x + y + z).sqrt(),
-    }
-}
-
-/// Whether this program is built for the robot's joint count.
-///
-/// # Errors
-/// For a robot with more than [`MAX_JOINTS`] moving joints.
-pub fn supported(data: &robot::Robot) -> Result<(), files::Problems> {
-    if data.joint_count() > MAX_JOINTS { Err(too_many(data, data.joint_count())) } else { Ok(()) }
-}
-
-fn too_many(data: &robot::Robot, joints: usize) -> files::Problems {
-    let message = format!(
-        "robot {} has {joints} moving joints; this program is built for at most {MAX_JOINTS}",
-        data.name
-    );
-    let help = "lock joints, or add the number to the list in registry/robot.rs and build again";
-    data.places.problem("links", "joints", message, help).into()
-}
-
-fn robot<C: Scalar, L, const N: usize>(
-    data: &robot::Robot,
-    links: L,
-    number: impl Fn(f64) -> C,
-) -> Fjr<C, L, N> {
-    Fjr {
-        links,
-        motor_inertia: vector(&data.motor_inertia).map(&number),
-        stiffness: vector(&data.stiffness).map(&number),
-        link_damping: vector(&data.link_damping).map(&number),
-        motor_damping: vector(&data.motor_damping).map(&number),
-    }
-}
-
-fn tree<C: Scalar, const N: usize>(
-    bodies: &[Body<C>],
-    gravity: [C; 3],
-    approximate: impl Fn(C) -> f64,
-) -> Tree<C, N> {
-    Tree::from_bodies(bodies, gravity, approximate).expect("the reader puts parents before children")
+    plant.places.problem("links", "pair", message, help)
 }
 
 /// Per-joint data, whose length the reader has checked; zero for joints that only fill a capacity.

@@ -5,14 +5,16 @@ use flexure_core::guard::{Guard, Settings};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion, RotorCoupling};
 use flexure_core::reference::Reference;
-use flexure_core::scalar::Jet;
 
 use crate::estimators::{AnyEstimator, estimator};
 use crate::imperfections::{self, Imperfection, PushShape, Side, actuator, sensors};
+use crate::laws::AnyLaw;
 use crate::plant::{Friction, Hysteresis, Plant, Push, Shape};
-use crate::robot::{Robot, vector};
+use crate::robot::{Robot, padded, vector};
 use crate::scenario::{self, Scenario};
-use crate::simulate::{ClosedLoop, Compensation, Controller, Guarded, Hold};
+use crate::simulate::controller::{Compensation, Controller, Feedback, Guarded};
+use crate::simulate::signals::Columns;
+use crate::simulate::simulation::{Hold, Timing};
 
 /// Tolerated local error of the plant integrator, relative to the joint speeds.
 pub const TOLERANCE: f64 = 1e-10;
@@ -21,9 +23,8 @@ pub const TOLERANCE: f64 = 1e-10;
 const LONGEST_STEP: f64 = 2.5e-4;
 
 /// Times and tolerances of the loop.
-pub(crate) fn settings(scenario: &Scenario) -> ClosedLoop {
-    ClosedLoop {
-        duration: scenario.duration,
+pub(crate) fn timing(scenario: &Scenario) -> Timing {
+    Timing {
         period: scenario.control_period,
         hold: match scenario.hold {
             scenario::Hold::ZeroOrder => Hold::ZeroOrder,
@@ -31,6 +32,18 @@ pub(crate) fn settings(scenario: &Scenario) -> ClosedLoop {
         },
         tolerance: TOLERANCE,
         longest_step: LONGEST_STEP,
+    }
+}
+
+/// What can be read of the loop beside the motion.
+pub(crate) fn columns<const N: usize>(scenario: &Scenario, law: &AnyLaw<f64, N>) -> Columns {
+    let Scenario { imperfections, estimator, disturbance_observer, guard, .. } = scenario;
+    Columns {
+        errors: matches!(law, AnyLaw::Vcbc(_)),
+        devices: imperfections.iter().any(Imperfection::is_of_devices)
+            || estimator.is_some()
+            || disturbance_observer.is_some()
+            || guard.is_some(),
     }
 }
 
@@ -73,7 +86,7 @@ pub(crate) fn plant<L, const N: usize>(scenario: &Scenario, robot: Fjr<f64, L, N
                 };
                 *side = dry(friction);
             }
-            Imperfection::TorqueGain(factor) => plant.torque_gain = vector(factor),
+            Imperfection::TorqueGain(factor) => plant.torque_gain = padded(factor, 1.0),
             Imperfection::Spring(spring) => {
                 plant.spring_hardening += vector(&spring.hardening);
                 // The file gives it to either side.
@@ -119,17 +132,17 @@ pub(crate) fn pushes<const N: usize>(scenario: &Scenario) -> Vec<Push<N>> {
 }
 
 /// The law with everything between it and the robot, started at `x` with the springs holding the links.
-pub(crate) fn controller<'a, L, R, F, const N: usize>(
+pub(crate) fn controller<L, R, F, const N: usize>(
     scenario: &Scenario,
-    robot: &'a Fjr<f64, L, N>,
-    reference: &'a R,
+    robot: Fjr<f64, L, N>,
+    reference: R,
     law: F,
     x: &Motion<f64, N>,
-) -> Controller<'a, L, R, F, AnyEstimator<N>, N>
+) -> Controller<L, R, F, AnyEstimator<N>, N>
 where
     L: Links<f64, N>,
     R: Reference<f64, N>,
-    F: Fn(f64, &Motion<f64, N>, &Vector<Jet<f64, 5>, N>) -> Vector<f64, N>,
+    F: Feedback<L, N>,
 {
     let Scenario { imperfections, seed, control_period: period, .. } = scenario;
     // Until the first command arrives the motors are held where they are.
@@ -139,7 +152,7 @@ where
     controller.actuator = actuator(imperfections, *seed, *period, before);
     controller.estimator = estimator(scenario.estimator.as_ref(), imperfections, *period);
     controller.disturbance = scenario.disturbance_observer.as_ref().map(|settings| Compensation {
-        observer: DisturbanceObserver::new(&vector(&settings.bandwidth), *period)
+        observer: DisturbanceObserver::new(&padded(&settings.bandwidth, 1.0), *period)
             .expect("bandwidths are above 0"),
         compensate: settings.compensate,
     });
@@ -156,8 +169,8 @@ fn guard<const N: usize>(
     let unbounded = Vector([f64::INFINITY; N]);
     let guard = Guard::new(Settings {
         period,
-        torque_limit: vector(&settings.torque_limit),
-        torque_rate_limit: vector(&settings.torque_rate_limit),
+        torque_limit: padded(&settings.torque_limit, f64::INFINITY),
+        torque_rate_limit: padded(&settings.torque_rate_limit, f64::INFINITY),
         stop_damping: vector(&settings.stop_damping),
         allowed_age: settings.max_age,
         rejoin_after: settings.rejoin_after,
@@ -169,7 +182,7 @@ fn guard<const N: usize>(
 }
 
 /// The smallest of the torque limits that are known, per joint [N m]: the robot's, the guard's, the drive's.
-pub(crate) fn torque_limit<const N: usize>(scenario: &Scenario) -> Vector<f64, N> {
+pub(crate) fn torque_limit(scenario: &Scenario) -> Vec<f64> {
     let robot = &scenario.robot.limits.torque;
     let guard = scenario.guard.as_ref().map(|guard| &guard.torque_limit);
     let drive = scenario.imperfections.iter().find_map(|imperfection| match imperfection {
@@ -177,5 +190,6 @@ pub(crate) fn torque_limit<const N: usize>(scenario: &Scenario) -> Vector<f64, N
         _ => None,
     });
     let known = [Some(robot), guard, drive];
-    Vector::from_fn(|i| known.iter().flatten().fold(f64::INFINITY, |least, limit| least.min(limit[i])))
+    let least = |i: usize| known.iter().flatten().fold(f64::INFINITY, |least, limit| least.min(limit[i]));
+    (0..robot.len()).map(least).collect()
 }

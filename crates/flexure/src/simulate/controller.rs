@@ -1,23 +1,23 @@
 //! What stands between the motion of the robot and the torque on its motors: sensors, estimator, law, guard and drive.
 
 use flexure_core::estimate::{DisturbanceObserver, Estimator, FilteredDifference};
-use flexure_core::guard::{Age, Guard, Phase, Status};
+use flexure_core::guard::{Age, Certificate, Guard, Phase};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion};
 use flexure_core::reference::{Reference, SmoothStart, Stop};
 use flexure_core::scalar::Jet;
 
 use crate::imperfections::stages::{Actuator, Measured, Pieces, Sensors, Tick};
+use crate::laws::{self, AnyLaw};
 
 /// A law with everything between it and the robot; without any of that, an ideal loop.
 ///
-/// `robot` is the model that law, estimator and guard go by: the simulated robot may be another. `law(t, x, q_ld)` gives the
-/// motor torque [N m].
-pub struct Controller<'a, L, R, F, E, const N: usize> {
+/// `robot` is the model that law, estimator and guard go by: the simulated robot may be another.
+pub struct Controller<L, R, F, E, const N: usize> {
     /// The robot as the controller knows it.
-    pub robot: &'a Fjr<f64, L, N>,
+    pub robot: Fjr<f64, L, N>,
     /// Where the links shall be.
-    pub reference: &'a R,
+    pub reference: R,
     /// The law.
     pub law: F,
     /// From motion to readings.
@@ -30,7 +30,48 @@ pub struct Controller<'a, L, R, F, E, const N: usize> {
     pub guard: Option<Guarded<N>>,
     /// From command to torque.
     pub actuator: Actuator<N>,
-    state: State<N>,
+    pub(crate) state: State<N>,
+}
+
+/// A law as the loop asks it.
+pub trait Feedback<L, const N: usize> {
+    /// Motor torque [N m] for the robot `robot` that moves as `x` at the time `t` in s, with the reference `q_ld` in rad to
+    /// order 4.
+    fn torque(
+        &self,
+        robot: &Fjr<f64, L, N>,
+        t: f64,
+        x: &Motion<f64, N>,
+        q_ld: &Vector<Jet<f64, 5>, N>,
+    ) -> Vector<f64, N>;
+}
+
+impl<L: Links<f64, N>, const N: usize> Feedback<L, N> for AnyLaw<f64, N> {
+    fn torque(
+        &self,
+        robot: &Fjr<f64, L, N>,
+        _: f64,
+        x: &Motion<f64, N>,
+        q_ld: &Vector<Jet<f64, 5>, N>,
+    ) -> Vector<f64, N> {
+        laws::torque(self, robot, x, q_ld)
+    }
+}
+
+/// A law that brings its own model along.
+impl<L, F, const N: usize> Feedback<L, N> for F
+where
+    F: Fn(f64, &Motion<f64, N>, &Vector<Jet<f64, 5>, N>) -> Vector<f64, N>,
+{
+    fn torque(
+        &self,
+        _: &Fjr<f64, L, N>,
+        t: f64,
+        x: &Motion<f64, N>,
+        q_ld: &Vector<Jet<f64, 5>, N>,
+    ) -> Vector<f64, N> {
+        self(t, x, q_ld)
+    }
 }
 
 /// A disturbance observer and what is made of its estimate.
@@ -53,12 +94,12 @@ pub struct Guarded<const N: usize> {
 
 /// What the controller remembers from one instant to the next.
 #[derive(Clone, Debug)]
-struct State<const N: usize> {
+pub(crate) struct State<const N: usize> {
     /// Mean motor torque since the last instant, as the drive reports it: after its delays and limits, with the torque constant that
     /// it believes in [N m].
-    applied: Vector<f64, N>,
+    pub(crate) applied: Vector<f64, N>,
     /// Where the robot was when the law took over from the guard.
-    rejoined: Option<Stop<f64, N>>,
+    pub(crate) rejoined: Option<Stop<f64, N>>,
 }
 
 /// What a controller does at an instant.
@@ -75,31 +116,33 @@ pub struct Action<const N: usize> {
     /// Torque on the motors until the next instant [N m]: what the drive believes to give when it comes from
     /// [`step`](Controller::step), what the motors give when a loop shows it.
     pub applied: Pieces<N>,
-    /// What the guard says; none without one.
-    pub status: Option<Status<N>>,
+    /// Whether a certificate of the law can hold: not while the guard limits torques or stops the robot.
+    pub certificate: bool,
+    /// Whether the guard has stopped the robot.
+    pub stopped: bool,
 }
 
-impl<'a, L, R, F, const N: usize> Controller<'a, L, R, F, FilteredDifference<f64, N>, N>
+impl<L, R, F, const N: usize> Controller<L, R, F, FilteredDifference<f64, N>, N>
 where
     L: Links<f64, N>,
     R: Reference<f64, N>,
-    F: Fn(f64, &Motion<f64, N>, &Vector<Jet<f64, 5>, N>) -> Vector<f64, N>,
+    F: Feedback<L, N>,
 {
     /// The law on true states, its torque on the motors at once.
-    pub fn ideal(robot: &'a Fjr<f64, L, N>, reference: &'a R, law: F) -> Self {
+    pub fn ideal(robot: Fjr<f64, L, N>, reference: R, law: F) -> Self {
         Self::new(robot, reference, law)
     }
 }
 
-impl<'a, L, R, F, E, const N: usize> Controller<'a, L, R, F, E, N>
+impl<L, R, F, E, const N: usize> Controller<L, R, F, E, N>
 where
     L: Links<f64, N>,
     R: Reference<f64, N>,
-    F: Fn(f64, &Motion<f64, N>, &Vector<Jet<f64, 5>, N>) -> Vector<f64, N>,
+    F: Feedback<L, N>,
     E: Estimator<f64, N>,
 {
     /// The law with nothing between it and the robot yet.
-    pub fn new(robot: &'a Fjr<f64, L, N>, reference: &'a R, law: F) -> Self {
+    pub fn new(robot: Fjr<f64, L, N>, reference: R, law: F) -> Self {
         let state = State { applied: Vector::ZERO, rejoined: None };
         let (sensors, actuator) = (Sensors::default(), Actuator::default());
         Self {
@@ -134,18 +177,18 @@ where
         let seen = match &mut self.estimator {
             None => measured.motion,
             Some(estimator) => {
-                estimator.update(self.robot, &measured.motion.q_l, &measured.motion.q_m, &applied)
+                estimator.update(&self.robot, &measured.motion.q_l, &measured.motion.q_m, &applied)
             }
         };
         let disturbance = self.disturbance.as_mut().map(|disturbance| {
-            (disturbance.observer.update(self.robot, &seen, &applied).motor, disturbance.compensate)
+            (disturbance.observer.update(&self.robot, &seen, &applied).motor, disturbance.compensate)
         });
         let reference = self.reference_at(tick.t);
         let compensated = match disturbance {
             Some((torque, true)) => torque,
             _ => Vector::ZERO,
         };
-        let law = |x: &Motion<f64, N>| (self.law)(tick.t, x, &reference) - compensated;
+        let law = |x: &Motion<f64, N>| self.law.torque(&self.robot, tick.t, x, &reference) - compensated;
         let (u_m, status) = match &mut self.guard {
             None => (law(&seen), None),
             Some(Guarded { guard, .. }) => {
@@ -160,19 +203,27 @@ where
         let pieces = self.actuator.actuate(tick, u_m);
         self.state.applied = pieces.mean(tick.period);
         let disturbance = disturbance.map_or(Vector::ZERO, |(torque, _)| torque);
-        Action { reference, seen, disturbance, u_m, applied: pieces, status }
+        Action {
+            reference,
+            seen,
+            disturbance,
+            u_m,
+            applied: pieces,
+            certificate: status.is_none_or(|status| status.certificate() == Certificate::Holds),
+            stopped: status.is_some_and(|status| status.phase != Phase::Following),
+        }
     }
 
     /// Torque of the law [N m] at any time, for loops in continuous time: no device stands in between.
     pub fn torque(&self, t: f64, x: &Motion<f64, N>) -> Vector<f64, N> {
-        (self.law)(t, x, &self.reference.at(t))
+        self.law.torque(&self.robot, t, x, &self.reference.at(t))
     }
 
     /// The reference; after a stop it is joined from where the robot was left.
     fn reference_at(&self, t: f64) -> Vector<Jet<f64, 5>, N> {
         match (&self.state.rejoined, &self.guard) {
             (Some(from), Some(guarded)) => {
-                SmoothStart { from: *from, duration: guarded.rejoin, then: self.reference }.at(t)
+                SmoothStart { from: *from, duration: guarded.rejoin, then: &self.reference }.at(t)
             }
             _ => self.reference.at(t),
         }

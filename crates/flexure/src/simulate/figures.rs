@@ -1,17 +1,14 @@
 //! Running figures of a closed loop.
 
-use flexure_core::guard::{Certificate, Phase};
-use flexure_core::linalg::Vector;
-
-use crate::simulate::Instant;
+use crate::simulate::interface::Observed;
 
 /// Errors below this, in rad, count as settled.
 pub const SETTLED: f64 = 1e-3;
 
 /// What a run is judged by, instant by instant.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Figures<const N: usize> {
-    torque_limit: Vector<f64, N>,
+#[derive(Clone, Debug)]
+pub(crate) struct Figures {
+    torque_limit: Vec<f64>,
     pub(crate) instants: u32,
     pub(crate) max_abs_e_l: f64,
     pub(crate) final_abs_e_l: f64,
@@ -22,17 +19,17 @@ pub(crate) struct Figures<const N: usize> {
     stopped: bool,
     at_limit: u32,
     suspended: u32,
-    squared_e_l: Vector<f64, N>,
-    squared_u_m: Vector<f64, N>,
-    squared_change: Vector<f64, N>,
-    last: Option<Vector<f64, N>>,
+    squared_e_l: Vec<f64>,
+    squared_u_m: Vec<f64>,
+    squared_change: Vec<f64>,
+    last: Vec<f64>,
 }
 
-impl<const N: usize> Figures<N> {
+impl Figures {
     /// Of nothing yet; `torque_limit` is the smallest of the limits that are known per joint [N m].
-    pub(crate) fn new(torque_limit: Vector<f64, N>) -> Self {
+    pub(crate) fn new(torque_limit: Vec<f64>) -> Self {
+        let zeros = || vec![0.0; torque_limit.len()];
         Self {
-            torque_limit,
             instants: 0,
             max_abs_e_l: 0.0,
             final_abs_e_l: 0.0,
@@ -43,38 +40,41 @@ impl<const N: usize> Figures<N> {
             stopped: false,
             at_limit: 0,
             suspended: 0,
-            squared_e_l: Vector::ZERO,
-            squared_u_m: Vector::ZERO,
-            squared_change: Vector::ZERO,
-            last: None,
+            squared_e_l: zeros(),
+            squared_u_m: zeros(),
+            squared_change: zeros(),
+            last: Vec::with_capacity(torque_limit.len()),
+            torque_limit,
         }
     }
 
     /// Takes in an instant; `rate` is the contraction rate there [1/s], NaN for none.
-    pub(crate) fn record(&mut self, instant: &Instant<'_, N>, rate: f64) {
-        let (action, u_m) = (instant.action, instant.action.applied.last());
-        let e_l = instant.motion.q_l - action.reference.map(|jet| jet.coefficient(0));
-        let (error, torque) = (largest(&e_l.map(f64::abs)), largest(&u_m.map(f64::abs)));
+    pub(crate) fn record(&mut self, instant: &Observed, rate: f64) {
+        let (mut error, mut torque) = (0.0_f64, 0.0_f64);
+        let links = instant.motion.iter().zip(&instant.reference);
+        for (sum, (q_l, q_ld)) in self.squared_e_l.iter_mut().zip(links) {
+            let e_l = q_l - q_ld;
+            error = error.max(e_l.abs());
+            *sum += e_l * e_l;
+        }
+        for (i, &u_m) in instant.applied.iter().enumerate() {
+            torque = torque.max(u_m.abs());
+            self.squared_u_m[i] += u_m * u_m;
+            let change = self.last.get(i).map_or(0.0, |last| u_m - last);
+            self.squared_change[i] += change * change;
+        }
+        self.last.clone_from(&instant.applied);
         self.instants += 1;
         self.max_abs_e_l = self.max_abs_e_l.max(error);
         self.final_abs_e_l = error;
         self.settled_since = if error < SETTLED { self.settled_since.or(Some(instant.t)) } else { None };
         self.max_abs_u_m = self.max_abs_u_m.max(torque);
         self.rate = self.rate.min(rate);
-        let limited = (0..N).any(|k| action.u_m[k].abs() >= self.torque_limit[k]);
+        let limited = instant.command.iter().zip(&self.torque_limit).any(|(u, limit)| u.abs() >= *limit);
         self.at_limit += u32::from(limited);
-        let held = action.status.is_none_or(|status| status.certificate() == Certificate::Holds);
-        self.suspended += u32::from(limited || !held);
-        let stopped = action.status.is_some_and(|status| status.phase != Phase::Following);
-        self.stops += u32::from(stopped && !self.stopped);
-        self.stopped = stopped;
-        let change = self.last.map_or(Vector::ZERO, |last| u_m - last);
-        self.last = Some(u_m);
-        for (sum, x) in
-            [(&mut self.squared_e_l, e_l), (&mut self.squared_u_m, u_m), (&mut self.squared_change, change)]
-        {
-            *sum += x.map(|x| x * x);
-        }
+        self.suspended += u32::from(limited || !instant.certificate);
+        self.stops += u32::from(instant.stopped && !self.stopped);
+        self.stopped = instant.stopped;
     }
 
     pub(crate) fn rms_e_l(&self) -> f64 {
@@ -106,11 +106,7 @@ impl<const N: usize> Figures<N> {
         f64::from(count) / f64::from(self.instants.max(1))
     }
 
-    fn root_mean(&self, squared: &Vector<f64, N>) -> f64 {
-        (largest(squared) / f64::from(self.instants)).sqrt()
+    fn root_mean(&self, squared: &[f64]) -> f64 {
+        (squared.iter().copied().fold(0.0, f64::max) / f64::from(self.instants)).sqrt()
     }
-}
-
-fn largest<const N: usize>(v: &Vector<f64, N>) -> f64 {
-    v.iter().fold(0.0, f64::max)
 }

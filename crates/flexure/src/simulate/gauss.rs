@@ -23,12 +23,12 @@ pub struct StepFailure {
 /// Integrates a plant over intervals, with steps chosen for accuracy.
 #[derive(Clone, Debug)]
 pub struct Integrator {
-    scheme: Scheme,
+    pub(crate) scheme: Scheme,
     /// Tolerated local error of a step, relative to the speed of the joint.
-    tolerance: f64,
+    pub(crate) tolerance: f64,
     /// Last good step in s: the first guess for the next.
-    step: f64,
-    steps: u64,
+    pub(crate) step: f64,
+    pub(crate) steps: u64,
 }
 
 /// Speed [rad/s] below which errors count as absolute.

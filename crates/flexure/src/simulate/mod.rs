@@ -1,17 +1,21 @@
 //! The closed loop in time: a sampled controller on a plant that is integrated between samples; runs with trace and summary.
 
 mod assembly;
-mod closed_loop;
 mod controller;
 mod figures;
 mod gauss;
+mod held;
+mod interface;
 mod ledger;
 mod limits;
+mod memory;
+mod names;
 mod newton;
 mod preload;
-mod recorder;
 mod run;
 mod scheme;
+mod signals;
+mod simulation;
 mod stepper;
 mod stepping;
 mod stiction;
@@ -20,14 +24,15 @@ mod trace;
 mod write_trace;
 
 pub use assembly::TOLERANCE;
-pub use closed_loop::{Cause, ClosedLoop, Divergence, Hold, Instant, Outcome};
-pub use controller::{Action, Compensation, Controller, Guarded};
+pub use controller::{Action, Compensation, Controller, Feedback, Guarded};
 pub use figures::SETTLED;
 pub use gauss::{Integrator, StepFailure};
+pub use interface::{Commanded, Errors, Loop, Observed, Signal};
 pub use ledger::Ledger;
 pub use limits::exceeded;
 pub use preload::preload;
 pub use run::{Run, measure, run};
+pub use simulation::{Cause, Divergence, Hold, Instant, Simulation, Timing};
 pub use stepper::Stepper;
 pub use stepping::Stepping;
 pub use summary::Summary;

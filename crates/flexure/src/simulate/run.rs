@@ -2,21 +2,16 @@
 
 use std::time::Instant as Clock;
 
-use flexure_core::linalg::Vector;
-use flexure_core::model::{Fjr, Links, Motion};
-use flexure_core::scalar::Jet;
-
-use crate::files::{Problem, Problems};
+use crate::files::Problems;
 use crate::imperfections::Imperfection;
-use crate::laws::{self, AnyLaw, BlockRates, any_law};
-use crate::references::AnyReference;
-use crate::robot::{PairVisitor, with_pair};
+use crate::progress::{Progress, tell, unwatched};
 use crate::scenario::Scenario;
+use crate::simulate::assembly;
 use crate::simulate::figures::Figures;
-use crate::simulate::recorder::{Columns, Recorder};
+use crate::simulate::interface::{Loop, Observed};
+use crate::simulate::simulation::Divergence;
 use crate::simulate::summary::Summary;
 use crate::simulate::trace::Trace;
-use crate::simulate::{Divergence, Instant, Outcome, assembly};
 
 /// A finished run.
 #[derive(Clone, Debug)]
@@ -29,100 +24,85 @@ pub struct Run {
     pub divergence: Option<Divergence>,
 }
 
-/// Simulates a scenario. `progress` is told the fraction done, now and then.
+/// Simulates a scenario. `progress` is told the fraction done at every control instant.
 ///
 /// # Errors
-/// If the robot has more joints than this program was built for, its links cannot contain its coupled rotors, or the
-/// samples of the reference make no path.
-pub fn run(scenario: &Scenario, progress: &(dyn Fn(f64) + Sync)) -> Result<Run, Problems> {
+/// As [`Scenario::open`], and [`Problems::interrupted`] if it was broken off.
+pub fn run(scenario: &Scenario, progress: Progress<'_>) -> Result<Run, Problems> {
     simulate(scenario, progress, true)
 }
 
 /// Simulates a scenario for its figures alone: no trace, no rates. Faster, for many runs.
 ///
 /// # Errors
-/// As [`run`].
+/// As [`Scenario::open`].
 pub fn measure(scenario: &Scenario) -> Result<Run, Problems> {
-    simulate(scenario, &|_| (), false)
+    simulate(scenario, &unwatched, false)
 }
 
-fn simulate(scenario: &Scenario, progress: &(dyn Fn(f64) + Sync), traced: bool) -> Result<Run, Problems> {
-    let simulated = assembly::simulated(scenario);
-    with_pair(&scenario.robot, &simulated, Simulate { scenario, progress, traced })?
-}
-
-struct Simulate<'a> {
-    scenario: &'a Scenario,
-    progress: &'a (dyn Fn(f64) + Sync),
-    traced: bool,
-}
-
-impl PairVisitor for Simulate<'_> {
-    type Output = Result<Run, Problems>;
-
-    fn visit<L: Links<f64, N> + Clone + Sync, const N: usize>(
-        self,
-        model: Fjr<f64, L, N>,
-        simulated: Fjr<f64, L, N>,
-    ) -> Self::Output {
-        let Self { scenario, progress, traced } = self;
-        let started = Clock::now();
-        let plant = assembly::plant(scenario, simulated);
-        let start = assembly::initial(scenario);
-        if !plant.carries_its_rotors(&start.q_l) {
-            return Err(too_heavy(scenario).into());
+fn simulate(scenario: &Scenario, progress: Progress<'_>, traced: bool) -> Result<Run, Problems> {
+    let started = Clock::now();
+    let mut held = scenario.open()?;
+    let mut observed = Observed::new(held.joints());
+    let mut figures = Figures::new(assembly::torque_limit(scenario));
+    let mut recorder = traced.then(|| Recorder::new(&*held));
+    let mut divergence = None;
+    for _ in 0..=periods(scenario) {
+        if let Err(diverged) = held.step() {
+            divergence = Some(diverged);
+            break;
         }
-        let law: AnyLaw<f64, N> = any_law(&scenario.controller, |x| x);
-        let reference = AnyReference::<f64, N>::new(scenario)?;
-        let torque =
-            |_: f64, x: &Motion<f64, N>, q_ld: &Vector<Jet<f64, 5>, N>| laws::torque(&law, &model, x, q_ld);
-        let mut controller = assembly::controller(scenario, &model, &reference, torque, &start);
-        let mut recorder = traced.then(|| Recorder::new(N, columns(scenario, &law)));
-        let mut figures = Figures::new(assembly::torque_limit(scenario));
-        let mut observe = |instant: &Instant<'_, N>| {
-            let errors = match (&law, &recorder) {
-                (AnyLaw::Vcbc(law), Some(_)) => {
-                    let command = laws::command(law, &model, instant.motion, &instant.action.reference);
-                    let rate = BlockRates::at(&model, law, &instant.motion.q_l, &command).overall();
-                    Some((command, rate))
-                }
-                _ => None,
-            };
-            figures.record(instant, errors.map_or(f64::NAN, |(_, rate)| rate));
-            if let Some(recorder) = &mut recorder {
-                recorder.record(&model, instant, errors.as_ref().map(|(command, rate)| (command, *rate)));
-            }
-            progress(instant.t / scenario.duration);
-        };
-        let settings = assembly::settings(scenario);
-        let pushes = assembly::pushes(scenario);
-        let outcome = settings.run(&plant, start, &pushes, &mut controller, &mut observe);
-        let trace = recorder.map(Recorder::finish).unwrap_or_default();
-        let summary = summary(scenario, &figures, &outcome, started.elapsed().as_secs_f64());
-        Ok(Run { summary, trace, divergence: outcome.divergence })
+        held.observe(&mut observed);
+        let rate = recorder.as_mut().map_or(f64::NAN, |recorder| recorder.record(&*held));
+        figures.record(&observed, rate);
+        tell(progress, observed.t / scenario.duration)?;
+    }
+    let seconds = started.elapsed().as_secs_f64();
+    let summary = summary(scenario, &figures, &*held, divergence.is_some(), seconds);
+    Ok(Run { summary, trace: recorder.map(|recorder| recorder.trace).unwrap_or_default(), divergence })
+}
+
+/// Number of control periods in the run.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to [1, 1e9]")]
+fn periods(scenario: &Scenario) -> u32 {
+    (scenario.duration / scenario.control_period).round().clamp(1.0, 1e9) as u32
+}
+
+/// Reads every signal at every instant.
+struct Recorder {
+    trace: Trace,
+    row: Vec<f64>,
+    /// The column of the contraction rate, if there is one.
+    rate: Option<usize>,
+}
+
+impl Recorder {
+    fn new(held: &dyn Loop) -> Self {
+        let signals = held.signals();
+        Self {
+            trace: Trace::new(signals.iter().map(|signal| (signal.name.clone(), signal.unit))),
+            row: vec![0.0; signals.len()],
+            rate: signals.iter().position(|signal| signal.name == "rate"),
+        }
+    }
+
+    /// Adds a row; returns the contraction rate [1/s], NaN for none.
+    fn record(&mut self, held: &dyn Loop) -> f64 {
+        held.read(&mut self.row).expect("a slot per signal");
+        self.trace.push(&self.row);
+        self.rate.map_or(f64::NAN, |column| self.row[column])
     }
 }
 
-/// What is recorded of a run.
-fn columns<const N: usize>(scenario: &Scenario, law: &AnyLaw<f64, N>) -> Columns {
-    let Scenario { imperfections, estimator, disturbance_observer, guard, .. } = scenario;
-    Columns {
-        errors: matches!(law, AnyLaw::Vcbc(_)),
-        devices: imperfections.iter().any(Imperfection::is_of_devices)
-            || estimator.is_some()
-            || disturbance_observer.is_some()
-            || guard.is_some(),
-    }
-}
-
-fn summary<const N: usize>(
+fn summary(
     scenario: &Scenario,
-    figures: &Figures<N>,
-    outcome: &Outcome,
+    figures: &Figures,
+    held: &dyn Loop,
+    diverged: bool,
     wall_seconds: f64,
 ) -> Summary {
     // Errors of a run that diverged are beyond those that were recorded: no number stands for them.
-    let ended = |error: f64| if outcome.divergence.is_none() { error } else { f64::NAN };
+    let ended = |error: f64| if !diverged { error } else { f64::NAN };
     let rate = figures.seen(figures.rate);
     Summary {
         name: scenario.name.clone(),
@@ -133,7 +113,7 @@ fn summary<const N: usize>(
         max_abs_e_l: ended(figures.max_abs_e_l),
         rms_e_l: ended(figures.rms_e_l()),
         final_abs_e_l: ended(figures.final_abs_e_l),
-        settling_time: figures.settled_since.filter(|_| outcome.divergence.is_none()),
+        settling_time: figures.settled_since.filter(|_| !diverged),
         max_abs_u_m: figures.seen(figures.max_abs_u_m),
         rms_u_m: figures.rms_u_m(),
         rms_torque_change: figures.rms_torque_change(),
@@ -142,18 +122,8 @@ fn summary<const N: usize>(
         stops: figures.stops,
         rate_measured: if rate.is_finite() { rate } else { f64::NAN },
         rate_certified: None,
-        energy_drift: outcome.energy_drift,
-        steps: outcome.steps,
+        energy_drift: held.energy_drift(),
+        steps: held.steps(),
         wall_seconds,
     }
-}
-
-fn too_heavy(scenario: &Scenario) -> Problem {
-    let message = format!(
-        "with coupled rotors the mass matrix of {} is not positive definite at the start",
-        scenario.robot.name
-    );
-    let help = "rotors have motor_inertia / gear_ratio² about their axes, and link inertias must contain the rotors that \
-                the links carry: a gear ratio is too small, or the links lack their motors";
-    scenario.places.problem("plant.rotor_coupling", "rotors", message, help)
 }

@@ -18,12 +18,12 @@ use crate::simulate::stiction::{Slid, Stiction};
 #[derive(Clone, Debug)]
 pub struct Stepping<const N: usize> {
     /// Longest step in s.
-    longest: f64,
+    pub(crate) longest: f64,
     /// Torque of the hysteresis on the links [N m].
-    hysteresis: Vector<f64, N>,
+    pub(crate) hysteresis: Vector<f64, N>,
     /// Accelerations of the last step [rad/s²].
-    last: Sides<N>,
-    steps: u64,
+    pub(crate) last: Sides<N>,
+    pub(crate) steps: u64,
 }
 
 /// Spring torque over a step: `load` − `slope` (a_l − a_m).

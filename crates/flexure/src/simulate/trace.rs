@@ -20,12 +20,8 @@ pub struct Trace {
 impl Trace {
     /// An empty trace with the given `(name, unit)` columns.
     pub fn new(columns: impl IntoIterator<Item = (String, &'static str)>) -> Self {
-        Self {
-            columns: columns
-                .into_iter()
-                .map(|(name, unit)| Column { name, unit, values: Vec::new() })
-                .collect(),
-        }
+        let column = |(name, unit)| Column { name, unit, values: Vec::new() };
+        Self { columns: columns.into_iter().map(column).collect() }
     }
 
     /// Appends one instant: a value per column, in the order of [`columns`](Self::columns).

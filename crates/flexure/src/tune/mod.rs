@@ -2,11 +2,14 @@
 
 mod search;
 
+use std::cell::Cell;
+
 pub use search::{BestPoint, search};
 
 use crate::feasible;
 use crate::files::Problems;
 use crate::laws::Controller;
+use crate::progress::Progress;
 use crate::scenario::Scenario;
 use crate::simulate::{Run, measure};
 
@@ -34,8 +37,13 @@ const CHATTER: f64 = 0.05;
 /// vector of gains has a factor of its own, the same for all joints. What is searched is the logarithms of these factors.
 ///
 /// # Errors
-/// As [`run`](crate::simulate::run).
-pub fn tune(scenario: &Scenario, budget: usize, seed: u64) -> Result<Tuned, Problems> {
+/// As [`run`](crate::simulate::run), at the latest after the run that is under way.
+pub fn tune(
+    scenario: &Scenario,
+    budget: usize,
+    seed: u64,
+    progress: Progress<'_>,
+) -> Result<Tuned, Problems> {
     let mut trial = feasible::pinned(scenario)?;
     // Whatever is wrong with the scenario is so for all gains.
     let start_cost = cost(&measure(&trial)?);
@@ -49,12 +57,24 @@ pub fn tune(scenario: &Scenario, budget: usize, seed: u64) -> Result<Tuned, Prob
         scenario.controller.with_gains(&scaled.collect::<Vec<Vec<f64>>>())
     };
     let trials = std::cell::RefCell::new(&mut trial);
+    let (tried, broken) = (Cell::new(0_usize), Cell::new(false));
     let at = |exponents: &[f64]| {
         let mut trial = trials.borrow_mut();
+        tried.set(tried.get() + 1);
+        if progress(tried.get() as f64 / budget as f64).is_break() {
+            broken.set(true);
+        }
+        // What the search still asks for costs nothing.
+        if broken.get() {
+            return f64::INFINITY;
+        }
         trial.controller = scaled(exponents);
         measure(&trial).map_or(f64::INFINITY, |run| cost(&run))
     };
     let best = search(1 + gains.len(), HALF_WIDTH, budget, seed, &at);
+    if broken.get() {
+        return Err(Problems::interrupted());
+    }
     Ok(Tuned { controller: scaled(&best.at), cost: best.cost, start_cost, evaluations: best.evaluations })
 }
 

@@ -79,6 +79,11 @@ impl<C: Scalar, const N: usize> Links<C, N> for Tree<C, N> {
     where
         C: 'a;
 
+    #[inline]
+    fn joints(&self) -> usize {
+        self.count
+    }
+
     /// Composite rigid bodies.
     #[inline]
     fn mass_matrix<T: Over<C>>(&self, q: &Vector<T, N>) -> Matrix<T, N, N> {

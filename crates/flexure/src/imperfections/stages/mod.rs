@@ -18,6 +18,7 @@ mod saturation;
 mod slew;
 
 use flexure_core::linalg::Vector;
+use flexure_core::memory::{Memory, Port};
 use flexure_core::model::Motion;
 
 pub use current::CurrentQuantisation;
@@ -78,13 +79,13 @@ impl<const N: usize> Measured<N> {
 }
 
 /// A stage between the motion and what is read of it.
-pub trait Sensing<const N: usize>: Send {
+pub trait Sensing<const N: usize>: Send + Sync {
     /// Turns what the stage before delivers into what this one does.
     fn sense(&mut self, instant: &Tick, measured: &mut Measured<N>);
 }
 
 /// A stage between commanded torque and motor.
-pub trait Actuating<const N: usize>: Send {
+pub trait Actuating<const N: usize>: Send + Sync {
     /// Turns the torque [N m] that the stage before gives into what this one does.
     fn actuate(&mut self, instant: &Tick, torque: &mut Vector<f64, N>);
 }
@@ -142,4 +143,12 @@ impl<const N: usize> Actuator<N> {
             None => Pieces::constant(torque),
         }
     }
+}
+
+impl<const N: usize> Memory<f64> for Sensors<N> {
+    fn memory(&mut self, _: &mut dyn Port<f64>) {}
+}
+
+impl<const N: usize> Memory<f64> for Actuator<N> {
+    fn memory(&mut self, _: &mut dyn Port<f64>) {}
 }

@@ -5,8 +5,8 @@ use flexure_core::linalg::Vector;
 /// Motor torque over a control period, constant on at most two pieces of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pieces<const N: usize> {
-    first: Vector<f64, N>,
-    change: Option<(f64, Vector<f64, N>)>,
+    pub(crate) first: Vector<f64, N>,
+    pub(crate) change: Option<(f64, Vector<f64, N>)>,
 }
 
 impl<const N: usize> Pieces<N> {

@@ -63,8 +63,8 @@ impl<const N: usize> StateBox<N> {
         }
     }
 
-    /// The coordinates in the order of [`VcbcLoop`].
-    pub fn coordinates(&self) -> Vec<Coordinate> {
+    /// The coordinates of `n` joints in the order of [`VcbcLoop`].
+    pub fn coordinates(&self, n: usize) -> Vec<Coordinate> {
         let blocks = [
             ("e_l", units::ANGLE, &self.error_l),
             ("e_m", units::ANGLE, &self.error_m),
@@ -79,7 +79,7 @@ impl<const N: usize> StateBox<N> {
                 unit: unit.plain,
                 range,
             };
-            ranges.iter().enumerate().map(coordinate).collect::<Vec<_>>()
+            ranges.iter().take(n).enumerate().map(coordinate).collect::<Vec<_>>()
         };
         blocks.into_iter().flat_map(named).collect()
     }
@@ -90,8 +90,12 @@ pub fn vcbc<LI, PlI, PmI, L, Pl, Pm, const N: usize>(
     bounds: VcbcLoop<Interval, LI, PlI, PmI, N>,
     point: VcbcLoop<f64, L, Pl, Pm, N>,
     region: &StateBox<N>,
-) -> VcbcFlow<LI, PlI, PmI, L, Pl, Pm, N> {
-    Twins { bounds, point, coordinates: region.coordinates() }
+) -> VcbcFlow<LI, PlI, PmI, L, Pl, Pm, N>
+where
+    LI: Links<Interval, N>,
+{
+    let coordinates = region.coordinates(bounds.robot.links.joints());
+    Twins { bounds, point, coordinates }
 }
 
 impl<C, L, Pl, Pm, const N: usize> System<C> for VcbcLoop<C, L, Pl, Pm, N>
@@ -104,36 +108,37 @@ where
     /// Ẇ = δzᵀ G δz, G = diag(Π_l, Π_m, 1, 1) F + diag(½ Π̇_l, 0, −½ Ṁ_l, 0), F the Jacobian of the rates of
     /// (q̃_l, q̃_m, σ_l, σ_m): d/dt ½ δσᵀ M⁻¹ δσ = δsᵀ δσ̇ − ½ δsᵀ Ṁ δs.
     fn balance(&self, at: &[C]) -> Balance<C> {
-        let block = |k: usize| Vector::from_fn(|i| at[k * N + i]);
+        let n = self.robot.links.joints();
+        let block = |k: usize| block(at, n, k);
         let (q_l, v_l): (Vector<C, N>, Vector<C, N>) = (block(4), block(5));
         let model = LinkMatrices::new(&self.robot.links, &q_l, &v_l);
         let E_l = model.workless();
 
-        let F = jacobian(&at[..4 * N], 4 * N, |z| self.rates(z, &E_l));
+        let F = jacobian(&at[..4 * n], 4 * n, |z| self.rates(z, &E_l));
         let (Pi_l, Pi_l_rate) = self.link_metric(at, &E_l);
         let half = C::from_f64(0.5);
-        let carried = |i: usize, j: usize| match i / N {
+        let carried = |i: usize, j: usize| match i / n {
             0 => Pi_l[i] * F[(i, j)],
-            1 => self.law.motor.metric[i - N] * F[(i, j)],
+            1 => self.law.motor.metric[i - n] * F[(i, j)],
             _ => F[(i, j)],
         };
-        let inside = |i: usize, j: usize, k: usize| i / N == k && j / N == k;
-        let dissipation = Symmetric::from_fn(4 * N, |i, j| {
+        let inside = |i: usize, j: usize, k: usize| i / n == k && j / n == k;
+        let dissipation = Symmetric::from_fn(4 * n, |i, j| {
             let metric_rate = if i == j && inside(i, j, 0) {
                 half * Pi_l_rate[i]
             } else if inside(i, j, 2) {
-                -half * model.mass_rate[(i - 2 * N, j - 2 * N)]
+                -half * model.mass_rate[(i - 2 * n, j - 2 * n)]
             } else {
                 C::ZERO
             };
             -(symmetric_part(carried, i, j) + metric_rate)
         });
-        let weight = Symmetric::from_fn(4 * N, |i, j| match i / N {
-            2 if inside(i, j, 2) => model.mass[(i - 2 * N, j - 2 * N)],
+        let weight = Symmetric::from_fn(4 * n, |i, j| match i / n {
+            2 if inside(i, j, 2) => model.mass[(i - 2 * n, j - 2 * n)],
             _ if i != j => C::ZERO,
             0 => Pi_l[i],
-            1 => self.law.motor.metric[i - N],
-            _ => self.robot.motor_inertia[i - 3 * N],
+            1 => self.law.motor.metric[i - n],
+            _ => self.robot.motor_inertia[i - 3 * n],
         });
         Balance { dissipation, weight }
     }
@@ -148,20 +153,29 @@ where
 {
     /// The rates of (q̃_l, q̃_m, σ_l, σ_m) at z, along a real motion with the workless matrix `E_l`.
     fn rates(&self, z: &[Dual<C, 1>], E_l: &Matrix<C, N, N>) -> Vec<Dual<C, 1>> {
-        let block = |k: usize| Vector::from_fn(|i| z[k * N + i]);
+        let n = self.robot.links.joints();
+        let block = |k: usize| block(z, n, k);
         let errors = VelocityErrors { e_l: block(0), e_m: block(1), s_l: block(2), s_m: block(3) };
         let lifted = E_l.map(Dual::constant);
         let ErrorState { e_l, e_m, sigma_l, sigma_m } =
             velocity_error_rates(&self.robot, &self.law, &errors, &lifted, &Input::ZERO);
-        [e_l, e_m, sigma_l, sigma_m].into_iter().flat_map(|part| part.0).collect()
+        [e_l, e_m, sigma_l, sigma_m].iter().flat_map(|part| part.iter().take(n)).collect()
     }
 
     /// Π_l and its rate: it moves with q̃_l.
     fn link_metric(&self, at: &[C], E_l: &Matrix<C, N, N>) -> (Vector<C, N>, Vector<C, N>) {
         let z: Vec<Dual<C, 1>> = at.iter().map(|&x| Dual::constant(x)).collect();
         let rates = self.rates(&z, E_l);
-        let moving = Vector::from_fn(|i| Dual { value: at[i], gradient: [rates[i].value] });
+        let moving = Vector::from_fn(|i| match rates.get(i) {
+            Some(rate) if i < self.robot.links.joints() => Dual { value: at[i], gradient: [rate.value] },
+            _ => Dual::constant(C::ZERO),
+        });
         let metric: Vector<Dual<C, 1>, N> = self.law.link.metric.at(&moving);
         (metric.map(|x| x.value), metric.map(|x| x.gradient[0]))
     }
+}
+
+/// Part `k` of numbers that come as `n` for each part; zero for joints that only fill the capacity.
+fn block<T: Scalar, const N: usize>(values: &[T], n: usize, k: usize) -> Vector<T, N> {
+    Vector::from_fn(|i| if i < n { values[k * n + i] } else { T::ZERO })
 }

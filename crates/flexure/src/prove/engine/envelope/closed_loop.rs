@@ -87,12 +87,12 @@ where
     R: Reference<Interval, N> + Sync,
 {
     fn joints(&self) -> usize {
-        N
+        self.robot.links.joints()
     }
 
     fn reference(&self, t: Interval) -> Vec<[Interval; 7]> {
         let jets: Vector<Jet<Interval, 7>, N> = self.reference.at(t);
-        jets.iter().map(|jet| std::array::from_fn(|k| jet.coefficient(k))).collect()
+        jets.iter().take(self.joints()).map(|jet| std::array::from_fn(|k| jet.coefficient(k))).collect()
     }
 
     fn breaks(&self) -> &[Interval] {
@@ -104,24 +104,30 @@ where
     }
 
     fn approach(&self, e_l: &[Slope]) -> Vec<Slope> {
-        list(&self.law.link.shaping.eval(&vector(e_l)))
+        self.list(&self.law.link.shaping.eval(&vector(e_l)))
     }
 
     fn command(&self, x: &Place, q_ld: &[[Slope; 5]]) -> Answer {
         let motion =
             Motion { q_l: vector(&x.q_l), q_m: vector(&x.q_m), v_l: vector(&x.v_l), v_m: vector(&x.v_m) };
-        let Command { u_m, q_md, e_l, e_m, s_l, s_m, .. } =
-            command(&self.law, &self.robot, &motion, &Vector::from_fn(|i| Jet::new(q_ld[i])));
-        let [u_m, q_md, e_l, e_m, s_l, s_m] = [u_m, q_md, e_l, e_m, s_l, s_m].map(|v| list(&v));
+        let Command { u_m, q_md, e_l, e_m, s_l, s_m, .. } = command(
+            &self.law,
+            &self.robot,
+            &motion,
+            &Vector::from_fn(|i| q_ld.get(i).map_or(Jet::ZERO, |q| Jet::new(*q))),
+        );
+        let [u_m, q_md, e_l, e_m, s_l, s_m] = [u_m, q_md, e_l, e_m, s_l, s_m].map(|v| self.list(&v));
         Answer { u_m, q_md, e_l, e_m, s_l, s_m }
     }
 
     fn inverse_mass(&self, q_l: &[Interval]) -> Symmetric<Interval> {
         let factor = self.robot.links.factor(&vector(q_l));
         let unit = |j: usize| Vector::from_fn(|i| if i == j { Interval::ONE } else { Interval::ZERO });
-        let columns: Vec<Vector<Interval, N>> = (0..N).map(|j| factor.solve(&unit(j))).collect();
+        let columns: Vec<Vector<Interval, N>> = (0..self.joints()).map(|j| factor.solve(&unit(j))).collect();
         // Entry and mirror image enclose the same number.
-        Symmetric::from_fn(N, |i, j| columns[j][i].intersection(columns[i][j]).unwrap_or(columns[j][i]))
+        Symmetric::from_fn(self.joints(), |i, j| {
+            columns[j][i].intersection(columns[i][j]).unwrap_or(columns[j][i])
+        })
     }
 
     fn link_energy(&self, q_l: &[Interval], s_l: &[Interval]) -> Interval {
@@ -131,7 +137,7 @@ where
 
     fn metrics(&self) -> [Vec<Interval>; 3] {
         let (Metric::Constant(link) | Metric::Hardening { base: link, .. }) = &self.law.link.metric;
-        [list(link), list(&self.law.motor.metric), list(&self.robot.motor_inertia)]
+        [self.list(link), self.list(&self.law.motor.metric), self.list(&self.robot.motor_inertia)]
     }
 }
 
@@ -151,11 +157,14 @@ where
     law.command(robot, x, q_ld, &Input::ZERO)
 }
 
-/// Per-joint numbers as a vector.
-fn vector<T: Copy, const N: usize>(values: &[T]) -> Vector<T, N> {
-    Vector::from_fn(|i| values[i])
+/// Per-joint numbers as a vector; zero for joints that only fill the capacity.
+fn vector<T: Scalar, const N: usize>(values: &[T]) -> Vector<T, N> {
+    Vector::from_fn(|i| values.get(i).copied().unwrap_or(T::ZERO))
 }
 
-fn list<T: Copy, const N: usize>(values: &Vector<T, N>) -> Vec<T> {
-    values.iter().collect()
+impl<L: Links<Interval, N>, Pl, Pm, R, const N: usize> Enclosed<L, Pl, Pm, R, N> {
+    /// The numbers of the robot's own joints.
+    fn list<T: Copy>(&self, values: &Vector<T, N>) -> Vec<T> {
+        values.iter().take(self.robot.links.joints()).collect()
+    }
 }

@@ -1,0 +1,116 @@
+//! What can be read of a loop at an instant: the columns of its trace.
+
+use flexure_core::control::Command;
+use flexure_core::model::{Fjr, Links, Motion};
+
+use crate::simulate::interface::Signal;
+use crate::simulate::simulation::Instant;
+use crate::units::{self, Unit};
+
+/// What there is beside the motion.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Columns {
+    /// Errors, link torque and rate of the v-CBC law.
+    pub(crate) errors: bool,
+    /// What the law sees, what it commands, what the guard says.
+    pub(crate) devices: bool,
+}
+
+/// Name and unit of a signal; vectors have one number per joint.
+type Kind = (&'static str, Unit);
+
+/// The columns of every trace, with units; vector signals have one column per joint.
+const MOTION: [Kind; 7] = [
+    ("q_l", units::ANGLE),
+    ("q_m", units::ANGLE),
+    ("dq_l", units::SPEED),
+    ("dq_m", units::SPEED),
+    ("q_ld", units::ANGLE),
+    ("e_l", units::ANGLE),
+    ("u_m", units::TORQUE),
+];
+/// Those of the v-CBC law.
+const ERRORS: [Kind; 4] = [
+    ("e_m", units::ANGLE),
+    ("sigma_l", units::MOMENTUM),
+    ("sigma_m", units::MOMENTUM),
+    ("u_l", units::TORQUE),
+];
+/// Those of loops with devices.
+const DEVICES: [Kind; 6] = [
+    ("q_l_seen", units::ANGLE),
+    ("q_m_seen", units::ANGLE),
+    ("dq_l_seen", units::SPEED),
+    ("dq_m_seen", units::SPEED),
+    ("u_command", units::TORQUE),
+    ("disturbance_m", units::TORQUE),
+];
+const ENERGY: [Kind; 4] = [
+    ("hamiltonian", units::ENERGY),
+    ("supplied", units::ENERGY),
+    ("dissipated", units::ENERGY),
+    ("energy_residual", units::ENERGY),
+];
+const RATE: Kind = ("rate", units::RATE);
+/// 1 or 0: whether a certificate can hold, and whether the guard has stopped the robot.
+const STATUS: [Kind; 2] = [("certificate", units::NONE), ("stopped", units::NONE)];
+
+impl Columns {
+    /// Name and unit of each column for a robot of `joints` joints.
+    pub(crate) fn signals(self, joints: usize) -> Vec<Signal> {
+        let signal = |name: String, unit: Unit| Signal { name, unit: unit.plain };
+        let per_joint = |&(name, unit): &Kind| {
+            (1..=joints).map(move |k| signal(format!("{name}{k}"), unit)).collect::<Vec<_>>()
+        };
+        let scalar = |&(name, unit): &Kind| vec![signal(name.to_owned(), unit)];
+        let (errors, devices) = (usize::from(self.errors), usize::from(self.devices));
+        let vectors = MOTION.iter().chain(&ERRORS[..ERRORS.len() * errors]);
+        let vectors = vectors.chain(&DEVICES[..DEVICES.len() * devices]).flat_map(per_joint);
+        let scalars =
+            ENERGY.iter().chain([RATE].iter().take(errors)).chain(&STATUS[..STATUS.len() * devices]);
+        scalar(&("t", units::TIME)).into_iter().chain(vectors).chain(scalars.flat_map(scalar)).collect()
+    }
+
+    /// Writes a number per column to `values`; `errors` are those of the v-CBC law at the true motion with its contraction rate
+    /// there, if it is one.
+    pub(crate) fn read<L: Links<f64, N>, const N: usize>(
+        self,
+        robot: &Fjr<f64, L, N>,
+        instant: &Instant<'_, N>,
+        errors: Option<&(Command<f64, N>, f64)>,
+        values: &mut [f64],
+    ) {
+        let Instant { t, motion, action, energy, residual, ledger } = *instant;
+        let n = robot.links.joints();
+        let mut slots = values.iter_mut();
+        let mut push = |numbers: &mut dyn Iterator<Item = f64>| {
+            for (slot, x) in slots.by_ref().zip(numbers) {
+                *slot = x;
+            }
+        };
+        let q_ld = action.reference.map(|jet| jet.coefficient(0));
+        let Motion { q_l, q_m, v_l, v_m } = motion;
+        push(&mut [t].into_iter());
+        for v in [q_l, q_m, v_l, v_m, &q_ld, &(*q_l - q_ld), &action.applied.last()] {
+            push(&mut v.iter().take(n));
+        }
+        if let Some((command, _)) = errors {
+            let sigma = robot.state(&Motion { v_l: command.s_l, v_m: command.s_m, ..*motion });
+            for v in [&command.e_m, &sigma.p_l, &sigma.p_m, &command.u_l] {
+                push(&mut v.iter().take(n));
+            }
+        }
+        if self.devices {
+            let seen = &action.seen;
+            for v in [&seen.q_l, &seen.q_m, &seen.v_l, &seen.v_m, &action.u_m, &action.disturbance] {
+                push(&mut v.iter().take(n));
+            }
+        }
+        push(&mut [energy, ledger.supplied, ledger.dissipated, residual].into_iter());
+        push(&mut errors.iter().map(|(_, rate)| *rate));
+        if self.devices {
+            let flag = |holds: bool| f64::from(u8::from(holds));
+            push(&mut [flag(action.certificate), flag(action.stopped)].into_iter());
+        }
+    }
+}
