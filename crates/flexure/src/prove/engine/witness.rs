@@ -38,7 +38,7 @@ pub fn against(inequality: &Inequality, beta: f64) -> Option<(Vec<f64>, f64)> {
     (rate <= beta).then_some((direction, rate))
 }
 
-/// xᵀ A x, every entry by itself.
+/// xᵀ A x, summed entry by entry, row by row: published witnesses have the last digits of this order.
 fn quadratic(x: &[f64], a: &Symmetric<f64>) -> f64 {
     (0..x.len()).flat_map(|i| (0..x.len()).map(move |j| (i, j))).map(|(i, j)| x[i] * a.at(i, j) * x[j]).sum()
 }
