@@ -8,7 +8,7 @@ use flexure::proof::{Question, Region, prove};
 use flexure::verify::verify;
 use flexure_core::control::{CoupledTanh, Linear, Tanh};
 
-#[path = "../tests/direct/arm.rs"]
+#[path = "../tests/suite/direct/arm.rs"]
 #[allow(dead_code, reason = "shared with the tests")]
 mod arm;
 use arm::{ArmFlow, coupled_tanh, flow, linear, region, tanh};
