@@ -1,13 +1,11 @@
 //! Pages that name code name code that exists; the files that the README shows load.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use flexure::io::{load_robot, load_scenario};
 
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
+use crate::common::root;
 
 fn page(name: &str) -> String {
     fs::read_to_string(root().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
@@ -63,7 +61,7 @@ fn function_exists(path: &str) -> bool {
 fn test_exists(path: &str) -> bool {
     let Some((file, name)) = path.split_once("::") else { return false };
     ["flexure-core", "flexure"].iter().any(|krate| {
-        let text = module(&root().join("crates").join(krate).join("tests"), file);
+        let text = module(&root().join("crates").join(krate).join("tests/suite"), file);
         declares(&text, "#[test]\nfn ", name)
     })
 }
@@ -115,7 +113,7 @@ fn names_that_are_gone_are_missed() {
 #[test]
 fn every_slip_test_is_in_the_table() {
     let errata = page("docs/errata.md");
-    let tests = sources(&root().join("crates/flexure/tests/errata.rs"));
+    let tests = sources(&root().join("crates/flexure/tests/suite/errata.rs"));
     for (_, rest) in tests.match_indices("#[test]\nfn ").map(|(at, text)| (at, &tests[at + text.len()..])) {
         let name = rest.split('(').next().unwrap_or_default();
         assert!(errata.contains(&format!("`errata::{name}`")), "{name} is not in docs/errata.md");

@@ -34,5 +34,6 @@ mod report;
 mod rough_plant;
 mod samples;
 mod schema;
+mod suites;
 mod urdf;
 mod verify;

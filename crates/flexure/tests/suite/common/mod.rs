@@ -1,4 +1,6 @@
-//! What several modules share: numbers at random, places in texts, distances, an oracle for linear motion.
+//! What several modules share: the workspace, numbers at random, places in texts, distances, an oracle for linear motion.
+
+use std::path::{Path, PathBuf};
 
 use flexure_core::linalg::Matrix;
 use flexure_core::model::Motion;
@@ -23,6 +25,11 @@ impl Random {
     pub fn below(&mut self, bound: usize) -> usize {
         usize::try_from(self.bits() % bound.max(1) as u64).unwrap()
     }
+}
+
+/// The folder of the workspace.
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
 /// Line and column, counted from 1, of the first `needle` in `text`.
