@@ -48,7 +48,7 @@ fn tests(krate: &str) -> Vec<String> {
     tests
 }
 
-/// Whether `cargo test -p krate --test target filter` runs a test.
+/// Whether a filter in a target of a crate runs a test.
 fn runs(krate: &str, target: &str, filter: &str) -> bool {
     target == "suite" && CRATES.contains(&krate) && tests(krate).iter().any(|test| test.contains(filter))
 }
