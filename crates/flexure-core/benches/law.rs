@@ -6,7 +6,8 @@ use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, MassFactor};
 use flexure_core::scalar::{Jet, Scalar};
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/suite/common/mod.rs"]
+#[allow(dead_code, reason = "shared with the tests")]
 mod common;
 use common::{Numbers, coupled_tanh, flexible, gains, linear, planar, serial, tanh};
 

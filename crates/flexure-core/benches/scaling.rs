@@ -2,7 +2,7 @@
 //!
 //! A row per function: µs on chains of n revolute joints, and the slope of log time against log n between 8 and 64 by
 //! least squares, which is 1 for O(n). Times are the least of many, so that what else the machine does hurts little.
-//! The exact statement, in operations instead of time, is `tests/operation_counts.rs`.
+//! The exact statement, in operations instead of time, is `tests/suite/operation_counts.rs`.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -10,7 +10,8 @@ use std::time::{Duration, Instant};
 use flexure_core::control::Input;
 use flexure_core::model::{FeedForward, Links, MassFactor};
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/suite/common/mod.rs"]
+#[allow(dead_code, reason = "shared with the tests")]
 mod common;
 use common::{Numbers, flexible, gains, serial, tanh};
 

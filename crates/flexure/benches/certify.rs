@@ -13,7 +13,7 @@ use flexure::verify::verify;
 use flexure_core::control::{CoupledTanh, Linear, Tanh};
 use flexure_core::scalar::Interval;
 
-#[path = "../tests/direct/arm.rs"]
+#[path = "../tests/suite/direct/arm.rs"]
 #[allow(dead_code, reason = "shared with the tests")]
 mod arm;
 

@@ -1,0 +1,17 @@
+//! The command as a user meets it: arguments, files, output, messages and exit codes.
+
+mod bad_input;
+mod certify;
+mod check_list;
+mod command;
+mod compare;
+mod divergence;
+mod eval_model;
+mod hostile;
+mod margins;
+mod pinocchio;
+mod pipes;
+mod reproduce;
+mod run;
+mod urdf;
+mod verify;

@@ -1,0 +1,221 @@
+//! The plant integrator: order, stiff damping, stiff springs, energy, and an independent solver.
+
+use differential_equations::prelude::{ExplicitRungeKutta, IVP, ODE};
+use flexure::simulate::{Integrator, Ledger};
+use flexure_core::linalg::{Matrix, Vector};
+use flexure_core::model::{Fjr, Links, Motion};
+use flexure_core::robots::{Body, JointKind, Pendulum, PlanarTwoLink, Tree};
+
+use crate::common::{distance, exponential};
+
+/// The paper's arm: motor damping over motor inertia is 9000 1/s.
+fn quanser() -> Fjr<f64, PlanarTwoLink<f64>, 2> {
+    Fjr {
+        links: PlanarTwoLink::new([1.510, 0.873], 0.343, [0.159, 0.055], [0.0392, 0.00808]),
+        motor_inertia: Vector([0.23, 0.01]),
+        stiffness: Vector([9.0, 4.0]),
+        link_damping: Vector([0.8, 0.55]),
+        motor_damping: Vector([0.2, 90.0]),
+    }
+}
+
+/// One joint without gravity: linear, so that a matrix exponential is its exact solution.
+fn joint(inertia: f64, motor: f64, stiffness: f64, damping: [f64; 2]) -> Fjr<f64, Pendulum<f64>, 1> {
+    Fjr {
+        links: Pendulum { inertia, weight_moment: 0.0 },
+        motor_inertia: Vector([motor]),
+        stiffness: Vector([stiffness]),
+        link_damping: Vector([damping[0]]),
+        motor_damping: Vector([damping[1]]),
+    }
+}
+
+/// The exact motion of a linear joint under a constant torque after `t`.
+fn exact(robot: &Fjr<f64, Pendulum<f64>, 1>, x: &Motion<f64, 1>, u: f64, t: f64) -> [f64; 4] {
+    let (m, b, k) = (robot.links.inertia, robot.motor_inertia[0], robot.stiffness[0]);
+    let (d_l, d_m) = (robot.link_damping[0], robot.motor_damping[0]);
+    let a = Matrix([
+        [0.0, 0.0, 1.0, 0.0, 0.0],
+        [0.0, 0.0, 0.0, 1.0, 0.0],
+        [-k / m, k / m, -d_l / m, 0.0, 0.0],
+        [k / b, -k / b, 0.0, -d_m / b, u / b],
+        [0.0; 5],
+    ]);
+    let y = exponential(&a.scaled(t)) * Vector([x.q_l[0], x.q_m[0], x.v_l[0], x.v_m[0], 1.0]);
+    [y[0], y[1], y[2], y[3]]
+}
+
+fn flat(x: &Motion<f64, 1>) -> [f64; 4] {
+    [x.q_l[0], x.q_m[0], x.v_l[0], x.v_m[0]]
+}
+
+fn advance<L: Links<f64, N> + Copy, const N: usize>(
+    robot: &Fjr<f64, L, N>,
+    x: Motion<f64, N>,
+    interval: f64,
+    u: Vector<f64, N>,
+) -> (Motion<f64, N>, Ledger, u64) {
+    let (mut integrator, mut ledger) = (Integrator::new(1e-10), Ledger::default());
+    let end = integrator
+        .advance(&(*robot).into(), x, 0.0, interval, &|_, _: &_| u, &mut ledger)
+        .expect("a benign motion");
+    (end, ledger, integrator.steps())
+}
+
+#[test]
+fn the_order_is_eight() {
+    let robot = Fjr { motor_damping: Vector([0.2, 0.5]), ..quanser() };
+    let x =
+        Motion { v_l: Vector([3.0, -5.0]), v_m: Vector([1.0, 4.0]), ..Motion::at_rest(Vector([0.3, 1.2])) };
+    let run = |count| {
+        let torque = |t: f64, _: &Motion<f64, 2>| Vector([2.0 * t.cos(), 1.0]);
+        Integrator::new(1.0).advance_uniformly(&robot.into(), x, 1.0, count, &torque).expect("smooth")
+    };
+    let reference = run(1024);
+    let errors = [16, 32, 64].map(|count| distance(&run(count), &reference));
+    for pair in errors.windows(2) {
+        let order = (pair[0] / pair[1]).log2();
+        // The asymptotic order is 8; these steps are long enough for errors far above rounding.
+        assert!((7.0..9.0).contains(&order), "order {order}, errors {errors:?}");
+    }
+    assert!(errors[2] < 1e-9, "{errors:?}");
+}
+
+#[test]
+fn stiff_damping_is_accurate_at_one_kilohertz() {
+    // 90 N m s/rad on 0.01 kg m²: 9000 1/s, a transient that is over within the first of the 1 ms periods.
+    let robot = joint(0.0107, 0.01, 4.0, [0.55, 90.0]);
+    let x = Motion { v_m: Vector([10.0]), v_l: Vector([1.0]), ..Motion::at_rest(Vector([0.1])) };
+    for (interval, u) in [(1e-4, 50.0), (1e-3, 50.0), (5e-3, -300.0)] {
+        let (end, _, steps) = advance(&robot, x, interval, Vector([u]));
+        for (got, expected) in flat(&end).iter().zip(exact(&robot, &x, u, interval)) {
+            // Local errors of 1e-10 relative to speeds of 10 rad/s, a few dozen steps.
+            assert!((got - expected).abs() < 1e-9, "{end:?} in {steps} steps, u = {u}");
+        }
+    }
+}
+
+#[test]
+fn a_stiff_spring_on_a_light_wrist_neither_blows_up_nor_loses_energy() {
+    // 5000 N m/rad on 1e-3 kg m² and an equally light rotor: 500 Hz, sampled at 1 kHz.
+    let robot = joint(1e-3, 1e-3, 5000.0, [0.0, 0.0]);
+    let x = Motion { q_m: Vector([0.01]), ..Motion::at_rest(Vector([0.0])) };
+    let start = robot.total_energy(&x);
+    let (mut integrator, mut ledger) = (Integrator::new(1e-10), Ledger::default());
+    let mut now = x;
+    for _ in 0..2000 {
+        now = integrator
+            .advance(&robot.into(), now, 0.0, 1e-3, &|_, _: &_| Vector([0.0]), &mut ledger)
+            .expect("bounded");
+    }
+    // 1000 oscillations: amplitude and phase stay.
+    assert!(
+        (robot.total_energy(&now) / start - 1.0).abs() < 1e-9,
+        "{} J of {start} J",
+        robot.total_energy(&now)
+    );
+    for (got, expected) in flat(&now).iter().zip(exact(&robot, &x, 0.0, 2.0)) {
+        assert!((got - expected).abs() < 1e-6 * 30.0, "{now:?} after {} steps", integrator.steps());
+    }
+}
+
+#[test]
+fn a_seven_joint_arm_keeps_its_energy() {
+    // A chain with a light wrist, 5000 N m/rad everywhere, no damping: swings freely under gravity for a second.
+    let bodies = std::array::from_fn(|i: usize| {
+        let mass = 4.0 / f64::from(1 << i);
+        let r = mass * 1e-3;
+        Body {
+            parent: i.checked_sub(1),
+            kind: JointKind::Revolute,
+            axis: [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0]][i % 2],
+            rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            translation: [0.0, 0.0, if i == 0 { 0.0 } else { 0.2 }],
+            mass,
+            com: [0.02, 0.01, 0.1],
+            inertia: [[3.0 * r, 0.0, 0.0], [0.0, 3.0 * r, 0.0], [0.0, 0.0, r]],
+        }
+    });
+    let robot = Fjr {
+        links: Tree::new(&bodies, [0.0, 0.0, -9.81]).expect("a chain"),
+        motor_inertia: Vector([0.6, 0.6, 0.4, 0.4, 0.2, 0.2, 0.2]),
+        stiffness: Vector([5000.0; 7]),
+        link_damping: Vector([0.0; 7]),
+        motor_damping: Vector([0.0; 7]),
+    };
+    let x = Motion::at_rest(Vector([0.1, 0.8, -0.2, 0.9, 0.3, -0.7, 0.2]));
+    let start = robot.total_energy(&x);
+    let (mut integrator, mut ledger) = (Integrator::new(1e-10), Ledger::default());
+    let (mut now, mut drift) = (x, 0.0_f64);
+    for _ in 0..1000 {
+        now = integrator
+            .advance(&robot.into(), now, 0.0, 1e-3, &|_, _: &_| Vector::ZERO, &mut ledger)
+            .expect("bounded");
+        drift = drift.max((robot.total_energy(&now) - start).abs());
+    }
+    let speed = now.v_l.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    assert!(speed > 1.0, "the arm moves: {speed} rad/s");
+    // Against the tens of joules that gravity turns into motion.
+    assert!(drift < 1e-9 * start.abs(), "drift {drift} J of {start} J, {} steps", integrator.steps());
+}
+
+/// The plant as a first-order system for the reference solver.
+struct Plant {
+    robot: Fjr<f64, PlanarTwoLink<f64>, 2>,
+    u: Vector<f64, 2>,
+}
+
+impl ODE<f64, [f64; 8]> for Plant {
+    fn diff(&self, _: f64, y: &[f64; 8], dy: &mut [f64; 8]) {
+        let x = unflat(y);
+        let (a, b) = (self.robot.link_acceleration(&x), self.robot.motor_acceleration(&x, &self.u));
+        *dy = [x.v_l[0], x.v_l[1], x.v_m[0], x.v_m[1], a[0], a[1], b[0], b[1]];
+    }
+}
+
+fn unflat(y: &[f64; 8]) -> Motion<f64, 2> {
+    Motion {
+        q_l: Vector([y[0], y[1]]),
+        q_m: Vector([y[2], y[3]]),
+        v_l: Vector([y[4], y[5]]),
+        v_m: Vector([y[6], y[7]]),
+    }
+}
+
+#[test]
+fn an_independent_solver_agrees() {
+    let plant = Plant { robot: quanser(), u: Vector([5.0, 120.0]) };
+    let start = [0.2, -0.4, 0.3, 0.1, 2.0, -3.0, 1.0, 8.0];
+    let solution = IVP::ode(&plant, 0.0, 0.05, start)
+        .method(ExplicitRungeKutta::dop853().rtol(1e-13).atol(1e-13))
+        .solve()
+        .expect("the reference solver converges");
+    let (_, reference) = solution.iter().next_back().expect("an end point");
+    let (end, _, _) = advance(&plant.robot, unflat(&start), 0.05, plant.u);
+    // DOP853 at 1e-13 resolves the 9000 1/s damper with some 300 explicit steps.
+    assert!(distance(&end, &unflat(reference)) < 1e-8, "{end:?} against {reference:?}");
+}
+
+#[test]
+fn the_ledger_balances() {
+    let robot = quanser();
+    let x = Motion { v_l: Vector([3.0, -5.0]), ..Motion::at_rest(Vector([0.3, 1.2])) };
+    let (end, ledger, _) = advance(&robot, x, 0.5, Vector([3.0, 40.0]));
+    let stored = robot.total_energy(&end) - robot.total_energy(&x);
+    let residual = stored - ledger.supplied + ledger.dissipated;
+    assert!(residual.abs() < 1e-9 * ledger.throughput, "{residual} J of {ledger:?}");
+    assert!(ledger.dissipated > 0.0 && ledger.supplied > 0.0);
+}
+
+#[test]
+fn an_explosion_is_reported_where_it_happens() {
+    let robot = quanser();
+    let mut integrator = Integrator::new(1e-10);
+    let torque = |t: f64, _: &Motion<f64, 2>| Vector([if t > 0.25 { f64::NAN } else { 1.0 }, 0.0]);
+    let x = Motion::at_rest(Vector([0.0, 0.0]));
+    let failure = integrator
+        .advance(&robot.into(), x, 0.0, 1.0, &torque, &mut Ledger::default())
+        .expect_err("NaN torque");
+    // A step whose last stage lies before the explosion may end a little after it.
+    assert!((0.24..0.26).contains(&failure.after), "{failure:?}");
+}

@@ -1,0 +1,39 @@
+//! Tests of the library: a module each, what they share in `common`.
+//!
+//! `cargo test -p flexure --test suite imperfections::` runs those of a module.
+
+mod along;
+mod bad_files;
+mod built_in;
+mod certify;
+mod closed_forms;
+mod common;
+mod compare;
+mod controllers;
+mod direct;
+mod docs;
+mod enclosures;
+mod errata;
+mod experiments;
+mod feasible;
+mod feed_forward;
+mod golden_panda;
+mod golden_two_link;
+mod imperfection_files;
+mod imperfections;
+mod integrator;
+mod limits;
+mod mangled_files;
+mod model_error;
+mod plant;
+mod plant_files;
+mod rates;
+mod real_loop;
+mod registry;
+mod report;
+mod rough_plant;
+mod samples;
+mod schema;
+mod suites;
+mod urdf;
+mod verify;

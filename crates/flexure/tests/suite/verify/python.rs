@@ -1,0 +1,121 @@
+//! The second checker, in Python, says the same of every certificate and every mutant.
+//!
+//! mpmath is taken from the interpreter if it is there, else from PyPI into a virtual environment under the target folder.
+//! Set `FLEXURE_OFFLINE=1` to leave the test out where neither can be had.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::LazyLock;
+
+use super::mutants::all;
+use super::{CERTIFICATES, tree_with_a_rod};
+
+const SCRIPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tools/check_certificate.py");
+
+fn run(program: &Path, arguments: &[&str]) -> Option<Output> {
+    Command::new(program).args(arguments).env_remove("PYTHONPATH").output().ok()
+}
+
+fn succeeds(program: &Path, arguments: &[&str]) -> bool {
+    run(program, arguments).is_some_and(|output| output.status.success())
+}
+
+/// An interpreter that has mpmath; none offline without it. Made once: tests side by side wait for the one that makes it.
+static INTERPRETER: LazyLock<Option<PathBuf>> = LazyLock::new(interpreter);
+
+fn interpreter() -> Option<PathBuf> {
+    let python = PathBuf::from("python3");
+    if succeeds(&python, &["-c", "import mpmath"]) {
+        return Some(python);
+    }
+    if std::env::var_os("FLEXURE_OFFLINE").is_some() {
+        return None;
+    }
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("mpmath");
+    let own = folder.join("bin/python");
+    if !succeeds(&own, &["-c", "import mpmath"]) {
+        let made = succeeds(&python, &["-m", "venv", "--clear", folder.to_str().unwrap()]);
+        assert!(made, "Python 3.11 or newer with venv is needed (on Debian: apt-get install python3-venv)");
+        let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "mpmath==1.3.0"];
+        assert!(succeeds(&own, &install), "PyPI is needed; FLEXURE_OFFLINE=1 leaves this test out");
+    }
+    Some(own)
+}
+
+/// Exit code and lines for these texts, a file each.
+fn checked(python: &Path, texts: &[&str]) -> (Option<i32>, Vec<String>) {
+    let folder = tempfile::tempdir().unwrap();
+    let files: Vec<_> = (0..texts.len()).map(|i| folder.path().join(format!("{i}.json"))).collect();
+    for (file, text) in files.iter().zip(texts) {
+        std::fs::write(file, text).unwrap();
+    }
+    let names = files.iter().map(|file| file.to_str().unwrap());
+    let output = run(python, &[SCRIPT].into_iter().chain(names).collect::<Vec<_>>()).unwrap();
+    let said = String::from_utf8(output.stdout).unwrap();
+    let lines: Vec<_> = said.lines().map(str::to_owned).collect();
+    assert_eq!(lines.len(), texts.len(), "{said}{}", String::from_utf8_lossy(&output.stderr));
+    (output.status.code(), lines)
+}
+
+/// The exit code that a line stands for.
+fn code(line: &str) -> i32 {
+    if line.contains(".json: proved: ") {
+        0
+    } else if line.contains(".json: does not hold: ") {
+        1
+    } else {
+        assert!(line.contains(".json: not a certificate: "), "{line}");
+        2
+    }
+}
+
+/// What the second checker says of each text, as an exit code; none where it cannot be run.
+pub fn codes(texts: &[String]) -> Option<Vec<i32>> {
+    let texts: Vec<&str> = texts.iter().map(String::as_str).collect();
+    let (_, lines) = checked(INTERPRETER.as_deref()?, &texts);
+    Some(lines.iter().map(|line| code(line)).collect())
+}
+
+#[test]
+fn the_second_checker_agrees_on_certificates_and_on_every_mutant() {
+    let Some(python) = INTERPRETER.as_deref() else {
+        println!("left out: FLEXURE_OFFLINE is set and python3 has no mpmath");
+        return;
+    };
+    let (exit, lines) = checked(python, &CERTIFICATES.map(|(_, text)| text));
+    assert_eq!(exit, Some(0), "{lines:#?}");
+    assert!(
+        lines[4].contains("contraction 0.295981115 1/s, convergence 9.950547537 1/s, checked in"),
+        "{}",
+        lines[4]
+    );
+    let (exit, lines) = checked(python, &[&tree_with_a_rod()]);
+    assert_eq!(exit, Some(0), "{lines:#?}");
+    let mutants = all();
+    let texts: Vec<_> = mutants.iter().map(|mutant| mutant.text.as_str()).collect();
+    for (mutants, texts) in mutants.chunks(500).zip(texts.chunks(500)) {
+        let (exit, lines) = checked(python, texts);
+        assert_eq!(exit, lines.iter().map(|line| code(line)).max());
+        for (mutant, line) in mutants.iter().zip(&lines) {
+            assert_eq!(code(line), mutant.code(), "{}: {line}", mutant.name);
+        }
+    }
+    println!("{} mutants", mutants.len());
+}
+
+#[test]
+fn the_second_checker_is_not_impressed_by_what_is_no_certificate() {
+    let Some(python) = INTERPRETER.as_deref() else { return };
+    let text = CERTIFICATES[0].1;
+    let twice = text.replacen("\"version\": 1", "\"version\": 1, \"version\": 1", 1);
+    let real = text.replacen("\"version\": 1", "\"version\": 1.0", 1);
+    let truth = text.replacen("\"version\": 1", "\"version\": true", 1);
+    let infinite = text.replacen("\"1.61\"", "\"1e400\"", 1);
+    let (deep, many) = ("[".repeat(100_000), "9".repeat(100_000));
+    let huge = text.replacen("\"1.61\"", &format!("\"{many}\""), 1);
+    let joints = text.replacen("\"joints\": 1", &format!("\"joints\": {many}"), 1);
+    let texts = ["", "null", "[]", "{}", "\"x\"", &twice, &real, &truth, &infinite, &deep, &huge, &joints];
+    let (exit, lines) = checked(python, &texts);
+    assert_eq!(exit, Some(2));
+    assert!(lines.iter().all(|line| code(line) == 2), "{lines:#?}");
+}
