@@ -16,6 +16,7 @@ use flexure_core::estimate::{
 };
 use flexure_core::guard::{Age, Decision, Guard};
 use flexure_core::linalg::Vector as V;
+use flexure_core::memory::{Unfit, restore, save};
 use flexure_core::model::{FeedForward, Fjr, Links, Motion, RotorCoupling, State};
 use flexure_core::robots::{PlanarTwoLink, Tree};
 use flexure_core::scalar::{Jet, Scalar};
@@ -25,6 +26,7 @@ use no_panic::no_panic;
 
 type Law<const N: usize> = Vcbc<f64, CoupledTanh<f64, N>, CoupledTanh<f64, N>, N>;
 type Arm = Fjr<f64, PlanarTwoLink<f64>, 2>;
+/// Of up to seven joints: how many is known at run time.
 type Chain = Fjr<f64, Tree<f64, 7>, 7>;
 
 #[cfg_attr(not(debug_assertions), no_panic)]
@@ -141,6 +143,16 @@ fn guarded(guard: &mut Guard<f64, 7>, robot: &Chain, x: &Motion<f64, 7>, age: Ag
 }
 
 #[cfg_attr(not(debug_assertions), no_panic)]
+fn saved(guard: &mut Guard<f64, 7>, joints: usize, numbers: &mut [f64]) -> Result<(), Unfit> {
+    save(guard, joints, numbers)
+}
+
+#[cfg_attr(not(debug_assertions), no_panic)]
+fn restored(guard: &mut Guard<f64, 7>, joints: usize, numbers: &[f64]) -> Result<(), Unfit> {
+    restore(guard, joints, numbers)
+}
+
+#[cfg_attr(not(debug_assertions), no_panic)]
 fn jets(x: Jet<f64, 5>) -> Jet<f64, 5> {
     (x.sin() * x.exp() + x.tanh() / x.ln()).sqrt().atan().ln_cosh().square()
 }
@@ -163,6 +175,8 @@ fn main() {
         motor_observer as fn(&mut _, &_, &_) -> _,
         disturbance as fn(&mut _, &_, &_, &_) -> _,
         guarded as fn(&mut _, &_, &_, _) -> _,
+        saved as fn(&mut _, _, &mut _) -> _,
+        restored as fn(&mut _, _, &_) -> _,
     ));
     black_box((
         backstepping as fn(&_, &_, &_, &_) -> _,
