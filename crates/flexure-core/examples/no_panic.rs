@@ -16,7 +16,7 @@ use flexure_core::estimate::{
 };
 use flexure_core::guard::{Age, Decision, Guard};
 use flexure_core::linalg::Vector as V;
-use flexure_core::memory::{Unfit, restore, save};
+use flexure_core::memory::{Memory, Port, Unfit, restore, save};
 use flexure_core::model::{FeedForward, Fjr, Links, Motion, RotorCoupling, State};
 use flexure_core::robots::{PlanarTwoLink, Tree};
 use flexure_core::scalar::{Jet, Scalar};
@@ -143,13 +143,47 @@ fn guarded(guard: &mut Guard<f64, 7>, robot: &Chain, x: &Motion<f64, 7>, age: Ag
 }
 
 #[cfg_attr(not(debug_assertions), no_panic)]
-fn saved(guard: &mut Guard<f64, 7>, joints: usize, numbers: &mut [f64]) -> Result<(), Unfit> {
-    save(guard, joints, numbers)
+fn saved(observer: &mut Observer<f64, 7>, joints: usize, numbers: &mut [f64]) -> Result<(), Unfit> {
+    save(observer, joints, numbers)
 }
 
 #[cfg_attr(not(debug_assertions), no_panic)]
-fn restored(guard: &mut Guard<f64, 7>, joints: usize, numbers: &[f64]) -> Result<(), Unfit> {
-    restore(guard, joints, numbers)
+fn restored(observer: &mut Observer<f64, 7>, joints: usize, numbers: &[f64]) -> Result<(), Unfit> {
+    restore(observer, joints, numbers)
+}
+
+/// Forgets everything.
+struct Zeros;
+
+impl Port<f64> for Zeros {
+    fn numbers(&mut self, _: &'static str, _: &'static str, x: &mut [f64]) {
+        x.fill(0.0);
+    }
+    fn joints(&mut self, _: &'static str, _: &'static str, x: &mut [f64]) {
+        x.fill(0.0);
+    }
+    fn word(&mut self, _: &'static str, x: &mut u32) {
+        *x = 0;
+    }
+    fn flag(&mut self, _: &'static str, x: &mut bool) {
+        *x = false;
+    }
+}
+
+#[cfg_attr(not(debug_assertions), no_panic)]
+fn guard_forgets(guard: &mut Guard<f64, 7>) {
+    guard.memory(&mut Zeros);
+}
+
+#[cfg_attr(not(debug_assertions), no_panic)]
+fn estimators_forget(
+    difference: &mut FilteredDifference<f64, 7>,
+    motor: &mut MotorObserver<f64, 7>,
+    disturbance: &mut DisturbanceObserver<f64, 7>,
+) {
+    difference.memory(&mut Zeros);
+    motor.memory(&mut Zeros);
+    disturbance.memory(&mut Zeros);
 }
 
 #[cfg_attr(not(debug_assertions), no_panic)]
@@ -177,6 +211,8 @@ fn main() {
         guarded as fn(&mut _, &_, &_, _) -> _,
         saved as fn(&mut _, _, &mut _) -> _,
         restored as fn(&mut _, _, &_) -> _,
+        guard_forgets as fn(&mut _),
+        estimators_forget as fn(&mut _, &mut _, &mut _),
     ));
     black_box((
         backstepping as fn(&_, &_, &_, &_) -> _,
