@@ -170,7 +170,6 @@ fn v_cbc<C: Scalar, T: Over<C>, const K: usize, const N: usize>(constants: Const
 #[test]
 fn every_law() {
     all::<f64, f64, 3, 4>(crate::FLOAT, crate::number_f64);
-    all::<f64, Jet<f64, 3>, 2, 4>(crate::FLOAT, crate::number_jet);
     all::<f64, f64, 7, 16>(crate::FLOAT, crate::number_f64);
 }
 
