@@ -16,6 +16,7 @@ use flexure_core::estimate::{
 };
 use flexure_core::guard::{Age, Decision, Guard};
 use flexure_core::linalg::Vector as V;
+use flexure_core::memory::{Memory, Port, Unfit, restore, save};
 use flexure_core::model::{FeedForward, Fjr, Links, Motion, RotorCoupling, State};
 use flexure_core::robots::{PlanarTwoLink, Tree};
 use flexure_core::scalar::{Jet, Scalar};
@@ -25,6 +26,7 @@ use no_panic::no_panic;
 
 type Law<const N: usize> = Vcbc<f64, CoupledTanh<f64, N>, CoupledTanh<f64, N>, N>;
 type Arm = Fjr<f64, PlanarTwoLink<f64>, 2>;
+/// Of up to seven joints: how many is known at run time.
 type Chain = Fjr<f64, Tree<f64, 7>, 7>;
 
 #[cfg_attr(not(debug_assertions), no_panic)]
@@ -141,6 +143,50 @@ fn guarded(guard: &mut Guard<f64, 7>, robot: &Chain, x: &Motion<f64, 7>, age: Ag
 }
 
 #[cfg_attr(not(debug_assertions), no_panic)]
+fn saved(observer: &mut Observer<f64, 7>, joints: usize, numbers: &mut [f64]) -> Result<(), Unfit> {
+    save(observer, joints, numbers)
+}
+
+#[cfg_attr(not(debug_assertions), no_panic)]
+fn restored(observer: &mut Observer<f64, 7>, joints: usize, numbers: &[f64]) -> Result<(), Unfit> {
+    restore(observer, joints, numbers)
+}
+
+/// Forgets everything.
+struct Zeros;
+
+impl Port<f64> for Zeros {
+    fn numbers(&mut self, _: &'static str, _: &'static str, x: &mut [f64]) {
+        x.fill(0.0);
+    }
+    fn joints(&mut self, _: &'static str, _: &'static str, x: &mut [f64]) {
+        x.fill(0.0);
+    }
+    fn word(&mut self, _: &'static str, x: &mut u32) {
+        *x = 0;
+    }
+    fn flag(&mut self, _: &'static str, x: &mut bool) {
+        *x = false;
+    }
+}
+
+#[cfg_attr(not(debug_assertions), no_panic)]
+fn guard_forgets(guard: &mut Guard<f64, 7>) {
+    guard.memory(&mut Zeros);
+}
+
+#[cfg_attr(not(debug_assertions), no_panic)]
+fn estimators_forget(
+    difference: &mut FilteredDifference<f64, 7>,
+    motor: &mut MotorObserver<f64, 7>,
+    disturbance: &mut DisturbanceObserver<f64, 7>,
+) {
+    difference.memory(&mut Zeros);
+    motor.memory(&mut Zeros);
+    disturbance.memory(&mut Zeros);
+}
+
+#[cfg_attr(not(debug_assertions), no_panic)]
 fn jets(x: Jet<f64, 5>) -> Jet<f64, 5> {
     (x.sin() * x.exp() + x.tanh() / x.ln()).sqrt().atan().ln_cosh().square()
 }
@@ -163,6 +209,10 @@ fn main() {
         motor_observer as fn(&mut _, &_, &_) -> _,
         disturbance as fn(&mut _, &_, &_, &_) -> _,
         guarded as fn(&mut _, &_, &_, _) -> _,
+        saved as fn(&mut _, _, &mut _) -> _,
+        restored as fn(&mut _, _, &_) -> _,
+        guard_forgets as fn(&mut _),
+        estimators_forget as fn(&mut _, &mut _, &mut _),
     ));
     black_box((
         backstepping as fn(&_, &_, &_, &_) -> _,

@@ -16,11 +16,11 @@ use crate::scalar::{Jet, Over, Scalar};
 pub struct Backstepping<C, const N: usize> {
     /// λ, how fast link errors decay [1/s].
     pub shaping: Vector<C, N>,
-    /// γ_l [N m s/rad].
+    /// γ_l, damping of s_1 on the links [N m s/rad].
     pub link_damping: Vector<C, N>,
     /// W, the weight of motor errors [N m/rad].
     pub metric: Vector<C, N>,
-    /// a, how fast they decay [1/s].
+    /// a, how fast motor errors decay [1/s].
     pub motor_shaping: Vector<C, N>,
 }
 

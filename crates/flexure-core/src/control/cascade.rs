@@ -13,11 +13,11 @@ use crate::scalar::{Jet, Over, Scalar};
 pub struct Cascade<C, const N: usize> {
     /// λ, how fast link errors decay [1/s].
     pub shaping: Vector<C, N>,
-    /// γ_l [N m s/rad].
+    /// γ_l, damping of s_1 on the links [N m s/rad].
     pub link_damping: Vector<C, N>,
-    /// k_p [1/s²].
+    /// k_p, feedback of the motor position error θ̃ [1/s²].
     pub position: Vector<C, N>,
-    /// k_v [1/s].
+    /// k_v, feedback of its rate [1/s].
     pub velocity: Vector<C, N>,
 }
 

@@ -17,7 +17,7 @@ use crate::scalar::{Jet, Over, Scalar};
 pub struct Esp<C, const N: usize> {
     /// Damping of the links that is injected, the diagonal of D_i [N m s/rad].
     pub link_damping: Vector<C, N>,
-    /// K_P and K_D, on η.
+    /// K_P and K_D, the feedback of the motors' new coordinates η and of their rates.
     pub motor: MotorPd<C, N>,
 }
 

@@ -14,7 +14,7 @@ use crate::scalar::{Jet, Over, Scalar};
 /// Stable if and only if every joint's polynomial is Hurwitz.
 #[derive(Clone, Copy, Debug)]
 pub struct FeedbackLinearization<C, const N: usize> {
-    /// k_0, k_1, k_2, k_3 [1/s⁴, 1/s³, 1/s², 1/s].
+    /// k_0, k_1, k_2, k_3 of the link error and its first three derivatives [1/s⁴, 1/s³, 1/s², 1/s].
     pub gains: [Vector<C, N>; 4],
 }
 

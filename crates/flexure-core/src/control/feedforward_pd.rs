@@ -12,7 +12,7 @@ use crate::scalar::{Jet, Over, Scalar};
 /// All that depends on the model can be computed beforehand. Stability is local.
 #[derive(Clone, Copy, Debug)]
 pub struct FeedforwardPd<C, const N: usize> {
-    /// K_P and K_D.
+    /// K_P and K_D, the feedback of motor positions and velocities.
     pub motor: MotorPd<C, N>,
 }
 

@@ -8,7 +8,7 @@ use crate::scalar::{Jet, Over, Scalar};
 /// A diagonal metric Π on position errors [N m/rad].
 #[derive(Clone, Copy, Debug)]
 pub enum Metric<C, const N: usize> {
-    /// Π_i constant.
+    /// The diagonal of Π, constant [N m/rad].
     Constant(Vector<C, N>),
     /// Π_i = base_i + hardening_i q̃_i²: each row depends on its own error alone, so it is a conservative field.
     Hardening {
@@ -49,7 +49,7 @@ impl<C: Scalar, const N: usize> Metric<C, N> {
 pub struct LinkGains<C, P, const N: usize> {
     /// Metric Π_l [N m/rad].
     pub metric: Metric<C, N>,
-    /// Shaping function φ_l.
+    /// Shaping function φ_l of link position errors.
     pub shaping: P,
     /// Damping injection, the diagonal of K_ld [N m s/rad].
     pub damping: Vector<C, N>,
@@ -61,7 +61,7 @@ pub struct LinkGains<C, P, const N: usize> {
 pub struct MotorGains<C, P, const N: usize> {
     /// Metric, the diagonal of Π_m [N m/rad].
     pub metric: Vector<C, N>,
-    /// Shaping function φ_m.
+    /// Shaping function φ_m of motor position errors.
     pub shaping: P,
     /// Damping injection, the diagonal of K_md [N m s/rad].
     pub damping: Vector<C, N>,
@@ -70,7 +70,7 @@ pub struct MotorGains<C, P, const N: usize> {
 /// The link part of the law along the motion: `U` Taylor coefficients.
 #[derive(Clone, Copy, Debug)]
 pub struct LinkTorque<T, const N: usize, const U: usize> {
-    /// u_l [N m].
+    /// u_l, the torque that the springs should put on the links [N m].
     pub torque: Vector<Jet<T, U>, N>,
     /// q̃_l = q_l − q_ld in rad.
     pub error: Vector<Jet<T, U>, N>,

@@ -13,7 +13,7 @@ use crate::scalar::{Jet, Over, Scalar};
 /// Any K_P > 0 and any stiffness will do. A law of regulation: on tracking tasks q_0 is the reference as it passes.
 #[derive(Clone, Copy, Debug)]
 pub struct GravityCancellation<C, const N: usize> {
-    /// K_P and K_D.
+    /// K_P and K_D, the feedback of motor positions and velocities.
     pub motor: MotorPd<C, N>,
 }
 

@@ -16,9 +16,9 @@ use crate::scalar::{Jet, Over, Scalar};
 /// stable.
 #[derive(Clone, Copy, Debug)]
 pub struct IntegralManifold<C, const N: usize> {
-    /// k_p [1/s²].
+    /// k_p, feedback of the link position error e [1/s²].
     pub position: Vector<C, N>,
-    /// k_v [1/s].
+    /// k_v, feedback of its rate [1/s].
     pub velocity: Vector<C, N>,
     /// K_f, on the rate of the motors off the manifold [N m s/rad].
     pub damping: Vector<C, N>,

@@ -17,9 +17,9 @@ use crate::scalar::{Jet, Over, Scalar};
 pub struct Passivity<C, const N: usize> {
     /// λ, how fast position errors decay [1/s].
     pub shaping: Vector<C, N>,
-    /// γ_l [N m s/rad].
+    /// γ_l, damping of s_1 on the links [N m s/rad].
     pub link_damping: Vector<C, N>,
-    /// γ_m [N m s/rad].
+    /// γ_m, damping of s_2 on the motors [N m s/rad].
     pub motor_damping: Vector<C, N>,
 }
 

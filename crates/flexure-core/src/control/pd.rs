@@ -11,7 +11,7 @@ use crate::scalar::{Jet, Over, Scalar};
 /// A law of regulation: on tracking tasks q_0 is the reference as it passes, θ̇_0 the rate of θ_0.
 #[derive(Clone, Copy, Debug)]
 pub struct Pd<C, const N: usize> {
-    /// K_P and K_D.
+    /// K_P and K_D, the feedback of motor positions and velocities.
     pub motor: MotorPd<C, N>,
 }
 

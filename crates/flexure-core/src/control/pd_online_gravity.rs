@@ -14,7 +14,7 @@ use crate::scalar::{Jet, Over, Scalar};
 /// q_d + K⁻¹ g(q_d) as it passes.
 #[derive(Clone, Copy, Debug)]
 pub struct PdOnlineGravity<C, const N: usize> {
-    /// K_P and K_D.
+    /// K_P and K_D, the feedback of motor positions and velocities.
     pub motor: MotorPd<C, N>,
 }
 

@@ -8,7 +8,7 @@ use crate::scalar::{Jet, Over, Scalar};
 /// The law of a robot whose links are driven directly. Paper, lemma fullstatecontroller-rigid.
 #[derive(Clone, Copy, Debug)]
 pub struct RigidVcbc<C, P, const N: usize> {
-    /// Gains of the links.
+    /// Metric, shaping function and damping of the links.
     pub link: LinkGains<C, P, N>,
 }
 

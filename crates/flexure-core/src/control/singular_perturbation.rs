@@ -11,9 +11,9 @@ use crate::scalar::{Jet, Over, Scalar};
 /// an error in proportion to the compliance K⁻¹.
 #[derive(Clone, Copy, Debug)]
 pub struct SingularPerturbation<C, const N: usize> {
-    /// k_p [1/s²].
+    /// k_p, feedback of the link position error e [1/s²].
     pub position: Vector<C, N>,
-    /// k_v [1/s].
+    /// k_v, feedback of its rate [1/s].
     pub velocity: Vector<C, N>,
     /// K_f, on the rate of the deflection [N m s/rad].
     pub damping: Vector<C, N>,

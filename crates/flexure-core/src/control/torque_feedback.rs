@@ -12,9 +12,9 @@ use crate::scalar::{Jet, Over, Scalar};
 /// of flexible joint robots*, Int. J. Robotics Research 26, 2007.
 #[derive(Clone, Copy, Debug)]
 pub struct TorqueFeedback<C, const N: usize> {
-    /// Motor inertias to be had, the diagonal of B_θ [kg m²].
+    /// Motor inertias that the robot shall seem to have, the diagonal of B_θ [kg m²].
     pub inertia: Vector<C, N>,
-    /// K_θ and D_θ.
+    /// K_θ and D_θ, the feedback of motor positions and velocities.
     pub motor: MotorPd<C, N>,
 }
 

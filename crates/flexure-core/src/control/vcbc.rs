@@ -10,6 +10,32 @@ use crate::scalar::{Jet, Over, Scalar};
 /// It takes positions, velocities and a reference with four derivatives. Accelerations and jerks of the links follow
 /// from the model; those of the motors, and the torque itself, are never needed: u̇_l and ü_l depend on q̈_l and
 /// q⃛_l, and q⃛_l on q̇_m but not on q̈_m.
+///
+/// ```
+/// use flexure_core::control::{Input, LinkGains, Metric, MotorGains, Tanh, Vcbc};
+/// use flexure_core::linalg::Vector;
+/// use flexure_core::model::{Fjr, Motion};
+/// use flexure_core::reference::{Reference, Sine};
+/// use flexure_core::robots::Pendulum;
+///
+/// let one = |x: f64| Vector([x]);
+/// let links = Pendulum { inertia: 0.5, weight_moment: 10.0 };
+/// let (motor_inertia, stiffness) = (one(0.1), one(100.0));
+/// let robot = Fjr { links, motor_inertia, stiffness, link_damping: one(0.2), motor_damping: one(0.3) };
+/// let shaping = Tanh { gain: one(10.0) };
+/// let law = Vcbc {
+///     link: LinkGains { metric: Metric::Constant(one(40.0)), shaping, damping: one(5.0) },
+///     motor: MotorGains { metric: one(60.0), shaping, damping: one(3.0) },
+/// };
+///
+/// // Where the robot is on the reference, the law asks for what keeps it there, and nothing else.
+/// let q_ld = Sine { amplitude: one(0.5), frequency: one(2.0), ..Sine::ZERO }.at::<5>(0.7);
+/// let nominal = robot.inverse_dynamics::<_, 1, 3, 5>(&q_ld);
+/// let ([q_l, v_l, ..], [q_m, v_m, _]) = (q_ld.derivatives(), nominal.q_m.derivatives());
+/// let command = law.command(&robot, &Motion { q_l, q_m, v_l, v_m }, &q_ld, &Input::ZERO);
+/// let [u_d] = nominal.u_m.derivatives();
+/// assert!((command.u_m[0] - u_d[0]).abs() < 1e-9);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Vcbc<C, Pl, Pm, const N: usize> {
     /// Gains of the link side.
@@ -25,7 +51,7 @@ pub struct Vcbc<C, Pl, Pm, const N: usize> {
 pub struct Input<T, const N: usize> {
     /// ω_l and its first two time derivatives [N m].
     pub link: Vector<Jet<T, 3>, N>,
-    /// ω_m [N m].
+    /// ω_m, added to the motor torque [N m].
     pub motor: Vector<T, N>,
 }
 

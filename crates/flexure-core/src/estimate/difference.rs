@@ -70,6 +70,7 @@ impl<C: Float, const N: usize> Side<C, N> {
 
 /// `link` and `motor`, each with `position` and `increment` in rad, `velocity` and `last_velocity` [rad/s].
 impl<C: Float, const N: usize> Memory<C> for FilteredDifference<C, N> {
+    #[inline]
     fn memory(&mut self, port: &mut dyn Port<C>) {
         port.part("link", &mut self.link);
         port.part("motor", &mut self.motor);
@@ -77,6 +78,7 @@ impl<C: Float, const N: usize> Memory<C> for FilteredDifference<C, N> {
 }
 
 impl<C: Float, const N: usize> Memory<C> for Side<C, N> {
+    #[inline]
     fn memory(&mut self, port: &mut dyn Port<C>) {
         let [velocity, last_velocity] = &mut self.velocity;
         port.joints("position", "rad", &mut self.position.0);

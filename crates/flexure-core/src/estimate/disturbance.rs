@@ -9,14 +9,14 @@ use crate::scalar::{Float, Jet, Over};
 /// Torques on the robot that its model does not contain: pushes, payload, friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disturbance<C, const N: usize> {
-    /// On the links [N m].
+    /// Torques on the links [N m].
     pub link: Vector<C, N>,
-    /// On the motors [N m].
+    /// Torques on the motors [N m].
     pub motor: Vector<C, N>,
 }
 
 impl<C: Float, const N: usize> Disturbance<C, N> {
-    /// None.
+    /// No disturbance.
     pub const ZERO: Self = Self { link: Vector::ZERO, motor: Vector::ZERO };
 }
 
@@ -30,7 +30,7 @@ impl<C: Float, const N: usize> Disturbance<C, N> {
 #[derive(Clone, Copy, Debug)]
 pub struct DisturbanceObserver<C, const N: usize> {
     period: C,
-    /// ρ.
+    /// ρ = e^{−ωT}, the share of a residual that is left after a period.
     kept: Vector<C, N>,
     residual: Disturbance<C, N>,
     last: Option<Balance<C, N>>,
@@ -87,6 +87,7 @@ impl<C: Float, const N: usize> Balance<C, N> {
 /// The residuals `link` and `motor` [N m]; `started`, whether there was an instant before; of that instant `q_l`, `q_m` in
 /// rad, the momenta `p_l`, `p_m` [kg m²/s], the torques K ζ + C_lᵀ q̇_l − g `on_links` and K ζ of the `springs` [N m].
 impl<C: Float, const N: usize> Memory<C> for DisturbanceObserver<C, N> {
+    #[inline]
     fn memory(&mut self, port: &mut dyn Port<C>) {
         port.joints("link", "N m", &mut self.residual.link.0);
         port.joints("motor", "N m", &mut self.residual.motor.0);
@@ -95,6 +96,7 @@ impl<C: Float, const N: usize> Memory<C> for DisturbanceObserver<C, N> {
 }
 
 impl<C: Float, const N: usize> Memory<C> for Balance<C, N> {
+    #[inline]
     fn memory(&mut self, port: &mut dyn Port<C>) {
         port.joints("q_l", "rad", &mut self.q_l.0);
         port.joints("q_m", "rad", &mut self.q_m.0);

@@ -26,7 +26,7 @@ use crate::scalar::Float;
 
 /// Where the robot is and how it moves, from encoders: called once per control period.
 pub trait Estimator<C: Float, const N: usize> {
-    /// Starts over at a motion.
+    /// Starts over, as if the robot had been seen to move like `x`: positions in rad, velocities [rad/s].
     fn start(&mut self, x: &Motion<C, N>);
 
     /// The estimated motion at a control instant, from encoder readings in rad (an estimator that does not use one

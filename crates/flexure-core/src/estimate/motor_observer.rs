@@ -44,6 +44,7 @@ impl<C: Float, const N: usize> MotorObserver<C, N> {
 
 /// The estimated [`Motion`], then the last `reading` of the motors in rad.
 impl<C: Float, const N: usize> Memory<C> for MotorObserver<C, N> {
+    #[inline]
     fn memory(&mut self, port: &mut dyn Port<C>) {
         self.estimate.memory(port);
         port.joints("reading", "rad", &mut self.reading.0);

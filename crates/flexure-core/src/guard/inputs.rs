@@ -10,7 +10,7 @@ use crate::scalar::{Float, Piecewise};
 pub struct Age {
     /// Of the link encoders; 0 where an estimator stands in for them.
     pub link: u32,
-    /// Of the motor encoders.
+    /// Of the motor encoders, in control periods too.
     pub motor: u32,
 }
 

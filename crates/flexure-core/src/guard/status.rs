@@ -3,19 +3,19 @@
 use super::Fault;
 use crate::linalg::Vector;
 
-/// Who decides the torque.
+/// Who decides the motor torque of a control instant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// The law.
+    /// The law decides.
     Following,
-    /// The guard: the robot is being stopped.
+    /// The guard decides: the robot is being stopped.
     Stopped,
-    /// The guard for the last time: from the next instant on it is the law again. Now is when the loop starts its
+    /// The guard decides for the last time: from the next instant on it is the law again. Now is when the loop starts its
     /// estimator over and joins the reference smoothly from where the robot is.
     Rejoined,
 }
 
-/// What a guard says of a control instant.
+/// What a guard reports of a control instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Status<const N: usize> {
     /// Who decided the torque.
@@ -37,9 +37,9 @@ pub struct Status<const N: usize> {
 /// model) is not in here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Certificate {
-    /// The torque is the law's.
+    /// It can: the torque is the law's.
     Holds,
-    /// It is not, for these reasons.
+    /// It cannot: the torque is not the law's, for these reasons.
     Suspended(Suspension),
 }
 

@@ -8,12 +8,12 @@ use crate::memory::{Memory, Port};
 use crate::model::Motion;
 use crate::scalar::{Float, Piecewise};
 
-/// What leaves the controller at an instant.
+/// What a guard answers at a control instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decision<C, const N: usize> {
     /// Motor torque [N m]: finite and inside the limits.
     pub torque: Vector<C, N>,
-    /// Where it comes from.
+    /// Who decided it, which limits were active, and what was wrong with the readings.
     pub status: Status<N>,
 }
 
@@ -22,6 +22,31 @@ pub struct Decision<C, const N: usize> {
 /// The laws have no state, so that a limit that is hit winds nothing up: the torque is the law's again as soon as the
 /// limits allow it, and it never jumps by more than the rate limit times the period, neither on release nor into a stop nor
 /// out of it. Estimators are fed the torque that leaves here.
+///
+/// ```
+/// use flexure_core::guard::{Age, Guard, Phase, Settings};
+/// use flexure_core::linalg::Vector;
+/// use flexure_core::model::Motion;
+///
+/// let mut guard = Guard::new(Settings {
+///     period: 1e-3,
+///     torque_limit: Vector([5.0]),
+///     torque_rate_limit: Vector([f64::INFINITY]),
+///     stop_damping: Vector([1.0]),
+///     allowed_age: 0,
+///     rejoin_after: 10,
+///     position_bound: Vector([3.0]),
+///     speed_bound: Vector([10.0]),
+/// })
+/// .unwrap();
+/// let x = Motion::at_rest(Vector([0.1]));
+/// let holding = |_: &Vector<f64, 1>| Vector([2.0]);
+/// // The law asks for too much, then for nonsense: a limit, then a stop that holds the robot against gravity.
+/// let limited = guard.step(&x, Age::FRESH, |_| Vector([100.0]), holding);
+/// assert_eq!((limited.torque, limited.status.phase), (Vector([5.0]), Phase::Following));
+/// let stopped = guard.step(&x, Age::FRESH, |_| Vector([f64::NAN]), holding);
+/// assert_eq!((stopped.torque, stopped.status.phase), (Vector([2.0]), Phase::Stopped));
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Guard<C, const N: usize> {
     settings: Settings<C, N>,
@@ -36,6 +61,7 @@ pub struct Guard<C, const N: usize> {
 /// The last `torque` [N m]; `good`, whether there was a good reading; its link positions `posture` in rad; good readings
 /// still `awaited`. Whatever is restored, the torque is brought inside the limits, and no more is awaited than the settings ask.
 impl<C: Float, const N: usize> Memory<C> for Guard<C, N> {
+    #[inline]
     fn memory(&mut self, port: &mut dyn Port<C>) {
         let mut last = self.last;
         port.joints("torque", "N m", &mut last.0);
@@ -64,7 +90,7 @@ impl<C: Float, const N: usize> Guard<C, N> {
         self
     }
 
-    /// What it allows.
+    /// The limits that it was made with.
     #[inline]
     pub fn settings(&self) -> &Settings<C, N> {
         &self.settings

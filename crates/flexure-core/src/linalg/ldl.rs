@@ -48,7 +48,7 @@ impl<S: Scalar, const N: usize> Ldl<S, N> {
         &self.pivots
     }
 
-    /// `A⁻¹ b`.
+    /// `A⁻¹ b`, by substitution with L, D and Lᵀ.
     #[inline]
     pub fn solve(&self, b: &Vector<S, N>) -> Vector<S, N> {
         let mut x = *b;

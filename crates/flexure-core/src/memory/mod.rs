@@ -70,11 +70,13 @@ pub trait Port<S> {
 
 impl<S> dyn Port<S> + '_ {
     /// One number.
+    #[inline]
     pub fn number(&mut self, name: &'static str, unit: &'static str, x: &mut S) {
         self.numbers(name, unit, core::slice::from_mut(x));
     }
 
     /// A part with a memory of its own.
+    #[inline]
     pub fn part(&mut self, name: &'static str, part: &mut dyn Memory<S>) {
         self.enter(name);
         part.memory(self);
@@ -82,6 +84,7 @@ impl<S> dyn Port<S> + '_ {
     }
 
     /// A 64-bit integer: `name.low`, then `name.high`.
+    #[inline]
     pub fn long(&mut self, name: &'static str, x: &mut u64) {
         let [a, b, c, d, e, f, g, h] = x.to_le_bytes();
         let (mut low, mut high) = (u32::from_le_bytes([a, b, c, d]), u32::from_le_bytes([e, f, g, h]));
@@ -94,6 +97,7 @@ impl<S> dyn Port<S> + '_ {
 
     /// Something that may be absent: the flag `name` says whether it is there, then `walk` walks over it, over `absent` where
     /// there is none.
+    #[inline]
     pub fn optional<T: Copy>(
         &mut self,
         name: &'static str,
@@ -110,6 +114,7 @@ impl<S> dyn Port<S> + '_ {
 
 /// `q_l`, `q_m` in rad, `dq_l`, `dq_m` [rad/s]: a number per joint each.
 impl<S, const N: usize> Memory<S> for Motion<S, N> {
+    #[inline]
     fn memory(&mut self, port: &mut dyn Port<S>) {
         let Self { q_l: Vector(q_l), q_m: Vector(q_m), v_l: Vector(v_l), v_m: Vector(v_m) } = self;
         port.joints("q_l", "rad", q_l);

@@ -6,7 +6,8 @@ use super::{Memory, Port};
 use crate::scalar::Scalar;
 
 /// How many numbers are remembered where there are `joints` real joints.
-pub fn length<S>(of: &mut dyn Memory<S>, joints: usize) -> usize {
+#[inline]
+pub fn length<S>(of: &mut (impl Memory<S> + ?Sized), joints: usize) -> usize {
     let mut length = 0;
     of.memory(&mut Each { joints, visit: |_: Piece<'_, S>| length += 1 });
     length
@@ -17,8 +18,9 @@ pub fn length<S>(of: &mut dyn Memory<S>, joints: usize) -> usize {
 /// # Errors
 ///
 /// If `to` has not the right [`length`]; nothing was written then.
+#[inline]
 pub fn save<S: Copy + Into<f64>>(
-    from: &mut dyn Memory<S>,
+    from: &mut (impl Memory<S> + ?Sized),
     joints: usize,
     to: &mut [f64],
 ) -> Result<(), Unfit> {
@@ -45,7 +47,12 @@ pub fn save<S: Copy + Into<f64>>(
 ///
 /// If `from` has not the right [`length`], or a number in it stands for an integer or a flag and is none; nothing was
 /// restored then.
-pub fn restore<S: Scalar>(to: &mut dyn Memory<S>, joints: usize, from: &[f64]) -> Result<(), Unfit> {
+#[inline]
+pub fn restore<S: Scalar>(
+    to: &mut (impl Memory<S> + ?Sized),
+    joints: usize,
+    from: &[f64],
+) -> Result<(), Unfit> {
     fits(to, joints, from.len())?;
     let (mut slots, mut wrong) = (from.iter().copied().enumerate(), None);
     to.memory(&mut Each {
@@ -117,12 +124,14 @@ impl fmt::Display for Unfit {
 
 impl core::error::Error for Unfit {}
 
-fn fits<S>(of: &mut dyn Memory<S>, joints: usize, has: usize) -> Result<(), Unfit> {
+#[inline]
+fn fits<S>(of: &mut (impl Memory<S> + ?Sized), joints: usize, has: usize) -> Result<(), Unfit> {
     let needs = length(of, joints);
     if has == needs { Ok(()) } else { Err(Unfit::Length { has, needs }) }
 }
 
 /// The integer that `x` is.
+#[inline]
 fn word(x: f64) -> Option<u32> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the next line compares")]
     let word = x as u32;
@@ -144,22 +153,26 @@ struct Each<F> {
 }
 
 impl<S, F: FnMut(Piece<'_, S>)> Port<S> for Each<F> {
+    #[inline]
     fn numbers(&mut self, _: &'static str, _: &'static str, x: &mut [S]) {
         for x in x {
             (self.visit)(Piece::Number(x));
         }
     }
 
+    #[inline]
     fn joints(&mut self, _: &'static str, _: &'static str, x: &mut [S]) {
         for x in x.iter_mut().take(self.joints) {
             (self.visit)(Piece::Number(x));
         }
     }
 
+    #[inline]
     fn word(&mut self, _: &'static str, x: &mut u32) {
         (self.visit)(Piece::Word(x));
     }
 
+    #[inline]
     fn flag(&mut self, _: &'static str, x: &mut bool) {
         (self.visit)(Piece::Flag(x));
     }

@@ -8,9 +8,30 @@ use crate::scalar::{Dual, Over, Scalar};
 ///
 /// Each motor's inertia is constant and its centre of mass lies on its axis, so M_m is diagonal, E_m = 0 and the
 /// motors have no gravity potential (the paper's standing assumptions). Everything is on the link side of the gear.
+///
+/// ```
+/// use flexure_core::linalg::Vector;
+/// use flexure_core::model::{Fjr, Motion};
+/// use flexure_core::robots::Pendulum;
+///
+/// let robot = Fjr {
+///     links: Pendulum { inertia: 0.5, weight_moment: 10.0 },
+///     motor_inertia: Vector([0.1]),
+///     stiffness: Vector([100.0]),
+///     link_damping: Vector([0.2]),
+///     motor_damping: Vector([0.3]),
+/// };
+/// // Held horizontally, the weight of 10 N m winds the spring of 100 N m/rad up by 0.1 rad.
+/// let q_l = Vector([core::f64::consts::FRAC_PI_2]);
+/// let held = Motion { q_m: robot.motors_at_rest(&q_l), ..Motion::at_rest(q_l) };
+/// assert!((held.deflection()[0] - 0.1).abs() < 1e-12);
+/// assert!(robot.link_acceleration(&held)[0].abs() < 1e-12);
+/// // Let go, the motor falls after: 10 N m on 0.1 kg m².
+/// assert!((robot.motor_acceleration(&held, &Vector([0.0]))[0] + 100.0).abs() < 1e-9);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Fjr<C, L, const N: usize> {
-    /// The rigid links.
+    /// The rigid links: mass matrix, Coriolis and gravity torques.
     pub links: L,
     /// Motor inertias, the diagonal of M_m [kg m²].
     pub motor_inertia: Vector<C, N>,
@@ -32,7 +53,7 @@ pub struct Power<T> {
 }
 
 impl<C: Scalar, L: Links<C, N>, const N: usize> Fjr<C, L, N> {
-    /// Momenta from velocities.
+    /// The state: momenta p_l = M_l q̇_l, p_m = M_m q̇_m from velocities.
     #[inline]
     pub fn state<T: Over<C>>(&self, x: &Motion<T, N>) -> State<T, N> {
         State {
@@ -43,7 +64,7 @@ impl<C: Scalar, L: Links<C, N>, const N: usize> Fjr<C, L, N> {
         }
     }
 
-    /// Velocities from momenta: ∂H/∂p.
+    /// The motion: velocities q̇ = ∂H/∂p from momenta.
     #[inline]
     pub fn motion<T: Over<C>>(&self, x: &State<T, N>) -> Motion<T, N> {
         Motion {

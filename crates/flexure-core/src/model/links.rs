@@ -124,9 +124,9 @@ pub trait Links<C: Scalar, const N: usize> {
     }
 }
 
-/// A mass matrix that can be solved with.
+/// The mass matrix at one position, ready for solving: from [`Links::factor`].
 pub trait MassFactor<T, const N: usize> {
-    /// M⁻¹ b.
+    /// M⁻¹ b: accelerations [rad/s²] of torques [N m], velocities [rad/s] of momenta [kg m²/s].
     fn solve(&self, b: &Vector<T, N>) -> Vector<T, N>;
 }
 

@@ -19,7 +19,7 @@ pub struct PointToPoint<C, const N: usize> {
     pub start: C,
     /// Time that the motion takes in s; `duration` > 0 is the caller's duty.
     pub duration: C,
-    /// How the motion goes in between.
+    /// The function s between 0 and 1 that the motion follows.
     pub step: Smoothstep,
 }
 

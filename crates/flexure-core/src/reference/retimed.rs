@@ -7,7 +7,7 @@ use crate::scalar::{Jet, Over, Piecewise, Scalar};
 /// Another clock: how far along a reference the motion is, s(t) in s of the reference's own time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Clock<C> {
-    /// s = ρ t.
+    /// At a constant speed: s = ρ t.
     Steady {
         /// ρ, seconds of the reference per second.
         speed: C,
@@ -23,7 +23,7 @@ pub enum Clock<C> {
 }
 
 impl<C: Scalar> Clock<C> {
-    /// s at time `t` in s.
+    /// s(t), the time of the reference in s, at time `t` in s.
     #[inline]
     pub fn on<T: Over<C> + Piecewise>(&self, t: T) -> T {
         match *self {
@@ -41,9 +41,9 @@ impl<C: Scalar> Clock<C> {
 /// As smooth as the less smooth of r and the clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Retimed<C, R> {
-    /// How far along it when.
+    /// The clock: s(t), how far along the reference the motion is at time t.
     pub clock: Clock<C>,
-    /// The reference r.
+    /// The reference r, in its own time.
     pub path: R,
 }
 

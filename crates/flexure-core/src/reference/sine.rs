@@ -18,7 +18,7 @@ pub struct Sine<C, const N: usize> {
 }
 
 impl<C: Scalar, const N: usize> Sine<C, N> {
-    /// All zero: for `..Sine::ZERO`.
+    /// At 0 for ever: for `..Sine::ZERO`, where only some fields are given.
     pub const ZERO: Self =
         Self { offset: Vector::ZERO, amplitude: Vector::ZERO, frequency: Vector::ZERO, phase: Vector::ZERO };
 }

@@ -28,7 +28,7 @@ impl Smoothstep {
         }
     }
 
-    /// s(τ), for any τ.
+    /// s(τ), for any τ: from 0 to 1.
     #[inline]
     pub fn eval<T: Piecewise>(self, tau: T) -> T {
         self.blend(T::ZERO, T::ONE, tau)
@@ -98,7 +98,7 @@ pub struct Progress<T> {
 }
 
 impl<T: Piecewise> Progress<T> {
-    /// from + s(τ) (to − from).
+    /// from + s(τ) (to − from), for any `from` and `to` of one unit.
     #[inline]
     pub fn between(&self, from: T, to: T) -> T {
         let way = to - from;

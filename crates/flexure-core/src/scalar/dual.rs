@@ -15,7 +15,7 @@ use super::{Over, Piecewise, Scalar, assign_ops};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<S, const M: usize> {
-    /// The value.
+    /// The value of the function.
     pub value: S,
     /// Partial derivatives of the value.
     pub gradient: [S; M],

@@ -7,10 +7,12 @@ use flexure_core::estimate::{
 };
 use flexure_core::guard::{Age, Guard, Settings};
 use flexure_core::linalg::Vector;
+use flexure_core::memory::{restore, save};
 use flexure_core::model::{FeedForward, LinkMatrices, Links, MassFactor};
 use flexure_core::reference::{
     Clock, Multisine, PointToPoint, Reference, Retimed, Sine, SmoothStart, Smoothstep, Term,
 };
+use flexure_core::robots::Tree;
 use flexure_core::scalar::{Jet, Scalar};
 use flexure_core::virtual_system::{Structure, closed_loop, error_coordinates, virtual_dynamics};
 
@@ -83,6 +85,13 @@ fn branched_tree() {
 }
 
 #[test]
+fn tree_with_room() {
+    let bodies = common::branched_bodies::<5>(2);
+    let roomy: Tree<f64, 8> = Tree::from_bodies(&bodies, common::GRAVITY, |x| x).expect("they fit");
+    law_and_dynamics_allocate_nothing(roomy);
+}
+
+#[test]
 fn estimators_and_guard() {
     let mut r = Numbers(3);
     let robot = flexible(branched::<7>(2), &mut r);
@@ -112,8 +121,10 @@ fn estimators_and_guard() {
             motor.update(&robot, &x.q_l, &x.q_m, &u),
         ];
         let found = [disturbance.update(&robot, &x, &u), disturbance.update(&robot, &x, &u)];
+        let mut numbers = [0.0; 4 * 7];
+        let memory = (save(&mut both, 7, &mut numbers), restore(&mut both, 7, &numbers));
         let decisions = [0, 1].map(|age| guard.step(&x, Age { link: age, motor: 0 }, |_| u, |_| u));
-        Some((estimates, found, decisions))
+        Some((estimates, found, memory, decisions))
     });
     assert_eq!(count, 0);
 }

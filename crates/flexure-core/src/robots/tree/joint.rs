@@ -18,15 +18,15 @@ pub(super) struct Joint<C> {
 }
 
 impl<C: Scalar> Joint<C> {
-    /// A joint on the base with unit inertia and no mass: what fills a tree up to its capacity.
+    /// What fills a tree up to its capacity: recursions do not visit it.
     pub(super) fn phantom() -> Self {
         let (zero, one) = (C::ZERO, C::ONE);
         Self {
             parent: usize::MAX,
-            kind: JointKind::Revolute,
+            kind: JointKind::Prismatic,
             rotation: Rotation::from_matrix(&Matrix::identity()),
             translation: Vec3::ZERO,
-            inertia: RigidInertia::new(zero, [zero; 3], [one, zero, zero, one, zero, one]),
+            inertia: RigidInertia::new(one, [zero; 3], [zero; 6]),
         }
     }
 

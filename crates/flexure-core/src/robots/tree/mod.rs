@@ -67,8 +67,9 @@ impl<C: Copy> Body<C> {
 /// solving with it and inverse dynamics give back what they are given there, and gravity, potential energy and carrier rates
 /// are 0. What is built on [`Links`](crate::model::Links) therefore needs no special case: a phantom that starts at rest with
 /// a reference of 0 stays exactly there, with a torque of exactly 0, and the numbers of the real joints are those of the tree
-/// of exact size. It needs what every joint needs: positive stiffness, motor inertia and gains, for instance 1. Recursions run
-/// over the real joints only.
+/// of exact size. What divides must not be 0 for it either: stiffness, motor inertia, gear ratio, the metric of the motors, Λ of a
+/// coupled tanh, bandwidths and limits are positive, for instance 1; any other gain or damping may be 0. Recursions run over the
+/// real joints only.
 ///
 /// Link frames are turned so that every joint axis is z: joint transforms then cost four products instead of nine.
 ///

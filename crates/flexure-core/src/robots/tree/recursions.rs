@@ -8,14 +8,11 @@ use crate::scalar::{Over, Scalar};
 use crate::spatial::{Twist, Vec3, Wrench};
 
 impl<C: Scalar, const N: usize> Tree<C, N> {
-    /// Where the real joints are.
+    /// Where the joints are; phantoms slide, which takes no sines.
     #[inline]
     pub(super) fn poses<T: Over<C>>(&self, q: &Vector<T, N>) -> [Pose<T>; N] {
-        let mut poses = [Pose::Slid(T::ZERO); N];
-        for ((pose, joint), q) in poses.iter_mut().zip(&self.joints).zip(q.iter()).take(self.count) {
-            *pose = joint.at(q);
-        }
-        poses
+        let mut positions = q.iter();
+        self.joints.each_ref().map(|joint| joint.at(positions.next().unwrap_or(T::ZERO)))
     }
 
     /// The modified Newton–Euler pass: M(q) a_r + C(q, v) v_r plus the torque that holds the tree against a base

@@ -77,7 +77,7 @@ struct Coupled<const K: usize>([Vector<f64, K>; 2]);
 impl<const K: usize> Padded for Coupled<K> {
     type At<C: Scalar, const N: usize> = CoupledTanh<C, N>;
     fn at<C: Scalar, const N: usize>(&self, number: fn(f64) -> C) -> CoupledTanh<C, N> {
-        CoupledTanh::new(self.0[0].at(number), &self.0[1].at(number)).coupling(K)
+        CoupledTanh::of_joints(K, self.0[0].at(number), &self.0[1].at(number))
     }
 }
 
@@ -170,7 +170,6 @@ fn v_cbc<C: Scalar, T: Over<C>, const K: usize, const N: usize>(constants: Const
 #[test]
 fn every_law() {
     all::<f64, f64, 3, 4>(crate::capacity::FLOAT, crate::capacity::number_f64);
-    all::<f64, Jet<f64, 3>, 2, 4>(crate::capacity::FLOAT, crate::capacity::number_jet);
     all::<f64, f64, 7, 16>(crate::capacity::FLOAT, crate::capacity::number_f64);
 }
 
@@ -180,13 +179,13 @@ fn the_virtual_law_on_every_number() {
     v_cbc::<f64, f64, 6, 8>(crate::capacity::FLOAT, crate::capacity::number_f64);
 }
 
-/// Without [`CoupledTanh::coupling`] real errors would move phantoms, and n would be the capacity.
+/// Without [`CoupledTanh::of_joints`] real errors would move phantoms, and n would be the capacity.
 #[test]
 fn only_real_joints_are_coupled() {
     let (kappa, gain) = (Vector([2.0; 4]), Vector([4.0; 4]));
     let error = Vector([0.5, -0.25, 0.0, 0.0]);
     let all = CoupledTanh::new(kappa, &gain).eval(&error);
     assert!(all[2] != 0.0 && all[3] != 0.0);
-    let two = CoupledTanh::new(kappa, &gain).coupling(2).eval(&error);
+    let two = CoupledTanh::of_joints(2, kappa, &gain).eval(&error);
     assert_eq!(two, Vector([1.5 + (-0.25_f64).tanh(), -0.75 + 0.5_f64.tanh(), 0.0, 0.0]));
 }
