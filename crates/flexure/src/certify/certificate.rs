@@ -2,7 +2,6 @@
 //! claims is stated in `docs/certificate.md`.
 
 use flexure_core::scalar::Interval;
-use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::number::Number;
@@ -11,8 +10,8 @@ use super::number::Number;
 pub const VERSION: u32 = 1;
 
 /// A proof in numbers.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct Certificate {
     /// "flexure-certificate".
     pub format: String,
@@ -49,8 +48,8 @@ pub struct Certificate {
 }
 
 /// A flexible-joint robot in decimals.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct Robot {
     /// Its name.
     pub name: String,
@@ -69,7 +68,8 @@ pub struct Robot {
 }
 
 /// The links of a robot in decimals.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Links {
     /// Two links in a plane, in closed form.
@@ -100,8 +100,8 @@ pub enum Links {
 }
 
 /// A body of a tree and the joint that carries it.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct Body {
     /// Index of the body that carries the joint; none for the base.
     pub parent: Option<usize>,
@@ -125,7 +125,8 @@ pub struct Body {
 }
 
 /// How a joint moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum JointKind {
     /// About its axis.
@@ -135,8 +136,8 @@ pub enum JointKind {
 }
 
 /// The law with its gains.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct Controller {
     /// Shaping function of both sides.
     pub phi: Phi,
@@ -147,7 +148,8 @@ pub struct Controller {
 }
 
 /// A shaping function with a structure theorem.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Phi {
     /// φ_1 = Λ tanh q̃.
@@ -159,8 +161,8 @@ pub enum Phi {
 }
 
 /// The gains of one side, one number per joint.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct Gains {
     /// Metric Π [N m/rad].
     pub metric: Vec<Number>,
@@ -173,8 +175,8 @@ pub struct Gains {
 }
 
 /// Where the claims hold.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct Region {
     /// Largest |q̃_i| in rad, links then motors; none for no bound.
     pub error: Vec<Option<Number>>,
@@ -183,8 +185,8 @@ pub struct Region {
 }
 
 /// The variational closed loop in words that do not commute.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct ClosedLoop {
     /// d/dt of δq̃_l, δq̃_m, δσ_l, δσ_m from δq̃_l, δq̃_m, δs_l, δs_m.
     pub rows: [[String; 4]; 4],
@@ -193,8 +195,8 @@ pub struct ClosedLoop {
 }
 
 /// The rates of one block.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct Block {
     /// Which.
     pub block: BlockName,
@@ -207,7 +209,8 @@ pub struct Block {
 }
 
 /// A block of the closed loop.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum BlockName {
     /// Link positions.
@@ -233,8 +236,8 @@ impl BlockName {
 }
 
 /// A matrix that has to be positive definite at the claimed rates, and by how much its pivots are positive.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct Case {
     /// Which ends of their ranges the variables are at: a letter each, L or H.
     pub case: String,
@@ -245,16 +248,16 @@ pub struct Case {
 }
 
 /// Lower bounds of pivots of the mass matrix.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct MassMatrix {
     /// One per case or body.
     pub margins: Vec<Number>,
 }
 
 /// An upper bound of a matrix measure of −Θ ∂φ Θ⁻¹.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct Measure {
     /// Whose φ.
     pub side: Side,
@@ -265,7 +268,8 @@ pub struct Measure {
 }
 
 /// Links or motors.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
     /// Links.
@@ -275,7 +279,8 @@ pub enum Side {
 }
 
 /// The norm that a matrix measure belongs to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub enum Norm {
     /// Sums of absolute values.
     #[serde(rename = "1")]
@@ -289,8 +294,8 @@ pub enum Norm {
 }
 
 /// Whether the closed loop keeps a structure.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct Structure {
     /// Which.
     pub name: StructureName,
@@ -301,7 +306,8 @@ pub struct Structure {
 }
 
 /// A structure that the closed loop may keep.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum StructureName {
     /// The variation is a port-Hamiltonian system.
@@ -315,8 +321,8 @@ pub enum StructureName {
 }
 
 /// An error at which two numbers differ that a structure wants equal.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct Witness {
     /// Whose φ.
     pub side: Side,
@@ -331,8 +337,8 @@ pub struct Witness {
 }
 
 /// An error tube under a disturbance torque of the motors.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct Tube {
     /// Largest |d_i| [N m].
     pub disturbance: Vec<Number>,

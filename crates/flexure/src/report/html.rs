@@ -3,7 +3,7 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 
 use super::certificates::{self, CertificateReport};
-use super::markdown::{ERRATA, body, subscripts};
+use super::markdown::{ERRATA, subscripts};
 use super::number::{NONE, engineering};
 use crate::summary::Summary;
 
@@ -88,7 +88,7 @@ pub fn html(report: &Report) -> String {
                     section id="certificates" { h2 { "Certificates" } (certificates::section(&report.certificates)) }
                 }
                 section id="assumptions" { h2 { "Assumptions" } (assumptions(&report.assumptions)) }
-                section id="errata" { h2 { "Slips of the paper" } div.scroll.prose { (PreEscaped(body(ERRATA))) } }
+                section id="errata" { h2 { "Slips of the paper" } div.scroll.prose { (PreEscaped(ERRATA)) } }
                 footer { h2 { "How this page was made" }
                     ul { @for line in &report.provenance { li { (line) } } }
                 }
