@@ -7,7 +7,7 @@ use crate::proof::{Direct, Proof, Question, Region, certified_rate, prove};
 use crate::proof_summary::ProofSummary;
 use crate::report::number::engineering;
 use crate::report::{
-    Assumption, CertificateReport, FigureOptions, Report, RunReport, comparison, four_panel,
+    Assumption, CertificateReport, FigureOptions, Report, RunReport, Scene, comparison, four_panel,
 };
 use crate::run::{Run, run};
 use crate::summary::Summary;
@@ -29,8 +29,8 @@ pub struct Experiment {
     pub scenario: Scenario,
     /// What came of it.
     pub run: Run,
-    /// The four-panel figure, as SVG.
-    pub figure: String,
+    /// The four-panel figure.
+    pub figure: Scene,
 }
 
 impl Experiment {
@@ -133,7 +133,7 @@ pub fn report(experiments: &[Experiment], certificates: &[Certified]) -> Report 
         title: "Virtual-contraction control of a flexible-joint robot".to_owned(),
         introduction: INTRODUCTION.to_owned(),
         runs: experiments.iter().map(run_report).collect(),
-        comparison_svg: Some(comparison(&traces)),
+        comparison_svg: Some(comparison(&traces).svg()),
         certificates: certificates.iter().map(certificate_report).collect(),
         assumptions: assumptions(experiments.iter().map(|experiment| &experiment.scenario)),
         provenance: vec![
@@ -167,7 +167,7 @@ pub fn certificate_name(scenario: &str) -> String {
 fn run_report(experiment: &Experiment) -> RunReport {
     RunReport {
         summary: experiment.run.summary.clone(),
-        figure_svg: experiment.figure.clone(),
+        figure_svg: experiment.figure.svg(),
         description: outcome(&experiment.run.summary),
     }
 }

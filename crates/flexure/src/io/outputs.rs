@@ -8,7 +8,7 @@ use super::atomic::{WriteError, write_atomic};
 use crate::certify::Certificate;
 use crate::compare::{Leaderboard, Task};
 use crate::experiment::{Certified, Experiment, assumptions, certificate_name, report};
-use crate::report::{chatter_figure, effort_figure, html, leaderboard_page, png};
+use crate::report::{Scene, chatter_figure, effort_figure, html, leaderboard_page};
 use crate::trace::Trace;
 
 /// Writes trace and figure of an experiment into `folder`, which is created if missing; returns the paths.
@@ -17,12 +17,19 @@ use crate::trace::Trace;
 /// If a file cannot be written; none is ever half written.
 pub fn write_experiment(folder: &Path, experiment: &Experiment) -> Result<Vec<PathBuf>, WriteError> {
     create(folder)?;
-    let path = |ending: &str| folder.join(format!("{}.{ending}", experiment.scenario.name));
-    let (trace, svg, picture) = (path("csv"), path("svg"), path("png"));
+    let name = &experiment.scenario.name;
+    let trace = folder.join(format!("{name}.csv"));
     write_trace(&trace, &experiment.run.trace)?;
-    write_atomic(&svg, |out| out.write_all(experiment.figure.as_bytes()))?;
-    write_atomic(&picture, |out| out.write_all(&png(&experiment.figure).map_err(io::Error::other)?))?;
-    Ok(vec![trace, svg, picture])
+    let [svg, png] = write_figure(folder, name, &experiment.figure)?;
+    Ok(vec![trace, svg, png])
+}
+
+/// Writes a figure as `name.svg` and `name.png`; returns their paths.
+fn write_figure(folder: &Path, name: &str, figure: &Scene) -> Result<[PathBuf; 2], WriteError> {
+    let paths = ["svg", "png"].map(|ending| folder.join(format!("{name}.{ending}")));
+    write_atomic(&paths[0], |out| out.write_all(figure.svg().as_bytes()))?;
+    write_atomic(&paths[1], |out| out.write_all(&figure.png().map_err(io::Error::other)?))?;
+    Ok(paths)
 }
 
 /// Writes the certificates into `folder`, which is created if missing; returns their paths.
@@ -73,11 +80,7 @@ pub fn write_leaderboard(
     write_atomic(&paths[0], |out| out.write_all(page.as_bytes()))?;
     write_scores(&paths[1], board)?;
     for (name, figure) in [("effort", effort_figure(board)), ("chatter", chatter_figure(board))] {
-        let path = |ending: &str| folder.join(format!("compare-{name}.{ending}"));
-        let (svg, picture) = (path("svg"), path("png"));
-        write_atomic(&svg, |out| out.write_all(figure.as_bytes()))?;
-        write_atomic(&picture, |out| out.write_all(&png(&figure).map_err(io::Error::other)?))?;
-        paths.extend([svg, picture]);
+        paths.extend(write_figure(folder, &format!("compare-{name}"), &figure)?);
     }
     Ok(paths)
 }

@@ -16,7 +16,7 @@ pub struct Report {
     pub introduction: String,
     /// The runs, in the order of the page.
     pub runs: Vec<RunReport>,
-    /// Figure with all runs in one axis, from [`comparison`](super::comparison()).
+    /// Figure with all runs in one axis as SVG, from [`comparison`](super::comparison()).
     pub comparison_svg: Option<String>,
     /// What was proved.
     pub certificates: Vec<CertificateReport>,
@@ -31,7 +31,7 @@ pub struct Report {
 pub struct RunReport {
     /// Its figures of merit.
     pub summary: Summary,
-    /// Its figure, from [`four_panel`](super::four_panel()).
+    /// Its figure as SVG, from [`four_panel`](super::four_panel()).
     pub figure_svg: String,
     /// What the figure shows, in a sentence or two.
     pub description: String,
