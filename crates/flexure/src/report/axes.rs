@@ -33,6 +33,8 @@ const EDGE: Stroke = Stroke::solid(MUTED, 1.0);
 const GRID_LINE: Stroke = Stroke::solid(GRID, 1.0);
 /// Length of a tick, into the frame [px].
 const TICK: f64 = 5.0;
+/// Room for numbers on the left that are narrower [px]: labels of most panels stand in a line.
+const NARROWEST: f64 = 26.0;
 /// Room between the frame and the numbers on its left [px].
 const GAP: f64 = 8.0;
 /// From the middle of a number to its base line: half the height of digits [px].
@@ -101,7 +103,7 @@ impl Axes<'_> {
     /// Where the base line of the label on the left is: beside the widest number, but on the page.
     fn label_left(&self) -> f64 {
         let widths = self.y.ticks.iter().map(|tick| text::width(&tick.name, NUMBERS));
-        let beside = self.left - GAP - widths.fold(0.0, f64::max) - 12.0;
+        let beside = self.left - GAP - widths.fold(NARROWEST, f64::max) - 12.0;
         self.frame[0] - self.left + beside.max(15.0)
     }
 }
