@@ -80,7 +80,6 @@ pub fn write_atomic(
 
 #[cfg(test)]
 mod tests {
-    use std::fmt::Display;
     use std::fs;
     use std::io;
 

@@ -44,7 +44,9 @@ pub fn comparison(traces: &[(&str, &Trace)]) -> Scene {
     let y = Axis { range: y, ticks: ticks::decades(y), label: "max |eₗ| [rad]" };
     let axes = over_time([MARGIN / 2.0, top, WIDTH - MARGIN, HEIGHT], LEFT, x, TIME, y);
     axes.draw(&mut scene);
-    curves.iter().for_each(|curve| axes.curve(&mut scene, curve, buckets));
+    for curve in &curves {
+        axes.curve(&mut scene, curve, buckets);
+    }
     scene
 }
 

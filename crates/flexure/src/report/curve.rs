@@ -101,7 +101,7 @@ impl Pen {
     fn line(&mut self, from: Point, to: Point) {
         match self.pieces.last_mut() {
             Some(piece) if piece.last() == Some(&from) => {
-                if from != to {
+                if piece.last() != Some(&to) {
                     piece.push(to);
                 }
             }

@@ -167,7 +167,9 @@ fn linear(range: Range, label: &str) -> Axis<'_> {
 fn draw(scene: &mut Scene, axes: &Axes, curves: &[Curve], view: &View) {
     const END: Stroke = Stroke { color: MUTED, width: 1.2, dash: &[1.5, 3.0] };
     axes.draw(scene);
-    curves.iter().for_each(|curve| axes.curve(scene, curve, view.buckets));
+    for curve in curves {
+        axes.curve(scene, curve, view.buckets);
+    }
     if let Some(t) = view.diverged {
         axes.mark(scene, t, END);
     }

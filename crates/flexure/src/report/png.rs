@@ -56,7 +56,7 @@ mod tests {
 
     #[test]
     fn rows_add_up() {
-        let rgb: Vec<u8> = (0..60).map(|k| (k * k % 251) as u8).collect();
+        let rgb: Vec<u8> = (0..60u8).map(|k| k.wrapping_mul(k)).collect();
         let mut above = vec![0u8; 12];
         let mut restored = Vec::new();
         for line in filtered(12, &rgb).chunks_exact(13) {

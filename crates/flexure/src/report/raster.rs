@@ -1,5 +1,5 @@
 //! A drawing as pixels.
-#![expect(clippy::cast_possible_truncation, reason = "pixels are drawn in f32")]
+#![expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "pixels are drawn in f32")]
 
 use std::fmt;
 
