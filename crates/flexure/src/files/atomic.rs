@@ -1,5 +1,6 @@
 //! Output files that appear whole or not at all.
 
+use std::fmt::Display;
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -8,11 +9,10 @@ use miette::Diagnostic;
 use tempfile::Builder;
 
 /// Why a file was not written. Nothing is left behind, and a file that was there before is as it was.
-#[derive(Debug, thiserror::Error, Diagnostic)]
+#[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// No file can be created beside the target.
     #[error("cannot create files in {}: {cause}", folder.display())]
-    #[diagnostic(code("error[write]"), help("name a folder in which files can be created"))]
     Folder {
         /// The folder.
         folder: PathBuf,
@@ -22,14 +22,12 @@ pub enum WriteError {
     },
     /// The target is a folder or a device.
     #[error("{} is not a regular file", path.display())]
-    #[diagnostic(code("error[write]"), help("name a file that does not exist yet, or one to replace"))]
     NotAFile {
         /// The target.
         path: PathBuf,
     },
     /// Writing failed on the way.
     #[error("cannot write {}: {cause}", path.display())]
-    #[diagnostic(code("error[write]"), help("is the disk full, or the file in use?"))]
     Content {
         /// The target.
         path: PathBuf,
@@ -37,6 +35,20 @@ pub enum WriteError {
         #[source]
         cause: io::Error,
     },
+}
+
+impl Diagnostic for WriteError {
+    fn code<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        Some(Box::new("error[write]"))
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        Some(Box::new(match self {
+            Self::Folder { .. } => "name a folder in which files can be created",
+            Self::NotAFile { .. } => "name a file that does not exist yet, or one to replace",
+            Self::Content { .. } => "is the disk full, or the file in use?",
+        }))
+    }
 }
 
 /// Writes `path` by `write`, into a temporary file in the same folder that takes the name at the end.

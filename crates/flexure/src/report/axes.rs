@@ -1,151 +1,109 @@
-//! One frame with its axes and curves.
+//! The frame of every figure: grid, ticks, labels, and what lies where in it.
 
-use std::sync::Arc;
+use super::curve::Curve;
+use super::range::Range;
+use super::scene::{Anchor, Lettering, Point, Scene, Shape};
+use super::style::{GRID, INK, MUTED, Stroke, letters};
+use super::text;
+use super::ticks::Tick;
 
-use kuva::render::axis::{add_axes_and_grid, add_labels_and_title};
-use kuva::render::layout::{ComputedLayout, Layout, TickFormat};
-use kuva::render::render::{PathData, Primitive};
-use kuva::render::theme::Theme;
-
-use crate::files::number::{power_of_ten, short};
-use crate::report::curve::Curve;
-use crate::report::range::{Range, decade_step, round_step};
-use crate::report::sheet::Sheet;
-use crate::report::style::{FONT, GRID, INK, MUTED};
-
-/// How the numbers along an axis are written.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Labels {
-    /// As they are.
-    Linear,
-    /// The axis carries exponents of ten.
-    Decades,
+/// One direction of a frame.
+pub(super) struct Axis<'a> {
+    pub range: Range,
+    pub ticks: Vec<Tick>,
+    pub label: &'a str,
 }
 
-/// A frame and what is written on it.
+/// A frame and what is written around it.
 pub(super) struct Axes<'a> {
-    /// Left, top, width and height of everything, labels included [px].
-    pub place: [f64; 4],
-    pub x: Range,
-    pub y: Range,
-    pub x_label: &'a str,
-    pub y_label: &'a str,
-    pub y_labels: Labels,
-    /// Room left of the frame [px].
+    /// Left, top, width and height of the frame [px].
+    pub frame: [f64; 4],
+    /// Room for labels left of the frame [px].
     pub left: f64,
+    pub x: Axis<'a>,
+    pub y: Axis<'a>,
 }
 
-const TOP: f64 = 6.0;
-const RIGHT: f64 = 12.0;
-const BOTTOM: f64 = 48.0;
+/// Room below a frame for the labels of an axis [px].
+pub(super) const BOTTOM: f64 = 48.0;
+
+const NUMBERS: Lettering = letters(13.0, INK);
+const LABELS: Lettering = letters(14.0, INK);
+const EDGE: Stroke = Stroke::solid(MUTED, 1.0);
+const GRID_LINE: Stroke = Stroke::solid(GRID, 1.0);
+/// Length of a tick, into the frame [px].
+const TICK: f64 = 5.0;
+/// Room for numbers on the left that are narrower [px]: labels of most panels stand in a line.
+const NARROWEST: f64 = 26.0;
+/// Room between the frame and the numbers on its left [px].
+const GAP: f64 = 8.0;
+/// From the middle of a number to its base line: half the height of digits [px].
+const HALF_DIGIT: f64 = 4.74;
 
 impl Axes<'_> {
-    /// Draws the frame, then the curves in their order, then a dotted line at `mark` (an instant), if there is one.
-    pub(super) fn draw(&self, sheet: &mut Sheet, curves: &[Curve], mark: Option<f64>, buckets: usize) {
-        let [x, y, _, _] = self.place;
-        let layout = self.layout();
-        let computed = ComputedLayout::from_layout(&layout);
-        group(sheet, format!("translate({x} {y})"), None);
-        add_axes_and_grid(&mut sheet.scene, &computed, &layout);
-        add_labels_and_title(&mut sheet.scene, &computed, &layout);
-        sheet.scene.add(Primitive::GroupEnd);
-
-        let [width, height] = self.frame();
-        // Paths are in whole tenths of a pixel: short to write, finer than any screen.
-        let attributes = "stroke-linejoin=\"round\"".to_owned();
-        group(sheet, format!("translate({} {}) scale(.1)", x + self.left, y + TOP), Some(attributes));
-        for curve in curves {
-            let d = curve.path(self.x, self.y, width, height, buckets);
-            if !d.is_empty() {
-                sheet.scene.add(path(
-                    d,
-                    curve.stroke.color,
-                    curve.stroke.width,
-                    curve.stroke.dasharray(10.0),
-                ));
-            }
+    /// Draws the frame with its grid, ticks, numbers and labels.
+    pub(super) fn draw(&self, scene: &mut Scene) {
+        let [left, top, width, height] = self.frame;
+        let (right, bottom) = (left + width, top + height);
+        let columns = self.x.ticks.iter().map(|tick| (self.across(tick.at), &tick.name));
+        let rows = self.y.ticks.iter().map(|tick| (self.down(tick.at), &tick.name));
+        // Under the edges, lines of the grid would only thicken them.
+        for (x, _) in columns.clone().filter(|(x, _)| x - left >= 1.0) {
+            scene.line([x, top], [x, bottom], GRID_LINE);
         }
-        if let Some(t) = mark {
-            let right = (10.0 * width * (t - self.x.low) / self.x.span()).round();
-            sheet.scene.add(path(
-                format!("M{right} 0v{}", 10.0 * height),
-                MUTED,
-                1.2,
-                Some("15 30".to_owned()),
-            ));
+        for (y, _) in rows.clone().filter(|(y, _)| bottom - y >= 1.0) {
+            scene.line([left, y], [right, y], GRID_LINE);
         }
-        sheet.scene.add(Primitive::GroupEnd);
+        for (x, name) in columns {
+            scene.line([x, bottom - TICK], [x, bottom], EDGE);
+            scene.text([x, bottom + 17.07], name, NUMBERS, Anchor::Middle);
+        }
+        for (y, name) in rows {
+            scene.line([left, y], [left + TICK, y], EDGE);
+            scene.text([left - GAP, y + HALF_DIGIT], name, NUMBERS, Anchor::End);
+        }
+        scene.line([left, bottom], [right, bottom], EDGE);
+        scene.line([left, top], [left, bottom], EDGE);
+        scene.line([left, top], [right, top], EDGE);
+        scene.line([right, top], [right, bottom], EDGE);
+        scene.text([left + 0.5 * width, bottom + 41.0], self.x.label, LABELS, Anchor::Middle);
+        scene.upwards([self.label_left(), top + 0.5 * height], self.y.label, LABELS);
     }
 
-    fn frame(&self) -> [f64; 2] {
-        let [_, _, width, height] = self.place;
-        [width - self.left - RIGHT, height - TOP - BOTTOM]
+    /// Draws a curve, cut at the frame.
+    pub(super) fn curve(&self, scene: &mut Scene, curve: &Curve, buckets: usize) {
+        let pieces = curve.pieces(self, buckets);
+        if !pieces.is_empty() {
+            scene.shapes.push(Shape::Curve { pieces, stroke: curve.stroke });
+        }
     }
 
-    fn layout(&self) -> Layout {
-        let [_, _, width, height] = self.place;
-        let [frame_width, _] = self.frame();
-        let theme = Theme {
-            grid_color: GRID.to_owned(),
-            axis_color: MUTED.to_owned(),
-            tick_color: MUTED.to_owned(),
-            text_color: INK.to_owned(),
-            ..Theme::light()
-        };
-        let y_step = match self.y_labels {
-            Labels::Linear => round_step(self.y, 6.0),
-            Labels::Decades => decade_step(self.y),
-        };
-        let y_labels = self.y_labels;
-        Layout::new((self.x.low, self.x.high), (self.y.low, self.y.high))
-            .with_width(width)
-            .with_height(height)
-            .with_force_margins(self.left, RIGHT)
-            .with_force_margins_y(TOP, BOTTOM)
-            .with_x_axis_min(self.x.low)
-            .with_x_axis_max(self.x.high)
-            .with_y_axis_min(self.y.low)
-            .with_y_axis_max(self.y.high)
-            .with_x_tick_step(round_step(self.x, (frame_width / 55.0).clamp(2.0, 10.0)))
-            .with_y_tick_step(y_step)
-            .with_x_tick_format(TickFormat::Custom(Arc::new(number)))
-            .with_y_tick_format(TickFormat::Custom(Arc::new(move |value| label(y_labels, value))))
-            .with_x_label(self.x_label)
-            .with_y_label(self.y_label)
-            .with_tick_size(13)
-            .with_label_size(14)
-            .with_box_axes()
-            .with_tick_align("inside")
-            .with_font_family(FONT)
-            .with_theme(theme)
+    /// Draws a line from top to bottom at a value of x.
+    pub(super) fn mark(&self, scene: &mut Scene, value: f64, stroke: Stroke) {
+        let [_, top, _, height] = self.frame;
+        let x = self.across(value);
+        scene.line([x, top], [x, top + height], stroke);
     }
-}
 
-#[expect(clippy::cast_possible_truncation, reason = "an exponent of ten of an f64: within ±308")]
-fn label(labels: Labels, value: f64) -> String {
-    match labels {
-        Labels::Linear => number(value),
-        Labels::Decades => power_of_ten(value.round() as i32),
+    /// Where a point in the units of the axes lies.
+    pub(super) fn place(&self, x: f64, y: f64) -> Point {
+        [self.across(x), self.down(y)]
     }
-}
 
-/// A step apart, labels differ in fewer than six digits; 0 comes out of the stepping as a rounding error.
-fn number(value: f64) -> String {
-    if value.abs() < 1e-12 { "0".to_owned() } else { short(value, 6) }
-}
+    fn across(&self, x: f64) -> f64 {
+        let [left, _, width, _] = self.frame;
+        left + width * (x - self.x.range.low) / self.x.range.span()
+    }
 
-fn group(sheet: &mut Sheet, transform: String, extra_attrs: Option<String>) {
-    sheet.scene.add(Primitive::GroupStart { transform: Some(transform), title: None, extra_attrs });
-}
+    fn down(&self, y: f64) -> f64 {
+        let [_, top, _, height] = self.frame;
+        top + height * (self.y.range.high - y) / self.y.range.span()
+    }
 
-/// A stroke in tenths of a pixel; `width` in pixels.
-fn path(d: String, color: &str, width: f64, stroke_dasharray: Option<String>) -> Primitive {
-    Primitive::Path(Box::new(PathData {
-        d,
-        fill: None,
-        stroke: color.into(),
-        stroke_width: (100.0 * width).round() / 10.0,
-        opacity: None,
-        stroke_dasharray,
-    }))
+    /// Where the base line of the label on the left is: beside the widest number, but on the page.
+    fn label_left(&self) -> f64 {
+        let widths = self.y.ticks.iter().map(|tick| text::width(&tick.name, NUMBERS));
+        let beside = self.left - GAP - widths.fold(NARROWEST, f64::max) - 12.0;
+        self.frame[0] - self.left + beside.max(15.0)
+    }
 }

@@ -1,22 +1,24 @@
 //! Several runs in one axis: how fast each error decays.
 
+use super::axes::Axis;
+use super::curve::Curve;
+use super::panel::{LEFT, TIME, buckets, over_time, span};
+use super::range::{Range, decades};
+use super::scene::Scene;
+use super::sheet::{MARGIN, line_legend, page};
+use super::style::Stroke;
+use super::ticks;
 use crate::files::number::{duration, significant};
-use crate::report::axes::{Axes, Labels};
-use crate::report::curve::Curve;
-use crate::report::panel::{buckets, span};
-use crate::report::range::{Range, decades};
-use crate::report::sheet::{MARGIN, Sheet};
-use crate::report::style::Stroke;
 use crate::simulate::Trace;
 
 const WIDTH: f64 = 1200.0;
 const HEIGHT: f64 = 400.0;
 const TITLE: &str = "Largest link position error of each run";
 
-/// The largest |e_l| over the joints, on a logarithmic axis over time, one line per `(name, trace)`, as SVG.
+/// The largest |e_l| over the joints, on a logarithmic axis over time, one line per `(name, trace)`.
 ///
 /// Where every run reaches its floor early, the axis shows the decay alone, and says what was left out.
-pub fn comparison(traces: &[(&str, &Trace)]) -> String {
+pub fn comparison(traces: &[(&str, &Trace)]) -> Scene {
     let errors: Vec<Curve> =
         traces.iter().enumerate().map(|(run, (_, trace))| largest_error(trace, Stroke::run(run))).collect();
     let legend: Vec<(String, Stroke)> =
@@ -35,21 +37,17 @@ pub fn comparison(traces: &[(&str, &Trace)]) -> String {
     let y = decades(&curves);
 
     let subtitle = if x == whole { String::new() } else { left_out(&errors, x, whole) };
-    let mut sheet = Sheet::new(WIDTH, 0.0, TITLE, &subtitle);
+    let mut scene = page(WIDTH, TITLE, &subtitle);
     let top = if subtitle.is_empty() { 62.0 } else { 82.0 };
-    let top = top + sheet.legend(top, &legend) - 6.0;
-    sheet.scene.height = top + HEIGHT + 6.0;
-    let axes = Axes {
-        place: [MARGIN / 2.0, top, WIDTH - MARGIN, HEIGHT],
-        x,
-        y,
-        x_label: "time [s]",
-        y_label: "max |eₗ| [rad]",
-        y_labels: Labels::Decades,
-        left: 76.0,
-    };
-    axes.draw(&mut sheet, &curves, None, buckets);
-    sheet.finish()
+    let top = top + line_legend(&mut scene, top, &legend) - 6.0;
+    scene.height = top + HEIGHT + 6.0;
+    let y = Axis { range: y, ticks: ticks::decades(y), label: "max |eₗ| [rad]" };
+    let axes = over_time([MARGIN / 2.0, top, WIDTH - MARGIN, HEIGHT], LEFT, x, TIME, y);
+    axes.draw(&mut scene);
+    for curve in &curves {
+        axes.curve(&mut scene, curve, buckets);
+    }
+    scene
 }
 
 /// The largest absolute link error over the joints; not a number from where a joint has none.

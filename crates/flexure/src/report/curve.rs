@@ -1,10 +1,10 @@
-//! From samples to the path of an SVG: decimated, cut at the frame, written short.
+//! From samples to points of a figure: decimated, cut at the frame, to tenths of a pixel.
 
-use std::fmt::Write as _;
-
-use crate::report::decimate::{decimate, envelope};
-use crate::report::range::Range;
-use crate::report::style::Stroke;
+use super::axes::Axes;
+use super::decimate::{decimate, envelope};
+use super::range::Range;
+use super::scene::Point;
+use super::style::Stroke;
 
 /// One line of a panel, in the units of its axes.
 #[derive(Clone, Debug)]
@@ -26,18 +26,14 @@ impl Curve {
         let exponents: Vec<f64> =
             self.values.iter().map(|value| value.abs().max(f64::MIN_POSITIVE).log10()).collect();
         let (t, values) = envelope(&self.t, &exponents, buckets).into_iter().unzip();
-        Self { t, values, stroke: self.stroke.clone() }
+        Self { t, values, stroke: self.stroke }
     }
 
     /// The part within a window of time, with one sample more on either side.
     pub(super) fn within(&self, window: Range) -> Self {
         let start = self.t.partition_point(|&t| t < window.low).saturating_sub(1);
         let end = (self.t.partition_point(|&t| t <= window.high) + 1).min(self.t.len());
-        Self {
-            t: self.t[start..end].to_vec(),
-            values: self.values[start..end].to_vec(),
-            stroke: self.stroke.clone(),
-        }
+        Self { t: self.t[start..end].to_vec(), values: self.values[start..end].to_vec(), stroke: self.stroke }
     }
 
     /// The curve on another unit of time, `scale` to the second.
@@ -46,114 +42,108 @@ impl Curve {
         self
     }
 
-    /// The `d` of a path in tenths of a pixel, in a frame of `width` by `height` pixels whose axes are `x` and `y`.
-    pub(super) fn path(&self, x: Range, y: Range, width: f64, height: f64, buckets: usize) -> String {
+    /// The lines to draw in a frame [px].
+    pub(super) fn pieces(&self, axes: &Axes, buckets: usize) -> Vec<Vec<Point>> {
+        let [left, top, width, height] = axes.frame;
         // A diverging run reaches 1e300: far outside is far enough, and finite.
-        let far = 1e6 * height;
-        let points: Vec<(f64, f64)> = decimate(&self.t, &self.values, buckets)
+        let far = 1e5 * height;
+        let points: Vec<Point> = decimate(&self.t, &self.values, buckets)
             .into_iter()
             .map(|(t, value)| {
-                let right = 10.0 * width * (t - x.low) / x.span();
-                let down = 10.0 * height * (y.high - value) / y.span();
-                (right.clamp(-far, far), down.clamp(-far, far))
+                let [x, y] = axes.place(t, value);
+                [(x - left).clamp(-far, far), (y - top).clamp(-far, far)]
             })
             .collect();
         let mut pen = Pen::default();
         for pair in points.windows(2) {
-            let whole = Some((pair[0], pair[1]));
-            let inside = whole
-                .and_then(|s| cut(s, 10.0 * height))
-                .map(swap)
-                .and_then(|s| cut(s, 10.0 * width))
-                .map(swap);
-            if let Some((from, to)) = inside {
+            let inside = cut([pair[0], pair[1]], height).map(swap).and_then(|s| cut(s, width)).map(swap);
+            if let Some(ends) = inside {
+                let [from, to] = ends.map(|[x, y]| [tenths(left + x), tenths(top + y)]);
                 pen.line(from, to);
             }
         }
-        pen.path
+        pen.pieces
     }
 }
 
-type Segment = ((f64, f64), (f64, f64));
+type Segment = [Point; 2];
 
 /// The part of a segment whose second coordinate lies in `0..=high`.
-fn cut((from, to): Segment, high: f64) -> Option<Segment> {
-    let rise = to.1 - from.1;
+fn cut([from, to]: Segment, high: f64) -> Option<Segment> {
+    let rise = to[1] - from[1];
     let (mut start, mut end) = (0.0f64, 1.0f64);
     if rise == 0.0 {
-        return (0.0..=high).contains(&from.1).then_some((from, to));
+        return (0.0..=high).contains(&from[1]).then_some([from, to]);
     }
-    let (enter, leave) = ((0.0 - from.1) / rise, (high - from.1) / rise);
+    let (enter, leave) = ((0.0 - from[1]) / rise, (high - from[1]) / rise);
     start = start.max(enter.min(leave));
     end = end.min(enter.max(leave));
-    let at = |s: f64| (from.0 + s * (to.0 - from.0), from.1 + s * rise);
-    (start <= end).then(|| (at(start), at(end)))
+    let at = |s: f64| [from[0] + s * (to[0] - from[0]), from[1] + s * rise];
+    (start <= end).then(|| [at(start), at(end)])
 }
 
-fn swap((from, to): Segment) -> Segment {
-    ((from.1, from.0), (to.1, to.0))
+fn swap(ends: Segment) -> Segment {
+    ends.map(|[x, y]| [y, x])
 }
 
-/// Writes relative, whole steps: their sum is exact, so nothing drifts.
+/// To tenths: finer than any screen, and lines that go on do so exactly.
+fn tenths(pixels: f64) -> f64 {
+    (10.0 * pixels).round() / 10.0
+}
+
+/// Joins lines that start where the one before ends.
 #[derive(Default)]
 struct Pen {
-    path: String,
-    at: Option<(i64, i64)>,
+    pieces: Vec<Vec<Point>>,
 }
 
 impl Pen {
-    fn line(&mut self, from: (f64, f64), to: (f64, f64)) {
-        let (from, to) = (whole(from), whole(to));
-        if self.at != Some(from) {
-            let _ = write!(self.path, "M{} {}", from.0, from.1);
-        } else if from == to {
-            return;
+    fn line(&mut self, from: Point, to: Point) {
+        match self.pieces.last_mut() {
+            Some(piece) if piece.last() == Some(&from) => {
+                if piece.last() != Some(&to) {
+                    piece.push(to);
+                }
+            }
+            _ => self.pieces.push(vec![from, to]),
         }
-        let (right, down) = (to.0 - from.0, to.1 - from.1);
-        // A minus sign separates numbers as well as a space does.
-        let _ =
-            if down < 0 { write!(self.path, "l{right}{down}") } else { write!(self.path, "l{right} {down}") };
-        self.at = Some(to);
     }
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "cut to the frame: a few thousand at most")]
-fn whole((x, y): (f64, f64)) -> (i64, i64) {
-    (x.round() as i64, y.round() as i64)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Curve, Range, cut};
+    use super::{Curve, Point, Range, cut};
+    use crate::report::axes::{Axes, Axis};
     use crate::report::style::Stroke;
 
-    const UNIT: Range = Range { low: 0.0, high: 1.0 };
-
-    fn path(values: &[f64]) -> String {
+    /// In a frame of 10 px at (20, 30) whose axes go from 0 to 1.
+    fn pieces(values: &[f64]) -> Vec<Vec<Point>> {
+        let axis = || Axis { range: Range { low: 0.0, high: 1.0 }, ticks: Vec::new(), label: "" };
+        let axes = Axes { frame: [20.0, 30.0, 10.0, 10.0], left: 0.0, x: axis(), y: axis() };
         let t: Vec<f64> = (0..values.len()).map(|k| k as f64 / (values.len() - 1) as f64).collect();
-        Curve::new(&t, values, Stroke::reference()).path(UNIT, UNIT, 10.0, 10.0, 100)
+        Curve::new(&t, values, Stroke::reference()).pieces(&axes, 100)
     }
 
     #[test]
     fn a_cut_segment_stays_on_its_line() {
-        assert_eq!(cut(((0.0, -10.0), (4.0, 10.0)), 5.0), Some(((2.0, 0.0), (3.0, 5.0))));
-        assert!(cut(((0.0, 6.0), (1.0, 9.0)), 5.0).is_none());
+        assert_eq!(cut([[0.0, -10.0], [4.0, 10.0]], 5.0), Some([[2.0, 0.0], [3.0, 5.0]]));
+        assert!(cut([[0.0, 6.0], [1.0, 9.0]], 5.0).is_none());
     }
 
     #[test]
     fn leaving_and_coming_back_starts_a_new_line() {
-        assert_eq!(path(&[0.0, 1.0]), "M0 100l100-100");
-        assert_eq!(path(&[0.0, 2.0, 0.0]).matches('M').count(), 2);
-        assert_eq!(path(&[5.0, 6.0]), "");
+        assert_eq!(pieces(&[0.0, 1.0]), [[[20.0, 40.0], [30.0, 30.0]]]);
+        assert_eq!(pieces(&[0.0, 2.0, 0.0]).len(), 2);
+        assert_eq!(pieces(&[0.0, 0.5, 0.0]), [[[20.0, 40.0], [25.0, 35.0], [30.0, 40.0]]]);
+        assert!(pieces(&[5.0, 6.0]).is_empty());
     }
 
     #[test]
-    fn divergence_is_cut_not_written() {
-        assert_eq!(path(&[0.0, f64::NAN, 1.0]), "");
-        let steep = path(&[0.0, 0.5, 1e300]);
-        assert!(
-            !steep.contains("NaN") && !steep.contains("inf") && steep.starts_with("M0 100l50-50"),
-            "{steep}"
-        );
+    fn divergence_is_cut_not_drawn() {
+        assert!(pieces(&[0.0, f64::NAN, 1.0]).is_empty());
+        let steep = pieces(&[0.0, 0.5, 1e300]);
+        assert_eq!(steep[0][..2], [[20.0, 40.0], [25.0, 35.0]]);
+        let inside = |&[x, y]: &Point| (20.0..=30.0).contains(&x) && (30.0..=40.0).contains(&y);
+        assert!(steep.iter().flatten().all(inside), "{steep:?}");
     }
 }

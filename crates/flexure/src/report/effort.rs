@@ -1,9 +1,10 @@
 //! What laws pay for their errors: a panel for each task of a comparison.
 
+use super::marker::Marker;
+use super::scatter::{Item, Scatter, legend};
+use super::scene::Scene;
+use super::sheet::{MARGIN, page};
 use crate::compare::{CHATTERS, Leaderboard, Score, TaskScores, is_vcbc};
-use crate::report::marker::Marker;
-use crate::report::scatter::{Point, Scatter, legend};
-use crate::report::sheet::{MARGIN, Sheet};
 
 const WIDTH: f64 = 1200.0;
 const COLUMNS: usize = 3;
@@ -36,32 +37,32 @@ const CHATTER: Price = Price {
     line: |_| CHATTERS,
 };
 
-/// Error of the links against motor torque, both root mean squares, on logarithmic axes: a panel a task, a mark a law, as
-/// SVG. Laws that diverged have their marks beside the panel's title.
-pub fn effort_figure(board: &Leaderboard) -> String {
+/// Error of the links against motor torque, both root mean squares, on logarithmic axes: a panel a task, a mark a law.
+/// Laws that diverged have their marks beside the panel's title.
+pub fn effort_figure(board: &Leaderboard) -> Scene {
     figure(board, &EFFORT)
 }
 
 /// Error of the links against how much the torque jumps, as [`effort_figure`].
-pub fn chatter_figure(board: &Leaderboard) -> String {
+pub fn chatter_figure(board: &Leaderboard) -> Scene {
     figure(board, &CHATTER)
 }
 
-fn figure(board: &Leaderboard, price: &Price) -> String {
+fn figure(board: &Leaderboard, price: &Price) -> Scene {
     let laws: Vec<String> = board.laws().map(str::to_owned).collect();
     let marker = |law: usize| Marker::new(law, is_vcbc(&laws[law]));
     let entries: Vec<_> = laws.iter().enumerate().map(|(i, law)| (law.clone(), marker(i))).collect();
-    let mut sheet = Sheet::new(WIDTH, 0.0, price.title, price.subtitle);
-    let top = 84.0 + legend(&mut sheet, (MARGIN, 84.0), &entries) - 8.0;
+    let mut scene = page(WIDTH, price.title, price.subtitle);
+    let top = 84.0 + legend(&mut scene, [MARGIN, 84.0], &entries) - 8.0;
     let columns = COLUMNS.min(board.tasks.len()).max(1);
     let width = (WIDTH - MARGIN) / columns as f64;
-    sheet.scene.height = top + HEIGHT * board.tasks.len().div_ceil(columns) as f64 + 6.0;
+    scene.height = top + HEIGHT * board.tasks.len().div_ceil(columns) as f64 + 6.0;
     for (i, task) in board.tasks.iter().enumerate() {
         let corner =
             [0.5 * MARGIN + width * (i % columns) as f64, top + HEIGHT * (i / columns) as f64, width, HEIGHT];
-        panel(task, price, corner, &marker).draw(&mut sheet);
+        panel(task, price, corner, &marker).draw(&mut scene);
     }
-    sheet.finish()
+    scene
 }
 
 fn panel<'a>(
@@ -71,7 +72,7 @@ fn panel<'a>(
     marker: &dyn Fn(usize) -> Marker,
 ) -> Scatter<'a> {
     let all = || task.scores.iter().enumerate();
-    let point = |(law, score): (usize, &Score)| Point {
+    let point = |(law, score): (usize, &Score)| Item {
         x: (price.of)(score),
         y: 1e3 * score.rms_error,
         marker: marker(law),

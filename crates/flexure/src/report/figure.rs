@@ -4,10 +4,11 @@
 //! a hundred times what follows), the axis shows the bulk and a narrow frame beside it shows the excursion whole.
 //! Errors and momentum errors are absolute values on a logarithmic axis: an exponential decay is a straight line.
 
-use crate::report::curve::Curve;
-use crate::report::panel::{HEIGHT, Panel, Scale, View, buckets, span};
-use crate::report::sheet::{MARGIN, Sheet};
-use crate::report::style::{INK, Stroke};
+use super::curve::Curve;
+use super::panel::{HEIGHT, Panel, Scale, View, buckets, span};
+use super::scene::Scene;
+use super::sheet::{MARGIN, line_legend, page};
+use super::style::{INK, Stroke};
 use crate::simulate::Trace;
 use crate::units;
 
@@ -22,11 +23,11 @@ pub struct FigureOptions {
 
 const WIDTH: f64 = 1200.0;
 
-/// Positions, errors, momentum errors and torques of `trace` over time, as SVG.
+/// Positions, errors, momentum errors and torques of `trace` over time.
 ///
 /// A run that diverged is drawn up to its last finite sample, which is marked. Columns that are missing leave their
 /// panel empty.
-pub fn four_panel(trace: &Trace, options: &FigureOptions) -> String {
+pub fn four_panel(trace: &Trace, options: &FigureOptions) -> Scene {
     let t = trace.column("t").unwrap_or_default();
     let joints = trace.joints("q_l").len().max(trace.joints("u_m").len());
     let dotted = |prefix| curves(trace, prefix, |_, _| Stroke::reference());
@@ -36,28 +37,28 @@ pub fn four_panel(trace: &Trace, options: &FigureOptions) -> String {
     let positions = over(over(motor("q_m"), link("q_l")), dotted("q_ld"));
     let panels = [
         Panel {
-            title: "(a)  positions qₗ, qₘ and reference of qₗ",
+            title: "(a) positions qₗ, qₘ and reference of qₗ",
             quantity: "position",
             unit: units::ANGLE.raised,
             scale: Scale::Linear,
             curves: positions,
         },
         Panel {
-            title: "(b)  position errors eₗ, eₘ",
+            title: "(b) position errors eₗ, eₘ",
             quantity: "|error|",
             unit: units::ANGLE.raised,
             scale: Scale::Decades,
             curves: over(motor("e_m"), link("e_l")),
         },
         Panel {
-            title: "(c)  momentum errors σₗ, σₘ",
+            title: "(c) momentum errors σₗ, σₘ",
             quantity: "|momentum error|",
             unit: units::MOMENTUM.raised,
             scale: Scale::Decades,
             curves: over(motor("sigma_m"), link("sigma_l")),
         },
         Panel {
-            title: "(d)  motor torques uₘ",
+            title: "(d) motor torques uₘ",
             quantity: "torque",
             unit: units::TORQUE.raised,
             scale: Scale::Linear,
@@ -67,17 +68,17 @@ pub fn four_panel(trace: &Trace, options: &FigureOptions) -> String {
     let signals: usize = panels.iter().map(|panel| panel.curves.len()).sum();
 
     let top = if options.subtitle.is_empty() { 62.0 } else { 82.0 };
-    let mut sheet = Sheet::new(WIDTH, 0.0, &options.title, &options.subtitle);
-    let top = top + sheet.legend(top, &legend(joints));
-    sheet.scene.height = top + 2.0 * HEIGHT + 8.0;
+    let mut scene = page(WIDTH, &options.title, &options.subtitle);
+    let top = top + line_legend(&mut scene, top, &legend(joints));
+    scene.height = top + 2.0 * HEIGHT + 8.0;
     let view = View { t: span(t), diverged: divergence(t, &panels), buckets: buckets(signals) };
     let width = (WIDTH - MARGIN) / 2.0;
     for (index, panel) in panels.iter().enumerate() {
         let (row, column) = (index / 2, index % 2);
-        let corner = (MARGIN / 2.0 + column as f64 * width, top + row as f64 * HEIGHT);
-        panel.draw(&mut sheet, corner, width, &view);
+        let corner = [MARGIN / 2.0 + column as f64 * width, top + row as f64 * HEIGHT];
+        panel.draw(&mut scene, corner, width, &view);
     }
-    sheet.finish()
+    scene
 }
 
 fn curves(trace: &Trace, prefix: &str, stroke: impl Fn(usize, usize) -> Stroke) -> Vec<Curve> {

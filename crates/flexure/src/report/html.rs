@@ -2,9 +2,9 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 
+use super::certificates::{self, CertificateReport};
+use super::markdown::{ERRATA, subscripts};
 use crate::files::number::{NONE, engineering};
-use crate::report::certificates::{self, CertificateReport};
-use crate::report::markdown::{ERRATA, body, subscripts};
 use crate::simulate::Summary;
 use crate::units;
 
@@ -17,7 +17,7 @@ pub struct RunsReport {
     pub introduction: String,
     /// The runs, in the order of the page.
     pub runs: Vec<RunReport>,
-    /// Figure with all runs in one axis, from [`comparison`](super::comparison()).
+    /// Figure with all runs in one axis as SVG, from [`comparison`](super::comparison()).
     pub comparison_svg: Option<String>,
     /// What was proved.
     pub certificates: Vec<CertificateReport>,
@@ -32,7 +32,7 @@ pub struct RunsReport {
 pub struct RunReport {
     /// Its figures of merit.
     pub summary: Summary,
-    /// Its figure, from [`four_panel`](super::four_panel()).
+    /// Its figure as SVG, from [`four_panel`](super::four_panel()).
     pub figure_svg: String,
     /// What the figure shows, in a sentence or two.
     pub description: String,
@@ -89,7 +89,7 @@ pub fn html(report: &RunsReport) -> String {
                     section id="certificates" { h2 { "Certificates" } (certificates::section(&report.certificates)) }
                 }
                 section id="assumptions" { h2 { "Assumptions" } (assumptions(&report.assumptions)) }
-                section id="errata" { h2 { "Slips of the paper" } div.scroll.prose { (PreEscaped(body(ERRATA))) } }
+                section id="errata" { h2 { "Slips of the paper" } div.scroll.prose { (PreEscaped(ERRATA)) } }
                 footer { h2 { "How this page was made" }
                     ul { @for line in &report.provenance { li { (line) } } }
                 }

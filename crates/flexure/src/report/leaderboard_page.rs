@@ -172,11 +172,11 @@ fn failures(board: &Leaderboard) -> impl Iterator<Item = (&TaskScores, &Score)> 
 fn figures(board: &Leaderboard) -> Markup {
     markup! {
         figure {
-            div.card { (PreEscaped(effort_figure(board))) }
+            div.card { (PreEscaped(effort_figure(board).svg())) }
             figcaption { "Dark rims: v-CBC. Marks that lie on each other are drawn smaller and smaller. Every panel has its own axes." }
         }
         figure {
-            div.card { (PreEscaped(chatter_figure(board))) }
+            div.card { (PreEscaped(chatter_figure(board).svg())) }
             figcaption { "The same errors over what noise, delay and gains make of the torque." }
         }
     }

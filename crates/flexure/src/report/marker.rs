@@ -1,9 +1,7 @@
 //! Marks of points in figures: a shape and a colour for each law.
 
-use kuva::render::render::{PathData, Primitive};
-
-use crate::report::sheet::Sheet;
-use crate::report::style::{INK, hue};
+use super::scene::{Point, Scene, Shape};
+use super::style::{INK, Stroke, WHITE, hue};
 
 /// Radius of a mark that stands alone [px].
 pub(super) const RADIUS: f64 = 6.0;
@@ -31,38 +29,16 @@ impl Marker {
         Self { index, emphasised }
     }
 
-    /// Draws it about `(x, y)`.
-    pub(super) fn draw(self, sheet: &mut Sheet, (x, y): (f64, f64), radius: f64) {
+    /// Draws it about a point.
+    pub(super) fn draw(self, scene: &mut Scene, center: Point, radius: f64) {
         let (fill, shape) = (hue(self.index), SHAPES[self.index % SHAPES.len()]);
-        let (stroke, stroke_width) = if self.emphasised { (INK, 1.8) } else { ("#ffffff", 0.8) };
-        if shape.is_empty() {
-            sheet.scene.add(Primitive::Circle {
-                cx: round(x),
-                cy: round(y),
-                r: radius,
-                fill: fill.into(),
-                fill_opacity: None,
-                stroke: Some(stroke.into()),
-                stroke_width: Some(stroke_width),
-            });
-            return;
-        }
-        let corners: Vec<String> = shape
-            .iter()
-            .map(|[right, down]| format!("{} {}", round(x + radius * right), round(y + radius * down)))
-            .collect();
-        sheet.scene.add(Primitive::Path(Box::new(PathData {
-            d: format!("M{}Z", corners.join("L")),
-            fill: Some(fill.into()),
-            stroke: stroke.into(),
-            stroke_width,
-            opacity: None,
-            stroke_dasharray: None,
-        })));
+        let rim = if self.emphasised { Stroke::solid(INK, 1.8) } else { Stroke::solid(WHITE, 0.8) };
+        scene.shapes.push(if shape.is_empty() {
+            Shape::Circle { center, radius, fill, rim }
+        } else {
+            let [x, y] = center;
+            let corner = |[right, down]: &[f64; 2]| [x + radius * right, y + radius * down];
+            Shape::Polygon { corners: shape.iter().map(corner).collect(), fill, rim }
+        });
     }
-}
-
-/// To tenths of a pixel.
-fn round(x: f64) -> f64 {
-    (10.0 * x).round() / 10.0
 }

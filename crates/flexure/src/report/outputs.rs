@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::compare::{Leaderboard, Task};
 use crate::files::{WriteError, create_folder, write_atomic};
 use crate::prove::engine::Certificate;
-use crate::report::{assumptions, chatter_figure, effort_figure, leaderboard_page, png};
+use crate::report::{Scene, assumptions, chatter_figure, effort_figure, leaderboard_page};
 
 /// Writes a comparison into `folder`, which is created if missing: `compare.html`, its figures and `compare.csv`; returns
 /// the paths.
@@ -23,13 +23,22 @@ pub fn write_leaderboard(
     let page = leaderboard_page(board, &assumptions(tasks.iter().map(|task| &task.scenario)));
     write_atomic(&paths[0], |out| out.write_all(page.as_bytes()))?;
     write_scores(&paths[1], board)?;
-    for (name, figure) in [("effort", effort_figure(board)), ("chatter", chatter_figure(board))] {
-        let path = |ending: &str| folder.join(format!("compare-{name}.{ending}"));
-        let (svg, picture) = (path("svg"), path("png"));
-        write_atomic(&svg, |out| out.write_all(figure.as_bytes()))?;
-        write_atomic(&picture, |out| out.write_all(&png(&figure).map_err(io::Error::other)?))?;
-        paths.extend([svg, picture]);
+    for (name, figure) in
+        [("compare-effort", effort_figure(board)), ("compare-chatter", chatter_figure(board))]
+    {
+        paths.extend(write_figure(folder, name, &figure)?);
     }
+    Ok(paths)
+}
+
+/// Writes a figure as `name.svg` and `name.png` into `folder`; returns their paths.
+///
+/// # Errors
+/// If one cannot be written.
+pub fn write_figure(folder: &Path, name: &str, figure: &Scene) -> Result<[PathBuf; 2], WriteError> {
+    let paths = ["svg", "png"].map(|ending| folder.join(format!("{name}.{ending}")));
+    write_atomic(&paths[0], |out| out.write_all(figure.svg().as_bytes()))?;
+    write_atomic(&paths[1], |out| out.write_all(&figure.png().map_err(io::Error::other)?))?;
     Ok(paths)
 }
 

@@ -1,19 +1,22 @@
 //! One panel: a heading, a line that says what is shown and what is not, and its axes.
 
+use super::axes::{Axes, Axis, BOTTOM};
+use super::curve::Curve;
+use super::decimate::bucket_size;
+use super::range::{Linear, Range, decades};
+use super::scene::{Anchor, Point, Scene};
+use super::style::{INK, MUTED, Stroke, bold, letters};
+use super::ticks;
 use crate::files::number::{duration, short, significant};
-use crate::report::axes::{Axes, Labels};
-use crate::report::curve::Curve;
-use crate::report::decimate::bucket_size;
-use crate::report::range::{Linear, Range, decades};
-use crate::report::sheet::Sheet;
-use crate::report::style::{INK, MUTED};
 
 /// Height of a panel with its heading [px].
 pub(super) const HEIGHT: f64 = HEADING + AXES;
 const HEADING: f64 = 46.0;
 const AXES: f64 = 330.0;
 /// Room for the numbers on the left [px].
-const LEFT: f64 = 76.0;
+pub(super) const LEFT: f64 = 76.0;
+/// The label of axes in seconds.
+pub(super) const TIME: &str = "time [s]";
 /// Width of the frame that shows a short excursion [px].
 const STRIP: f64 = 214.0;
 /// An excursion longer than this part of the run gets no frame of its own.
@@ -56,24 +59,24 @@ pub(super) fn span(t: &[f64]) -> Range {
 
 impl Panel {
     /// Draws the panel with its upper left corner at `(x, y)`.
-    pub(super) fn draw(&self, sheet: &mut Sheet, (x, y): (f64, f64), width: f64, view: &View) {
-        sheet.text((x + 14.0, y + 20.0), self.title, 15, INK, true);
+    pub(super) fn draw(&self, scene: &mut Scene, [x, y]: Point, width: f64, view: &View) {
+        scene.text([x + 14.0, y + 20.0], self.title, bold(15.0, INK), Anchor::Start);
         let place = [x, y + HEADING, width, AXES];
         let note = match self.scale {
-            Scale::Linear => self.linear(sheet, place, view),
-            Scale::Decades => Some(self.decades(sheet, place, view)),
+            Scale::Linear => self.linear(scene, place, view),
+            Scale::Decades => Some(self.decades(scene, place, view)),
         };
         let end = view.diverged.map(|t| format!("not finite after {}", duration(t)));
         let note = [end, note].into_iter().flatten().collect::<Vec<_>>().join("; ");
-        sheet.text((x + 14.0, y + 39.0), &note, 12, MUTED, false);
+        scene.text([x + 14.0, y + 39.0], &note, letters(12.0, MUTED), Anchor::Start);
     }
 
-    fn decades(&self, sheet: &mut Sheet, place: [f64; 4], view: &View) -> String {
+    fn decades(&self, scene: &mut Scene, place: [f64; 4], view: &View) -> String {
         let curves: Vec<Curve> = self.curves.iter().map(|curve| curve.exponents(view.buckets)).collect();
         let range = decades(&curves);
         let label = self.label();
-        let axes = Axes { y_labels: Labels::Decades, ..axes(place, view.t, range, &label) };
-        axes.draw(sheet, &curves, view.diverged, view.buckets);
+        let y = Axis { range, ticks: ticks::decades(range), label: &label };
+        draw(scene, &over_time(place, LEFT, view.t, TIME, y), &curves, view);
         let samples = self.curves.iter().map(|curve| curve.t.len()).max().unwrap_or(0);
         match bucket_size(samples, view.buckets) {
             1 => "absolute values".to_owned(),
@@ -82,33 +85,32 @@ impl Panel {
     }
 
     /// Draws a linear axis, with a second frame for a short excursion. Returns what the frame cuts.
-    fn linear(&self, sheet: &mut Sheet, place: [f64; 4], view: &View) -> Option<String> {
+    fn linear(&self, scene: &mut Scene, place: [f64; 4], view: &View) -> Option<String> {
         let range = if view.diverged.is_some() { Linear::of_diverged } else { Linear::of };
         let Linear { range, clipped } = range(&mut self.values());
         let excursion = clipped.then(|| self.excursion(range));
         let short = |window: &Range| view.diverged.is_none() && window.span() <= SHORT * view.t.span();
         if let Some(window) = excursion.filter(short) {
-            return Some(self.split(sheet, place, view, range, window));
+            return Some(self.split(scene, place, view, range, window));
         }
-        axes(place, view.t, range, &self.label()).draw(sheet, &self.curves, view.diverged, view.buckets);
+        draw(scene, &over_time(place, LEFT, view.t, TIME, linear(range, &self.label())), &self.curves, view);
         clipped.then(|| format!("{} outside the frame", self.peak()))
     }
 
     /// The excursion on the left on its own scale, the whole run on the right. Returns what that cuts.
-    fn split(&self, sheet: &mut Sheet, place: [f64; 4], view: &View, range: Range, window: Range) -> String {
+    fn split(&self, scene: &mut Scene, place: [f64; 4], view: &View, range: Range, window: Range) -> String {
         let [x, y, width, height] = place;
         let (scale, unit) = if window.high.abs() < 0.5 { (1e3, "ms") } else { (1.0, "s") };
         let zoomed: Vec<Curve> =
             self.curves.iter().map(|curve| curve.within(window).stretched(scale)).collect();
         let inside = Linear::whole(zoomed.iter().flat_map(|curve| curve.values.iter().copied()));
-        let ticks = Range { low: scale * window.low, high: scale * window.high };
+        let near = Range { low: scale * window.low, high: scale * window.high };
         let (label, time) = (self.label(), format!("time [{unit}]"));
-        let left = Axes { x_label: &time, ..axes([x, y, STRIP, height], ticks, inside, &label) };
-        left.draw(sheet, &zoomed, None, view.buckets / 2);
-        let right = [x + STRIP, y, width - STRIP, height];
-        let right = Axes { left: 60.0, ..axes(right, view.t, range, "") };
-        right.draw(sheet, &self.curves, view.diverged, view.buckets);
-        let [from, to] = [ticks.low, ticks.high].map(|t| short(t, 3));
+        let left = over_time([x, y, STRIP, height], LEFT, near, &time, linear(inside, &label));
+        draw(scene, &left, &zoomed, &View { t: near, diverged: None, buckets: view.buckets / 2 });
+        let right = over_time([x + STRIP, y, width - STRIP, height], 60.0, view.t, TIME, linear(range, ""));
+        draw(scene, &right, &self.curves, view);
+        let [from, to] = [near.low, near.high].map(|t| short(t, 3));
         format!("left: {from} to {to} {unit}, {}; right: whole run, axis cut", self.peak())
     }
 
@@ -147,6 +149,28 @@ impl Panel {
     }
 }
 
-fn axes(place: [f64; 4], x: Range, y: Range, y_label: &str) -> Axes<'_> {
-    Axes { place, x, y, x_label: "time [s]", y_label, y_labels: Labels::Linear, left: LEFT }
+/// A frame in its place, left, top, width and height of everything with `left` px for labels, over time.
+pub(super) fn over_time<'a>(place: [f64; 4], left: f64, t: Range, label: &'a str, y: Axis<'a>) -> Axes<'a> {
+    const TOP: f64 = 6.0;
+    const RIGHT: f64 = 12.0;
+    let [x, top, width, height] = place;
+    let frame = [x + left, top + TOP, width - left - RIGHT, height - TOP - BOTTOM];
+    let ticks = ticks::even(t, (frame[2] / 55.0).clamp(2.0, 10.0));
+    Axes { frame, left, x: Axis { range: t, ticks, label }, y }
+}
+
+fn linear(range: Range, label: &str) -> Axis<'_> {
+    Axis { range, ticks: ticks::even(range, 6.0), label }
+}
+
+/// The frame, the curves in their order, and a dotted line at the end of a run that did not stay finite.
+fn draw(scene: &mut Scene, axes: &Axes, curves: &[Curve], view: &View) {
+    const END: Stroke = Stroke { color: MUTED, width: 1.2, dash: &[1.5, 3.0] };
+    axes.draw(scene);
+    for curve in curves {
+        axes.curve(scene, curve, view.buckets);
+    }
+    if let Some(t) = view.diverged {
+        axes.mark(scene, t, END);
+    }
 }

@@ -10,7 +10,7 @@ use crate::progress::{PartProgress, Progress};
 use crate::prove::question::{Direct, Proof, Question, Region, certified_rate, prove};
 use crate::prove::summary::ProofSummary;
 use crate::report::{
-    CertificateReport, FigureOptions, RunReport, RunsReport, assumptions, comparison, four_panel,
+    CertificateReport, FigureOptions, RunReport, RunsReport, Scene, assumptions, comparison, four_panel,
 };
 use crate::scenario::{Hold, Scenario, load_scenario};
 use crate::simulate::{Run, Summary, run};
@@ -34,8 +34,8 @@ pub struct Experiment {
     pub scenario: Scenario,
     /// What came of it.
     pub run: Run,
-    /// The four-panel figure, as SVG.
-    pub figure: String,
+    /// The four-panel figure.
+    pub figure: Scene,
 }
 
 impl Experiment {
@@ -138,7 +138,7 @@ pub fn report(experiments: &[Experiment], certificates: &[Certified]) -> RunsRep
         title: "Virtual-contraction control of a flexible-joint robot".to_owned(),
         introduction: INTRODUCTION.to_owned(),
         runs: experiments.iter().map(run_report).collect(),
-        comparison_svg: Some(comparison(&traces)),
+        comparison_svg: Some(comparison(&traces).svg()),
         certificates: certificates.iter().map(certificate_report).collect(),
         assumptions: assumptions(experiments.iter().map(|experiment| &experiment.scenario)),
         provenance: vec![
@@ -172,7 +172,7 @@ pub fn certificate_name(scenario: &str) -> String {
 fn run_report(experiment: &Experiment) -> RunReport {
     RunReport {
         summary: experiment.run.summary.clone(),
-        figure_svg: experiment.figure.clone(),
+        figure_svg: experiment.figure.svg(),
         description: outcome(&experiment.run.summary),
     }
 }

@@ -1,10 +1,9 @@
 //! What runs and experiments leave behind.
 
-use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::files::{WriteError, create_folder, write_atomic};
-use crate::report::{html, png, write_certificate};
+use crate::report::{html, write_certificate, write_figure};
 use crate::reproduce::{Certified, Experiment, certificate_name, report};
 use crate::simulate::write_trace;
 
@@ -14,12 +13,11 @@ use crate::simulate::write_trace;
 /// If a file cannot be written; none is ever half written.
 pub fn write_experiment(folder: &Path, experiment: &Experiment) -> Result<Vec<PathBuf>, WriteError> {
     create_folder(folder)?;
-    let path = |ending: &str| folder.join(format!("{}.{ending}", experiment.scenario.name));
-    let (trace, svg, picture) = (path("csv"), path("svg"), path("png"));
+    let name = &experiment.scenario.name;
+    let trace = folder.join(format!("{name}.csv"));
     write_trace(&trace, &experiment.run.trace)?;
-    write_atomic(&svg, |out| out.write_all(experiment.figure.as_bytes()))?;
-    write_atomic(&picture, |out| out.write_all(&png(&experiment.figure).map_err(io::Error::other)?))?;
-    Ok(vec![trace, svg, picture])
+    let [svg, png] = write_figure(folder, name, &experiment.figure)?;
+    Ok(vec![trace, svg, png])
 }
 
 /// Writes the certificates into `folder`, which is created if missing; returns their paths.

@@ -212,7 +212,7 @@ fn laws_that_diverge_come_last() {
     assert_eq!(board.ranking[1].law, "vcbc");
     let json = serde_json::to_value(&board).expect("JSON");
     assert!(json["tasks"][0]["scores"][0]["rms_error"].is_null());
-    assert!(leaderboard_table(&board).contains('—') && effort_figure(&board).contains("diverged:"));
+    assert!(leaderboard_table(&board).contains('—') && effort_figure(&board).svg().contains("diverged:"));
 }
 
 /// Numbers that there are not leave no trace in figures.
@@ -221,7 +221,8 @@ fn figures_are_drawings_with_finite_numbers() {
     let tasks =
         vec![made_up("a", [1e-3, f64::NAN, 2e-3]), made_up("b", [f64::NAN; 3]), made_up("c", [1e-3; 3])];
     let board = Leaderboard::new(1, 0, tasks);
-    for svg in [effort_figure(&board), chatter_figure(&board)] {
+    for figure in [effort_figure(&board), chatter_figure(&board)] {
+        let svg = figure.svg();
         let document = roxmltree::Document::parse(&svg).expect("well-formed");
         // Circles are the first law's: in the legend, in two panels, and beside the title of the one where it diverged.
         assert_eq!(document.descendants().filter(|node| node.has_tag_name("circle")).count(), 4);
@@ -229,6 +230,6 @@ fn figures_are_drawings_with_finite_numbers() {
         for law in board.laws() {
             assert!(document.descendants().any(|node| node.text() == Some(law)), "{law} in the legend");
         }
-        assert!(flexure::report::png(&svg).is_ok());
+        assert!(figure.png().is_ok());
     }
 }

@@ -121,6 +121,33 @@ fn every_slip_test_is_in_the_table() {
     }
 }
 
+/// The other people's crates that a manifest names under `[section]`.
+fn dependencies(manifest: &str, section: &str) -> Vec<String> {
+    let lines = manifest.lines().skip_while(|line| *line != section).skip(1);
+    let entries = lines
+        .take_while(|line| !line.starts_with('['))
+        .filter(|line| !line.contains("path = ") && !line.contains(".workspace"));
+    let names = entries.filter_map(|line| line.split_once(" = ").map(|(name, _)| name.to_owned()));
+    names.collect()
+}
+
+/// Who adds a dependency says what it is for and what it costs.
+#[test]
+fn every_dependency_has_its_line() {
+    let listed = page("docs/dependencies.md");
+    let mut count = 0;
+    for folder in ["core-math", "flexure-core", "flexure", "flexure-cli"] {
+        let manifest = page(&format!("crates/{folder}/Cargo.toml"));
+        for section in ["[dependencies]", "[build-dependencies]", "[dev-dependencies]"] {
+            for name in dependencies(&manifest, section) {
+                assert!(listed.contains(&format!("| `{name}` |")), "{name} is not in docs/dependencies.md");
+                count += 1;
+            }
+        }
+    }
+    assert!(count > 20, "{count}");
+}
+
 /// The README's TOML blocks, each under the file name in its first line.
 #[test]
 fn the_files_of_the_readme_load() {

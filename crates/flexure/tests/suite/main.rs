@@ -33,7 +33,6 @@ mod registry;
 mod report;
 mod rough_plant;
 mod samples;
-mod schema;
 mod suites;
 mod urdf;
 mod verify;

@@ -136,7 +136,7 @@ fn results_say_what_the_law_does_not_know() {
     assert_eq!(summary.plant, ["rotor_coupling", "spring_hardening"]);
     assert!(summary.energy_drift < 1e-9, "{summary:?}");
     let said = "unknown to the law: rotor coupling, spring hardening";
-    assert!(experiment.figure.contains("with rotor coupling, spring hardening"));
+    assert!(experiment.figure.svg().contains("with rotor coupling, spring hardening"));
     assert!(html(&report(std::slice::from_ref(&experiment), &[])).contains(said));
     let table = summary_table(std::slice::from_ref(summary));
     assert!(table.contains("unknown") && table.contains("rotor coupling"), "{table}");

@@ -1,6 +1,6 @@
 //! Enclosures of the elementary functions at a float, and the range of sine and cosine over an interval.
 //!
-//! core-math returns the float nearest to the exact value, so one step down and one step up enclose it. The values that are
+//! `core_math` returns the float nearest to the exact value (its tests compare with mpmath), so one step down and one step up enclose it. The values that are
 //! floats exactly (0 ↦ 0 and the like; by Lindemann there are no others) are given as points.
 #![expect(clippy::float_cmp, reason = "the arguments with exact values are exact")]
 

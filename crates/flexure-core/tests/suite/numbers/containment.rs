@@ -166,7 +166,7 @@ fn arc_tangent() {
     function(10, "atan", core_math::atan, (-INFINITY, INFINITY));
 }
 
-/// `lo ≤ ln cosh x` is `e^lo − 1 ≤ 2 sinh² (x/2)`. Each side is good to 3 roundings: a coarse check at every magnitude,
+/// `lo ≤ ln cosh x` is `e^lo − 1 ≤ 2 sinh² (x/2)`. Each side is good to 4 roundings: a coarse check at every magnitude,
 /// which the table makes fine.
 #[test]
 fn log_cosh() {
@@ -174,9 +174,9 @@ fn log_cosh() {
         let (xs, x) = draw(random, low.max(-500), high.min(9));
         let bounds = xs.ln_cosh();
         let excess = 2.0 * core_math::sinh(x / 2.0) * core_math::sinh(x / 2.0);
-        let slack = 4.0 * f64::EPSILON;
-        let below = core_math::expm1(bounds.lo()) <= excess * (1.0 + slack);
-        assert!(below && excess * (1.0 - slack) <= core_math::expm1(bounds.hi()), "{x:e} {bounds:?}");
+        let slack = 5.0 * f64::EPSILON;
+        let below = f64::exp_m1(bounds.lo()) <= excess * (1.0 + slack);
+        assert!(below && excess * (1.0 - slack) <= f64::exp_m1(bounds.hi()), "{x:e} {bounds:?}");
     });
 }
 

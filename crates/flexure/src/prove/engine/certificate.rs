@@ -2,7 +2,6 @@
 //! claims is stated in `docs/certificate.md`. In the published schema the types keep the names that the format gave them first.
 
 use flexure_core::scalar::Interval;
-use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::prove::engine::number::Number;
@@ -11,8 +10,8 @@ use crate::prove::engine::number::Number;
 pub const VERSION: u32 = 1;
 
 /// A proof in numbers.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct Certificate {
     /// "flexure-certificate".
     pub format: String,
@@ -49,8 +48,8 @@ pub struct Certificate {
 }
 
 /// A flexible-joint robot in decimals.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(rename = "Robot", deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(rename = "Robot", deny_unknown_fields))]
 pub struct DecimalRobot {
     /// Its name.
     pub name: String,
@@ -69,9 +68,10 @@ pub struct DecimalRobot {
 }
 
 /// The links of a robot in decimals.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "kebab-case")]
-#[schemars(rename = "Links")]
+#[cfg_attr(test, schemars(rename = "Links"))]
 pub enum DecimalLinks {
     /// Two links in a plane, in closed form.
     PlanarTwoLink {
@@ -101,8 +101,8 @@ pub enum DecimalLinks {
 }
 
 /// A body of a tree and the joint that carries it.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(rename = "Body", deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(rename = "Body", deny_unknown_fields))]
 pub struct DecimalBody {
     /// Index of the body that carries the joint; none for the base.
     pub parent: Option<usize>,
@@ -126,9 +126,10 @@ pub struct DecimalBody {
 }
 
 /// How a joint moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-#[schemars(rename = "JointKind")]
+#[cfg_attr(test, schemars(rename = "JointKind"))]
 pub enum JointMotion {
     /// About its axis.
     Revolute,
@@ -137,8 +138,8 @@ pub enum JointMotion {
 }
 
 /// The law with its gains.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(rename = "Controller", deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(rename = "Controller", deny_unknown_fields))]
 pub struct DecimalLaw {
     /// Shaping function of both sides.
     pub phi: CertifiedPhi,
@@ -149,9 +150,10 @@ pub struct DecimalLaw {
 }
 
 /// A shaping function with a structure theorem.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-#[schemars(rename = "Phi")]
+#[cfg_attr(test, schemars(rename = "Phi"))]
 pub enum CertifiedPhi {
     /// φ_1 = Λ tanh q̃.
     Tanh,
@@ -162,8 +164,8 @@ pub enum CertifiedPhi {
 }
 
 /// The gains of one side, one number per joint.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(rename = "Gains", deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(rename = "Gains", deny_unknown_fields))]
 pub struct DecimalGains {
     /// Metric Π [N m/rad].
     pub metric: Vec<Number>,
@@ -176,8 +178,8 @@ pub struct DecimalGains {
 }
 
 /// Where the claims hold.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(rename = "Region", deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(rename = "Region", deny_unknown_fields))]
 pub struct CertifiedRegion {
     /// Largest |q̃_i| in rad, links then motors; none for no bound.
     pub error: Vec<Option<Number>>,
@@ -186,8 +188,8 @@ pub struct CertifiedRegion {
 }
 
 /// The variational closed loop in words that do not commute.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(rename = "ClosedLoop", deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(rename = "ClosedLoop", deny_unknown_fields))]
 pub struct ClosedLoopWords {
     /// d/dt of δq̃_l, δq̃_m, δσ_l, δσ_m from δq̃_l, δq̃_m, δs_l, δs_m.
     pub rows: [[String; 4]; 4],
@@ -196,8 +198,8 @@ pub struct ClosedLoopWords {
 }
 
 /// The rates of one block.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct Block {
     /// Which.
     pub block: BlockName,
@@ -210,7 +212,8 @@ pub struct Block {
 }
 
 /// A block of the closed loop.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum BlockName {
     /// Link positions.
@@ -236,8 +239,8 @@ impl BlockName {
 }
 
 /// A matrix that has to be positive definite at the claimed rates, and by how much its pivots are positive.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct Case {
     /// Which ends of their ranges the variables are at: a letter each, L or H.
     pub case: String,
@@ -248,16 +251,16 @@ pub struct Case {
 }
 
 /// Lower bounds of pivots of the mass matrix.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct MassMatrix {
     /// One per case or body.
     pub margins: Vec<Number>,
 }
 
 /// An upper bound of a matrix measure of −Θ ∂φ Θ⁻¹.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct Measure {
     /// Whose φ.
     pub side: LoopSide,
@@ -268,9 +271,10 @@ pub struct Measure {
 }
 
 /// Links or motors.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
-#[schemars(rename = "Side")]
+#[cfg_attr(test, schemars(rename = "Side"))]
 pub enum LoopSide {
     /// Links.
     Link,
@@ -279,7 +283,8 @@ pub enum LoopSide {
 }
 
 /// The norm that a matrix measure belongs to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub enum Norm {
     /// Sums of absolute values.
     #[serde(rename = "1")]
@@ -293,8 +298,8 @@ pub enum Norm {
 }
 
 /// Whether the closed loop keeps a structure.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(rename = "Structure", deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(rename = "Structure", deny_unknown_fields))]
 pub struct StructureClaim {
     /// Which.
     pub name: StructureName,
@@ -305,7 +310,8 @@ pub struct StructureClaim {
 }
 
 /// A structure that the closed loop may keep.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum StructureName {
     /// The variation is a port-Hamiltonian system.
@@ -319,8 +325,8 @@ pub enum StructureName {
 }
 
 /// An error at which two numbers differ that a structure wants equal.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct Witness {
     /// Whose φ.
     pub side: LoopSide,
@@ -335,8 +341,8 @@ pub struct Witness {
 }
 
 /// An error tube under a disturbance torque of the motors.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct Tube {
     /// Largest |d_i| [N m].
     pub disturbance: Vec<Number>,

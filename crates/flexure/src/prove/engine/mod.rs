@@ -18,6 +18,8 @@ pub mod position;
 pub mod rate;
 pub mod reach;
 pub mod region;
+#[cfg(test)]
+mod schema;
 pub mod structural;
 pub mod structure;
 pub mod verdict;

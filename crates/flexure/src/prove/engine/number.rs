@@ -1,11 +1,11 @@
 //! Numbers of a proof: decimals, or reals known to lie between two floats.
 
 use flexure_core::scalar::Interval;
-use schemars::JsonSchema;
 use serde::Serialize;
 
 /// A real number as a certificate writes it.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(untagged)]
 pub enum Number {
     /// The rational that the decimal says: "0.1" is 1/10.

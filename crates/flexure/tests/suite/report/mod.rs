@@ -8,7 +8,7 @@ use flexure::report::AssumedNumber;
 use flexure::report::RunsReport;
 use flexure::report::decimate::{bucket_size, decimate, envelope};
 use flexure::report::{
-    CertificateReport, FigureOptions, RunReport, certificate_table, comparison, four_panel, html, png,
+    CertificateReport, FigureOptions, RunReport, certificate_table, comparison, four_panel, html,
     proof_table, summary_table,
 };
 use flexure::scenario::load_scenario;
@@ -17,7 +17,7 @@ use roxmltree::Document;
 
 fn figure(trace: &Trace) -> String {
     let options = FigureOptions { title: "tanh, 1 kHz".to_owned(), subtitle: "quanser-2dof".to_owned() };
-    four_panel(trace, &options)
+    four_panel(trace, &options).svg()
 }
 
 /// Well-formed, and every number in every attribute finite.
@@ -116,7 +116,7 @@ fn empty_and_constant_traces_are_figures_too() {
         still.push(&[f64::from(sample), 0.0, 0.0, 0.0]);
     }
     check(&figure(&still));
-    check(&comparison(&[]));
+    check(&comparison(&[]).svg());
 }
 
 #[test]
@@ -149,16 +149,16 @@ fn extremes(values: impl Iterator<Item = f64>) -> (Option<u64>, Option<u64>) {
 fn titles_are_text() {
     let trace = fake::trace(1, 100, 6.0);
     let title = "<script>alert(1)</script> & $\\frac{1}{2}$ \u{0}".repeat(3);
-    let svg = four_panel(&trace, &FigureOptions { title: title.clone(), subtitle: title.clone() });
+    let svg = four_panel(&trace, &FigureOptions { title: title.clone(), subtitle: title.clone() }).svg();
     check(&svg);
     assert!(!svg.contains("<script") && texts(&svg)[0].contains("$\\frac{1}{2}$"));
-    check(&comparison(&[("<script>", &trace)]));
+    check(&comparison(&[("<script>", &trace)]).svg());
 }
 
 #[test]
 fn the_comparison_names_each_run_once() {
     let traces = [fake::trace(2, 4_000, 2.0), fake::trace(2, 6_000, 5.0), fake::diverged(2, 5_000)];
-    let svg = comparison(&[("tanh", &traces[0]), ("linear", &traces[1]), ("coupled-tanh", &traces[2])]);
+    let svg = comparison(&[("tanh", &traces[0]), ("linear", &traces[1]), ("coupled-tanh", &traces[2])]).svg();
     check(&svg);
     assert_eq!(curves(&svg), 3);
     for name in ["tanh", "linear", "coupled-tanh"] {
@@ -170,7 +170,7 @@ fn the_comparison_names_each_run_once() {
 fn a_comparison_that_leaves_time_out_says_so() {
     let fast = fake::trace(2, 10_000, 30.0);
     let said = |traces: &[(&str, &Trace)]| {
-        texts(&comparison(traces)).iter().any(|text| text.contains("of 10 s; after that"))
+        texts(&comparison(traces).svg()).iter().any(|text| text.contains("of 10 s; after that"))
     };
     assert!(said(&[("fast", &fast)]));
     assert!(!said(&[("fast", &fast), ("diverged", &fake::diverged(2, 10_000))]));
@@ -179,11 +179,14 @@ fn a_comparison_that_leaves_time_out_says_so() {
 
 #[test]
 fn pictures_are_1600_wide_and_bad_ones_are_errors() {
-    let picture = png(&figure(&fake::trace(2, 1_000, 6.0))).unwrap();
+    let picture = four_panel(&fake::trace(2, 1_000, 6.0), &FigureOptions::default()).png().unwrap();
     assert_eq!(&picture[1..4], b"PNG");
     assert_eq!(u32::from_be_bytes(picture[16..20].try_into().unwrap()), 1600);
-    assert!(png("no drawing").is_err());
-    assert!(png("<svg xmlns='http://www.w3.org/2000/svg' width='1' height='1000'/>").is_err());
+    let trace = fake::trace(1, 10, 1.0);
+    let names: Vec<String> = (0..6000).map(|run| format!("run {run}")).collect();
+    let runs: Vec<(&str, &Trace)> = names.iter().map(|name| (name.as_str(), &trace)).collect();
+    let error = comparison(&runs).png().unwrap_err();
+    assert!(error.height > 10.0 * error.width, "{error}");
 }
 
 fn report() -> RunsReport {
@@ -197,7 +200,7 @@ fn report() -> RunsReport {
         title: "<script>title</script>".to_owned(),
         introduction: "One.\n\nTwo & three.".to_owned(),
         runs: vec![run("<script>name</script>"), run("linear")],
-        comparison_svg: Some(comparison(&[("tanh", &trace)])),
+        comparison_svg: Some(comparison(&[("tanh", &trace)]).svg()),
         certificates: vec![CertificateReport {
             summary: proof(),
             phi: "<script>phi</script>".to_owned(),

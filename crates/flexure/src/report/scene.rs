@@ -1,0 +1,121 @@
+//! A drawing as data: lines, shapes and text in pixels, from which both the SVG and the PNG are made.
+
+use super::raster::{self, RasterError};
+use super::style::{Color, Stroke};
+use super::svg;
+
+/// Right and down from the upper left corner [px].
+pub(super) type Point = [f64; 2];
+
+/// A figure: white page, shapes drawn in their order.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Width of the page [px].
+    pub(super) width: f64,
+    /// Height of the page [px].
+    pub(super) height: f64,
+    pub(super) shapes: Vec<Shape>,
+}
+
+/// Something drawn.
+#[derive(Clone, Debug)]
+pub(super) enum Shape {
+    Line {
+        ends: [Point; 2],
+        stroke: Stroke,
+    },
+    /// Lines through points, each piece on its own.
+    Curve {
+        pieces: Vec<Vec<Point>>,
+        stroke: Stroke,
+    },
+    /// A filled shape with straight sides.
+    Polygon {
+        corners: Vec<Point>,
+        fill: Color,
+        rim: Stroke,
+    },
+    /// A filled circle.
+    Circle {
+        center: Point,
+        radius: f64,
+        fill: Color,
+        rim: Stroke,
+    },
+    Text(Text),
+}
+
+/// A line of text.
+#[derive(Clone, Debug)]
+pub(super) struct Text {
+    /// On the base line.
+    pub at: Point,
+    pub content: String,
+    pub lettering: Lettering,
+    /// Which part of the text is at `at`.
+    pub anchor: Anchor,
+    /// Whether it runs upwards instead of to the right.
+    pub upwards: bool,
+}
+
+/// How text looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Lettering {
+    /// Of the letters' square [px].
+    pub size: f64,
+    pub bold: bool,
+    pub color: Color,
+}
+
+/// Part of a text.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+impl Scene {
+    pub(super) fn new(width: f64, height: f64) -> Self {
+        Self { width, height, shapes: Vec::new() }
+    }
+
+    pub(super) fn line(&mut self, from: Point, to: Point, stroke: Stroke) {
+        self.shapes.push(Shape::Line { ends: [from, to], stroke });
+    }
+
+    pub(super) fn text(&mut self, at: Point, content: &str, lettering: Lettering, anchor: Anchor) {
+        let content = plain(content);
+        self.shapes.push(Shape::Text(Text { at, content, lettering, anchor, upwards: false }));
+    }
+
+    /// Text that runs upwards, with its middle at `at`.
+    pub(super) fn upwards(&mut self, at: Point, content: &str, lettering: Lettering) {
+        let (content, anchor) = (plain(content), Anchor::Middle);
+        self.shapes.push(Shape::Text(Text { at, content, lettering, anchor, upwards: true }));
+    }
+
+    /// The drawing as SVG, scalable to any width; text stays text.
+    pub fn svg(&self) -> String {
+        svg::svg(self)
+    }
+
+    /// The drawing as a PNG file, [`WIDTH`](raster::WIDTH) pixels wide: the same pixels on every machine.
+    ///
+    /// # Errors
+    /// If the drawing is more than ten times as high as wide.
+    pub fn png(&self) -> Result<Vec<u8>, RasterError> {
+        raster::png(self)
+    }
+}
+
+/// As XML shows it: without control characters, which it cannot say, and with one space for many.
+fn plain(content: &str) -> String {
+    let words: Vec<String> = content
+        .split_ascii_whitespace()
+        .map(|word| {
+            word.chars().filter(|c| !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}')).collect()
+        })
+        .collect();
+    words.join(" ")
+}
