@@ -74,7 +74,7 @@ pub(crate) fn plant<L, const N: usize>(scenario: &Scenario, robot: Fjr<f64, L, N
         spring_hardening: spring_hardening.as_deref().map_or(Vector::ZERO, vector),
         rotor_coupling: rotor_coupling
             .as_deref()
-            .map(|gears| RotorCoupling::new(&robot.motor_inertia, &vector(gears))),
+            .map(|gears| RotorCoupling::new(&robot.motor_inertia, &padded(gears, 1.0))),
         ..Plant::from(robot)
     };
     for imperfection in &scenario.imperfections {

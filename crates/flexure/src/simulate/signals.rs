@@ -84,7 +84,8 @@ impl Columns {
         let n = robot.links.joints();
         let mut slots = values.iter_mut();
         let mut push = |numbers: &mut dyn Iterator<Item = f64>| {
-            for (slot, x) in slots.by_ref().zip(numbers) {
+            // The numbers first: a slot that is taken is filled.
+            for (x, slot) in numbers.zip(slots.by_ref()) {
                 *slot = x;
             }
         };
