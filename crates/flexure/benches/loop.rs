@@ -11,65 +11,66 @@ mod rough_plant {
     use super::Bencher;
 
     use flexure::plant::{Friction, Hysteresis, Plant};
-    use flexure::robot::{RobotVisitor, with_robot};
+    use flexure::robot::{self, load_robot};
     use flexure::simulate::{Ledger, Stepper, Stepping};
     use flexure_core::linalg::Vector;
     use flexure_core::model::Fjr;
     use flexure_core::model::Links;
     use flexure_core::model::Motion;
+    use flexure_core::robots::{PlanarTwoLink, Tree};
 
-    struct Period<'a, 'b> {
-        bencher: Bencher<'a, 'b>,
-        seconds: f64,
+    fn period<L: Links<f64, N>, const N: usize>(bencher: Bencher, robot: Fjr<f64, L, N>, seconds: f64) {
+        let friction = |torque: f64| Friction {
+            coulomb: Vector([torque; N]),
+            stiction: Vector([1.5 * torque; N]),
+            stribeck_velocity: Vector([0.05; N]),
+        };
+        let plant = Plant {
+            spring_hardening: robot.stiffness.scaled(10.0),
+            spring_gap: Vector([0.002; N]),
+            hysteresis: Hysteresis { stiffness: robot.stiffness.scaled(0.5), yield_torque: Vector([0.1; N]) },
+            link_friction: friction(0.02),
+            motor_friction: friction(0.1),
+            ..Plant::from(robot)
+        };
+        let mut stepper = Stepper::new(&plant, 1e-10, Stepping::<N>::STEP);
+        let (mut x, mut t) = (Motion::at_rest(Vector::ZERO), 0.0);
+        let mut ledger = Ledger::default();
+        bencher.bench_local(|| {
+            // Pushed to and fro, so that joints slide, stick and turn.
+            let u_m = Vector::from_fn(|i| 3.0 * (8.0 * t + i as f64).sin() - 0.5 * x.q_m[i]);
+            x = stepper.advance(&plant, x, t, seconds, &|_, _: &_| u_m, &mut ledger).expect("bounded");
+            t += seconds;
+        });
     }
 
-    impl RobotVisitor for Period<'_, '_> {
-        type Output = ();
-
-        fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) {
-            let friction = |torque: f64| Friction {
-                coulomb: Vector([torque; N]),
-                stiction: Vector([1.5 * torque; N]),
-                stribeck_velocity: Vector([0.05; N]),
-            };
-            let plant = Plant {
-                spring_hardening: robot.stiffness.scaled(10.0),
-                spring_gap: Vector([0.002; N]),
-                hysteresis: Hysteresis {
-                    stiffness: robot.stiffness.scaled(0.5),
-                    yield_torque: Vector([0.1; N]),
-                },
-                link_friction: friction(0.02),
-                motor_friction: friction(0.1),
-                ..Plant::from(robot)
-            };
-            let mut stepper = Stepper::new(&plant, 1e-10, Stepping::<N>::STEP);
-            let (mut x, mut t) = (Motion::at_rest(Vector::ZERO), 0.0);
-            let mut ledger = Ledger::default();
-            self.bencher.bench_local(|| {
-                // Pushed to and fro, so that joints slide, stick and turn.
-                let u_m = Vector::from_fn(|i| 3.0 * (8.0 * t + i as f64).sin() - 0.5 * x.q_m[i]);
-                x = stepper
-                    .advance(&plant, x, t, self.seconds, &|_, _: &_| u_m, &mut ledger)
-                    .expect("bounded");
-                t += self.seconds;
-            });
+    /// The robot of `file` on links of a size that is known here.
+    fn robot<L, const N: usize>(file: &robot::Robot, links: L) -> Fjr<f64, L, N> {
+        let drive = |values: &[f64]| Vector::from_fn(|i| values[i]);
+        Fjr {
+            links,
+            motor_inertia: drive(&file.motor_inertia),
+            stiffness: drive(&file.stiffness),
+            link_damping: drive(&file.link_damping),
+            motor_damping: drive(&file.motor_damping),
         }
-    }
-
-    fn period(bencher: Bencher, robot: &str, seconds: f64) {
-        let robot = flexure::robot::load_robot(robot).expect("built in");
-        with_robot(&robot, Period { bencher, seconds }).expect("supported");
     }
 
     #[divan::bench(args = [1e-3, 2e-3], sample_count = 2000, sample_size = 1)]
     fn two_link(bencher: Bencher, seconds: f64) {
-        period(bencher, "quanser-2dof", seconds);
+        let file = load_robot("quanser-2dof").expect("built in");
+        let robot::Links::PlanarTwoLink { mass, length, com, inertia } = file.links else {
+            panic!("two links")
+        };
+        period::<_, 2>(bencher, robot(&file, PlanarTwoLink::new(mass, length[0], com, inertia)), seconds);
     }
 
     #[divan::bench(args = [1e-3, 2e-3], sample_count = 2000, sample_size = 1)]
     fn panda(bencher: Bencher, seconds: f64) {
-        period(bencher, "panda", seconds);
+        let file = load_robot("panda").expect("built in");
+        let robot::Links::Tree(bodies) = &file.links else { panic!("a tree") };
+        let tree = Tree::<f64, 7>::from_bodies(bodies, file.gravity, |x| x).expect("seven joints");
+        period::<_, 7>(bencher, robot(&file, tree), seconds);
     }
 }
 

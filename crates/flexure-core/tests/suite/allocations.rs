@@ -86,8 +86,8 @@ fn branched_tree() {
 
 #[test]
 fn tree_with_room() {
-    let bodies = common::branched_bodies::<5>(2);
-    let roomy: Tree<f64, 8> = Tree::from_bodies(&bodies, common::GRAVITY, |x| x).expect("they fit");
+    let bodies = crate::common::branched_bodies::<5>(2);
+    let roomy: Tree<f64, 8> = Tree::from_bodies(&bodies, crate::common::GRAVITY, |x| x).expect("they fit");
     law_and_dynamics_allocate_nothing(roomy);
 }
 

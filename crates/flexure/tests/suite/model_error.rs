@@ -1,12 +1,10 @@
 //! Robots that differ from their models: factors, payloads, and both robots at once.
 
 use flexure::files::ROBOTS;
-use flexure::imperfections::{Factors, ModelError, Payload};
+use flexure::imperfections::{Factors, Imperfection, ModelError, Payload};
 use flexure::robot::load_robot;
 use flexure::robot::{Links, Robot};
-use flexure::robot::{PairVisitor, RobotVisitor, with_pair, with_robot};
-use flexure_core::linalg::Vector;
-use flexure_core::model::{Fjr, Links as Dynamics};
+use flexure::scenario::load_scenario;
 
 fn robot(name: &str) -> Robot {
     load_robot(name).expect("built in")
@@ -24,21 +22,13 @@ fn carrying(model: &Robot, mass: f64, position: [f64; 3]) -> Robot {
     ModelError { robot: None, factors: ones(model), payload: Some(Payload { mass, position }) }.apply(model)
 }
 
-/// Mass matrix, row by row, and potential energy at `q`.
-struct At<'a>(&'a [f64]);
-
-impl RobotVisitor for At<'_> {
-    type Output = (Vec<f64>, f64);
-
-    fn visit<L: Dynamics<f64, N>, const N: usize>(self, robot: Fjr<f64, L, N>) -> Self::Output {
-        let q = Vector::from_fn(|i| self.0[i]);
-        let mass = robot.links.mass_matrix::<f64>(&q);
-        (mass.0.as_flattened().to_vec(), robot.links.potential_energy(&q))
-    }
-}
-
+/// Mass matrix, row by row, and potential energy at `q`: that of a robot at rest with relaxed springs.
 fn at(robot: &Robot, q: &[f64]) -> (Vec<f64>, f64) {
-    with_robot(robot, At(q)).expect("supported")
+    let arm = robot.arm().expect("supported");
+    let mut mass = vec![0.0; q.len() * q.len()];
+    arm.mass_matrix(q, &mut mass).expect("a number per joint");
+    let motion = [q, q, &vec![0.0; 2 * q.len()]].concat();
+    (mass, arm.energy(&motion).expect("a number per joint"))
 }
 
 fn assert_close(found: &[f64], expected: &[f64], tolerance: f64) {
@@ -150,20 +140,10 @@ fn a_payload_anywhere_moves_as_a_point() {
     assert!((once[48] - (0.01 + 0.04)).abs() < 1e-14, "{}", once[48]);
 }
 
-/// Stiffness of both, and the difference of their mass matrices at rest.
-struct Both;
-
-impl PairVisitor for Both {
-    type Output = (Vec<f64>, Vec<f64>, f64);
-
-    fn visit<L: Dynamics<f64, N> + Clone + Sync, const N: usize>(
-        self,
-        model: Fjr<f64, L, N>,
-        plant: Fjr<f64, L, N>,
-    ) -> Self::Output {
-        let mass = |robot: &Fjr<f64, L, N>| robot.links.mass_matrix::<f64>(&Vector::ZERO)[(0, 0)];
-        (model.stiffness.0.to_vec(), plant.stiffness.0.to_vec(), mass(&plant) - mass(&model))
-    }
+/// The difference of the first entries of their mass matrices at rest [kg m²].
+fn heavier(model: &Robot, plant: &Robot) -> f64 {
+    let first = |robot: &Robot| at(robot, &vec![0.0; robot.joint_count()]).0[0];
+    first(plant) - first(model)
 }
 
 #[test]
@@ -173,13 +153,13 @@ fn a_pair_is_the_model_and_the_plant() {
         let stiffness = vec![1.5; model.joint_count()];
         let mass = vec![2.0; model.joint_count()];
         let plant = with_factors(&model, Factors { stiffness, mass, ..ones(&model) });
-        let (soft, stiff, heavier) = with_pair(&model, &plant, Both).expect("of a kind");
-        assert_eq!((soft, stiff), (model.stiffness, plant.stiffness), "{name}");
-        assert!(heavier > 0.0, "{name}");
+        for (stiff, soft) in plant.stiffness.iter().zip(&model.stiffness) {
+            assert!((stiff - 1.5 * soft).abs() <= 1e-15 * stiff, "{name}");
+        }
+        assert!(heavier(&model, &plant) > 0.0, "{name}");
     }
     // Two files of one arm: a1 of the drawing is 1.500 · 0.1562² + 0.873 · 0.343² + 0.03605.
-    let (_, _, heavier) =
-        with_pair(&robot("quanser-2dof"), &robot("quanser-2dof-cad"), Both).expect("of a kind");
+    let heavier = heavier(&robot("quanser-2dof"), &robot("quanser-2dof-cad"));
     let total = |m: [f64; 2], l: f64, r: [f64; 2], i: [f64; 2]| {
         m[0] * r[0] * r[0] + i[0] + m[1] * (l + r[1]) * (l + r[1]) + i[1]
     };
@@ -190,16 +170,23 @@ fn a_pair_is_the_model_and_the_plant() {
 
 #[test]
 fn unlike_robots_are_no_pair() {
-    for (model, plant, said) in [
+    for (scenario, plant, said) in [
         (
-            "quanser-2dof",
+            "two-link-tanh",
             "planar-2r",
             "a planar two-link arm with joints: 2; planar-2r is a tree with joints: 2",
         ),
-        ("planar-2r", "planar-3r", "planar-2r is a tree with joints: 2; planar-3r is a tree with joints: 3"),
-        ("pendulum-1dof", "quanser-2dof", "pendulum-1dof is a pendulum"),
+        (
+            "planar-2r-tanh",
+            "planar-3r",
+            "planar-2r is a tree with joints: 2; planar-3r is a tree with joints: 3",
+        ),
+        ("pendulum-tanh", "quanser-2dof", "pendulum-1dof is a pendulum"),
     ] {
-        let problems = with_pair(&robot(model), &robot(plant), Both).expect_err("unlike");
+        let mut scenario = load_scenario(scenario).expect("built in");
+        let other = ModelError { robot: Some(robot(plant)), factors: ones(&scenario.robot), payload: None };
+        scenario.imperfections.push(Imperfection::ModelError(Box::new(other)));
+        let problems = scenario.open().map(drop).expect_err("unlike");
         assert!(problems.to_string().contains(said), "{problems}");
     }
 }
