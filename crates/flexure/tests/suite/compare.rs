@@ -154,7 +154,9 @@ fn the_suite_has_tasks_of_every_sort() {
 /// In a pool of `threads` threads.
 fn compared(threads: usize, tasks: &[Task], laws: &[Entrant], budget: usize) -> Leaderboard {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-    pool.install(|| compare(tasks, laws, budget, 5, &|_| ()).expect("good tasks"))
+    pool.install(|| {
+        compare(tasks, laws, budget, 5, &|_, _| std::ops::ControlFlow::Continue(())).expect("good tasks")
+    })
 }
 
 /// The whole contract of `--json`, and with it every number, is the same to the bit on one thread and on two, whatever
@@ -179,7 +181,10 @@ fn results_depend_on_task_law_budget_and_seed_alone() {
 #[test]
 fn scores_are_what_they_say() {
     let tasks = short(&["two-link-tanh-smooth"]);
-    let board = compare(&tasks, &named(&["pd", "vcbc", "vcbc:tanh"]), 8, 1, &|_| ()).expect("good tasks");
+    let board = compare(&tasks, &named(&["pd", "vcbc", "vcbc:tanh"]), 8, 1, &|_, _| {
+        std::ops::ControlFlow::Continue(())
+    })
+    .expect("good tasks");
     for score in &board.tasks[0].scores {
         assert!(score.evaluations <= 8, "{score:?}");
         assert!(score.penalised_error <= score.penalised_error_at_start, "{score:?}");
@@ -204,7 +209,8 @@ fn laws_that_diverge_come_last() {
         }
     }
     let tasks = [Task::new(&scenario).expect("a good task")];
-    let board = compare(&tasks, &named(&["vcbc", "pd"]), 1, 0, &|_| ()).expect("a good task");
+    let board = compare(&tasks, &named(&["vcbc", "pd"]), 1, 0, &|_, _| std::ops::ControlFlow::Continue(()))
+        .expect("a good task");
     let [vcbc, pd] = &board.tasks[0].scores[..] else { panic!("{board:?}") };
     assert!(!vcbc.finished() && pd.finished(), "{board:?}");
     assert!(vcbc.rms_error.is_nan() && vcbc.diverged_at.is_some_and(|t| t < 6.0));

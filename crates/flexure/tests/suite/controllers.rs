@@ -124,7 +124,7 @@ fn starting_gains_follow() {
         let mut scenario = load_scenario(name).expect("built in");
         scenario.controller = Controller::default_for(kind, &scenario.robot).expect("registered");
         scenario.duration = 2.0;
-        let run = run(&scenario, &|_| ()).expect("few joints");
+        let run = run(&scenario, &flexure::progress::unwatched).expect("few joints");
         let error = run.summary.max_abs_e_l;
         // Not a number if it diverged.
         if error.is_nan() || error > NEAR {

@@ -19,7 +19,7 @@ use flexure::simulate::{Controller, Simulation, Timing};
 fn simulate(change: impl Fn(&mut Scenario), name: &str) -> Run {
     let mut scenario = load_scenario(name).expect("built in");
     change(&mut scenario);
-    run(&scenario, &|_| ()).expect("a robot of two joints")
+    run(&scenario, &flexure::progress::unwatched).expect("a robot of two joints")
 }
 
 /// Largest |e_l| of any joint from `t` on [rad].

@@ -106,7 +106,7 @@ fn a_run_on_the_reference_stays_inside_too() {
     let scenario = plausible();
     let found = speed(&scenario).expect("there is one");
     assert!((found - 0.6517).abs() < 1e-4, "{found}");
-    let run = run(&scenario, &|_| ()).expect("two joints");
+    let run = run(&scenario, &flexure::progress::unwatched).expect("two joints");
     let torques = run.trace.joints("u_m");
     for (usage, torques) in usage(&scenario).expect("two joints").iter().zip(&torques) {
         let largest = torques.iter().fold(0.0, |m: f64, u| m.max(u.abs()));
@@ -133,7 +133,7 @@ fn a_run_from_a_robot_in_motion_starts_without_error() {
     scenario.initial.q_m = vec![0.25, -0.12];
     scenario.initial.dq_l = vec![0.5, -0.3];
     scenario.initial.dq_m = vec![0.4, 0.2];
-    let summary = run(&scenario, &|_| ()).expect("two joints").summary;
+    let summary = run(&scenario, &flexure::progress::unwatched).expect("two joints").summary;
     // What rounding in positions of 0.3 rad leaves, through motors of up to 1e4 1/s.
     assert!(summary.max_abs_e_l < 1e-10, "{summary:?}");
 }

@@ -8,7 +8,7 @@ use flexure::simulate::run;
 #[test]
 fn a_run_says_which_limits_it_exceeds_and_when() {
     let mut scenario = load_scenario("pendulum-tanh").unwrap();
-    let found = run(&scenario, &|_| ()).unwrap();
+    let found = run(&scenario, &flexure::progress::unwatched).unwrap();
     assert!(exceeded(&scenario.robot, &found.trace).is_empty(), "no limits, nothing exceeded");
 
     let largest = |name: &str| found.trace.column(name).unwrap().iter().fold(0.0_f64, |m, x| m.max(x.abs()));

@@ -58,7 +58,7 @@ fn read(scenario: &str) -> Result<Scenario, Problems> {
 }
 
 fn simulated(scenario: &Scenario) -> flexure::simulate::Run {
-    run(scenario, &|_| ()).unwrap_or_else(|problems| panic!("{problems}"))
+    run(scenario, &flexure::progress::unwatched).unwrap_or_else(|problems| panic!("{problems}"))
 }
 
 #[test]
@@ -122,7 +122,7 @@ fn coupling_needs_gear_ratios() {
 fn rotors_that_do_not_fit_into_the_links_are_refused() {
     // 0.23 and 0.01 kg m² behind gears of 1 and 0.1: a rotor of 1 kg m² on a link of a fifth of that.
     let scenario = read_with("gear_ratio = [1.0, 0.1]", SCENARIO).unwrap();
-    let problems = run(&scenario, &|_| ()).unwrap_err();
+    let problems = run(&scenario, &flexure::progress::unwatched).unwrap_err();
     let problem = problems.iter().next().unwrap();
     assert!(problem.to_string().contains("is not positive definite"), "{problem}");
     assert_eq!(problem.line_column(), Some(place(SCENARIO, "true")));
@@ -131,7 +131,8 @@ fn rotors_that_do_not_fit_into_the_links_are_refused() {
 
 #[test]
 fn results_say_what_the_law_does_not_know() {
-    let experiment = Experiment::new(read(SCENARIO).unwrap(), &|_| ()).unwrap_or_else(|p| panic!("{p}"));
+    let experiment = Experiment::new(read(SCENARIO).unwrap(), &flexure::progress::unwatched)
+        .unwrap_or_else(|p| panic!("{p}"));
     let summary = &experiment.run.summary;
     assert_eq!(summary.plant, ["rotor_coupling", "spring_hardening"]);
     assert!(summary.energy_drift < 1e-9, "{summary:?}");

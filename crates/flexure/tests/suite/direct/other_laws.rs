@@ -61,7 +61,7 @@ fn coupling_that_adds_up() {
     let rate = 7e-4;
     let right = prove(&flow(tanh, tanh, &wide), rate, 10_000);
     assert!(right.proved().is_some(), "{right:?}");
-    let coordinates = wide.coordinates();
+    let coordinates = wide.coordinates(wide.position.len());
     let flipped =
         Twins { bounds: Flipped(closed_loop(tanh)), point: Flipped(closed_loop(tanh)), coordinates };
     let Verdict::Refuted(witness) = prove(&flipped, rate, 10_000) else { panic!("a sign is wrong") };

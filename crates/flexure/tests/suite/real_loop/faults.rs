@@ -120,7 +120,7 @@ fn loop_with(fault: &Fault, seed: u64) -> Scenario {
 /// without a reading, which is within 1 ms; and when all is over the law has the robot again and the error is small.
 fn survives(seed: u64) {
     let fault = fault(seed);
-    let run = run(&loop_with(&fault, seed), &|_| ()).expect("a robot of two joints");
+    let run = run(&loop_with(&fault, seed), &flexure::progress::unwatched).expect("a robot of two joints");
     let context = || format!("seed {seed}: {}", fault.text);
     assert!(run.divergence.is_none(), "diverged: {}", context());
     let column = |name: &str| run.trace.column(name).unwrap();

@@ -41,7 +41,7 @@ fn with_these(mut scenario: Scenario, imperfections: Vec<flexure::imperfections:
 
 /// What comes of it.
 fn simulate(scenario: &Scenario) -> Run {
-    run(scenario, &|_| ()).expect("a robot of two joints")
+    run(scenario, &flexure::progress::unwatched).expect("a robot of two joints")
 }
 
 /// Whether two runs have the same bits in every column that both have, and how many those are.
