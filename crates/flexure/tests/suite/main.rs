@@ -3,6 +3,7 @@
 //! `cargo test -p flexure --test suite imperfections::` runs those of a module.
 
 mod along;
+mod architecture;
 mod bad_files;
 mod built_in;
 mod certify;
