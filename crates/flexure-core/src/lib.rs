@@ -21,6 +21,7 @@ pub mod control;
 pub mod estimate;
 pub mod guard;
 pub mod linalg;
+pub mod memory;
 pub mod model;
 pub mod reference;
 pub mod robots;

@@ -179,8 +179,7 @@ fn arm<C: Scalar>(
     let bodies: Vec<_> = bodies.iter().map(|body| body.map(&number)).collect();
     let vector = |values: &[f64]| Vector::from_fn(|i| number(values[i]));
     Fjr {
-        links: Tree::from_bodies(&std::array::from_fn(|i| bodies[i]), robot.gravity.map(&number), near)
-            .expect("parents come first"),
+        links: Tree::from_bodies(&bodies, robot.gravity.map(&number), near).expect("parents come first"),
         motor_inertia: vector(&robot.motor_inertia),
         stiffness: vector(&robot.stiffness),
         link_damping: vector(&robot.link_damping),

@@ -2,6 +2,7 @@
 
 use super::positive;
 use crate::linalg::Vector;
+use crate::memory::{Memory, Port};
 use crate::model::{Fjr, Links, Motion};
 use crate::scalar::{Float, Jet, Over};
 
@@ -49,6 +50,16 @@ struct Balance<C, const N: usize> {
 }
 
 impl<C: Float, const N: usize> Balance<C, N> {
+    /// At rest at 0, with neither springs nor gravity.
+    const ZERO: Self = Self {
+        q_l: Vector::ZERO,
+        q_m: Vector::ZERO,
+        p_l: Vector::ZERO,
+        p_m: Vector::ZERO,
+        link: Vector::ZERO,
+        spring: Vector::ZERO,
+    };
+
     /// Cᵀ q̇ = Ṁ q̇ − C q̇, with Ṁ q̇ from the momentum along q + q̇ t at constant q̇.
     #[inline]
     fn new<L: Links<C, N>>(robot: &Fjr<C, L, N>, x: &Motion<C, N>) -> Self {
@@ -70,6 +81,27 @@ impl<C: Float, const N: usize> Balance<C, N> {
         [&self.q_l, &self.q_m, &self.p_l, &self.p_m, &self.link, &self.spring]
             .iter()
             .all(|part| part.iter().all(C::is_finite))
+    }
+}
+
+/// The residuals `link` and `motor` [N m]; `started`, whether there was an instant before; of that instant `q_l`, `q_m` in
+/// rad, the momenta `p_l`, `p_m` [kg m²/s], the torques K ζ + C_lᵀ q̇_l − g `on_links` and K ζ of the `springs` [N m].
+impl<C: Float, const N: usize> Memory<C> for DisturbanceObserver<C, N> {
+    fn memory(&mut self, port: &mut dyn Port<C>) {
+        port.joints("link", "N m", &mut self.residual.link.0);
+        port.joints("motor", "N m", &mut self.residual.motor.0);
+        port.optional("started", &mut self.last, Balance::ZERO, Balance::memory);
+    }
+}
+
+impl<C: Float, const N: usize> Memory<C> for Balance<C, N> {
+    fn memory(&mut self, port: &mut dyn Port<C>) {
+        port.joints("q_l", "rad", &mut self.q_l.0);
+        port.joints("q_m", "rad", &mut self.q_m.0);
+        port.joints("p_l", "kg m²/s", &mut self.p_l.0);
+        port.joints("p_m", "kg m²/s", &mut self.p_m.0);
+        port.joints("on_links", "N m", &mut self.link.0);
+        port.joints("springs", "N m", &mut self.spring.0);
     }
 }
 

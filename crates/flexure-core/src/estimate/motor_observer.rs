@@ -4,6 +4,7 @@ use super::prediction::{Correction, predict};
 use super::reading::{at_rest, is_finite, where_read};
 use super::{Estimator, positive};
 use crate::linalg::Vector;
+use crate::memory::{Memory, Port};
 use crate::model::{Fjr, Links, Motion};
 use crate::scalar::Float;
 
@@ -38,6 +39,14 @@ impl<C: Float, const N: usize> MotorObserver<C, N> {
             reading: Vector::ZERO,
             estimate: Motion::at_rest(Vector::ZERO),
         })
+    }
+}
+
+/// The estimated [`Motion`], then the last `reading` of the motors in rad.
+impl<C: Float, const N: usize> Memory<C> for MotorObserver<C, N> {
+    fn memory(&mut self, port: &mut dyn Port<C>) {
+        self.estimate.memory(port);
+        port.joints("reading", "rad", &mut self.reading.0);
     }
 }
 

@@ -4,6 +4,7 @@ use super::prediction::predict;
 use super::reading::{at_rest, is_finite, where_read};
 use super::{Estimator, positive};
 use crate::linalg::Vector;
+use crate::memory::{Memory, Port};
 use crate::model::{Fjr, Links, Motion};
 use crate::scalar::Float;
 
@@ -40,6 +41,13 @@ impl<C: Float, const N: usize> Observer<C, N> {
             velocity_gain: kept.map(|rho| (C::ONE - rho).square() / period),
             estimate: Motion::at_rest(Vector::ZERO),
         })
+    }
+}
+
+/// The estimated [`Motion`].
+impl<C: Float, const N: usize> Memory<C> for Observer<C, N> {
+    fn memory(&mut self, port: &mut dyn Port<C>) {
+        self.estimate.memory(port);
     }
 }
 

@@ -4,6 +4,7 @@ use super::inputs::Faults;
 use super::limits::allowed;
 use super::{Age, Phase, Settings, Status};
 use crate::linalg::Vector;
+use crate::memory::{Memory, Port};
 use crate::model::Motion;
 use crate::scalar::{Float, Piecewise};
 
@@ -30,6 +31,21 @@ pub struct Guard<C, const N: usize> {
     posture: Option<Vector<C, N>>,
     /// Good readings still wanted before the law takes over; 0 while it decides.
     awaited: u32,
+}
+
+/// The last `torque` [N m]; `good`, whether there was a good reading; its link positions `posture` in rad; good readings
+/// still `awaited`. Whatever is restored, the torque is brought inside the limits, and no more is awaited than the settings ask.
+impl<C: Float, const N: usize> Memory<C> for Guard<C, N> {
+    fn memory(&mut self, port: &mut dyn Port<C>) {
+        let mut last = self.last;
+        port.joints("torque", "N m", &mut last.0);
+        port.optional("good", &mut self.posture, Vector::ZERO, |posture, port| {
+            port.joints("posture", "rad", &mut posture.0);
+        });
+        port.word("awaited", &mut self.awaited);
+        self.awaited = self.awaited.min(self.settings.rejoin_after);
+        *self = self.applying(&last);
+    }
 }
 
 impl<C: Float, const N: usize> Guard<C, N> {

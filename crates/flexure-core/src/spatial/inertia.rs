@@ -1,6 +1,6 @@
 //! Rigid-body and articulated-body inertias.
 
-use super::{Force, Motion, Vec3};
+use super::{Twist, Vec3, Wrench};
 use crate::scalar::{Over, Scalar};
 
 /// A symmetric 3 × 3 matrix.
@@ -109,8 +109,8 @@ impl<C: Scalar> RigidInertia<C> {
 
     /// Spatial momentum of the body moving with `v`, whose inertia is constant.
     #[inline]
-    pub(crate) fn momentum<T: Over<C>>(&self, v: &Motion<T>) -> Force<T> {
-        Force {
+    pub(crate) fn momentum<T: Over<C>>(&self, v: &Twist<T>) -> Wrench<T> {
+        Wrench {
             moment: self.rotational.mul_lifted(v.angular) - v.linear.cross_constant(&self.first_moment),
             linear: v.linear.map(|x| x.scale(self.mass)) + v.angular.cross_constant(&self.first_moment),
         }
@@ -148,12 +148,12 @@ impl<C: Scalar> RigidInertia<C> {
 
     /// Spatial momentum for a unit velocity along the joint axis z: revolute or prismatic.
     #[inline]
-    pub(crate) fn axis_momentum(&self, prismatic: bool) -> Force<C> {
+    pub(crate) fn axis_momentum(&self, prismatic: bool) -> Wrench<C> {
         let (h, r) = (self.first_moment, &self.rotational);
         if prismatic {
-            Force { moment: Vec3::new(h.y, -h.x, C::ZERO), linear: Vec3::new(C::ZERO, C::ZERO, self.mass) }
+            Wrench { moment: Vec3::new(h.y, -h.x, C::ZERO), linear: Vec3::new(C::ZERO, C::ZERO, self.mass) }
         } else {
-            Force { moment: Vec3::new(r.xz, r.yz, r.zz), linear: Vec3::new(-h.y, h.x, C::ZERO) }
+            Wrench { moment: Vec3::new(r.xz, r.yz, r.zz), linear: Vec3::new(-h.y, h.x, C::ZERO) }
         }
     }
 }
@@ -216,20 +216,20 @@ impl<S: Scalar> ArticulatedInertia<S> {
 
     /// `I S` for the unit joint axis z: revolute or prismatic.
     #[inline]
-    pub(crate) fn along_axis(&self, prismatic: bool) -> Force<S> {
+    pub(crate) fn along_axis(&self, prismatic: bool) -> Wrench<S> {
         let [b0, b1, b2] = self.coupling;
         if prismatic {
             let d = &self.linear;
-            Force { moment: Vec3::new(b0.z, b1.z, b2.z), linear: Vec3::new(d.xz, d.yz, d.zz) }
+            Wrench { moment: Vec3::new(b0.z, b1.z, b2.z), linear: Vec3::new(d.xz, d.yz, d.zz) }
         } else {
             let a = &self.angular;
-            Force { moment: Vec3::new(a.xz, a.yz, a.zz), linear: b2 }
+            Wrench { moment: Vec3::new(a.xz, a.yz, a.zz), linear: b2 }
         }
     }
 
     /// `I − U Uᵀ / d`: what the rest of the tree feels of a joint that is free to move.
     #[inline]
-    pub(crate) fn without_axis(&self, u: &Force<S>, reciprocal: S) -> Self {
+    pub(crate) fn without_axis(&self, u: &Wrench<S>, reciprocal: S) -> Self {
         let (n, f) = (u.moment, u.linear);
         let (nd, fd) = (n.scaled(reciprocal), f.scaled(reciprocal));
         let outer = |a: Vec3<S>, b: Vec3<S>| Sym3 {
@@ -265,11 +265,11 @@ impl<S: Scalar> ArticulatedInertia<S> {
 
     /// `I v`.
     #[inline]
-    pub fn mul(&self, v: &Motion<S>) -> Force<S> {
+    pub fn mul(&self, v: &Twist<S>) -> Wrench<S> {
         let [b0, b1, b2] = self.coupling;
         let [t0, t1, t2] = transpose(self.coupling);
         let w = v.angular;
-        Force {
+        Wrench {
             moment: self.angular.mul(w) + Vec3::new(b0.dot(v.linear), b1.dot(v.linear), b2.dot(v.linear)),
             linear: Vec3::new(t0.dot(w), t1.dot(w), t2.dot(w)) + self.linear.mul(v.linear),
         }

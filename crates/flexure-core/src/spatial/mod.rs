@@ -3,10 +3,10 @@
 //! Featherstone, *Rigid Body Dynamics Algorithms*, Springer 2008, chapter 2: Plücker coordinates, angular part first.
 
 mod inertia;
-mod motion;
+mod twist;
 mod vec3;
 
 pub use inertia::{ArticulatedInertia, RigidInertia};
-pub use motion::{Force, Motion};
+pub use twist::{Twist, Wrench};
 pub(crate) use vec3::Rotation;
 pub use vec3::Vec3;

@@ -235,8 +235,7 @@ fn tree<C: Scalar, const N: usize>(
     gravity: [C; 3],
     approximate: impl Fn(C) -> f64,
 ) -> Tree<C, N> {
-    Tree::from_bodies(&std::array::from_fn(|i| bodies[i]), gravity, approximate)
-        .expect("the reader puts parents before children")
+    Tree::from_bodies(bodies, gravity, approximate).expect("the reader puts parents before children")
 }
 
 /// Per-joint data, whose length the reader has checked; zero for joints that only fill a capacity.

@@ -1,8 +1,9 @@
 //! One joint of a tree and the coordinate changes across it.
 
 use super::JointKind;
+use crate::linalg::Matrix;
 use crate::scalar::{Over, Scalar};
-use crate::spatial::{Force, Motion, RigidInertia, Rotation, Vec3};
+use crate::spatial::{RigidInertia, Rotation, Twist, Vec3, Wrench};
 
 /// A joint about or along the z axis of its frame, and the body it carries.
 #[derive(Clone, Copy, Debug)]
@@ -17,6 +18,18 @@ pub(super) struct Joint<C> {
 }
 
 impl<C: Scalar> Joint<C> {
+    /// A joint on the base with unit inertia and no mass: what fills a tree up to its capacity.
+    pub(super) fn phantom() -> Self {
+        let (zero, one) = (C::ZERO, C::ONE);
+        Self {
+            parent: usize::MAX,
+            kind: JointKind::Revolute,
+            rotation: Rotation::from_matrix(&Matrix::identity()),
+            translation: Vec3::ZERO,
+            inertia: RigidInertia::new(zero, [zero; 3], [one, zero, zero, one, zero, one]),
+        }
+    }
+
     pub(super) fn map<D: Scalar>(&self, f: impl Fn(C) -> D) -> Joint<D> {
         Joint {
             parent: self.parent,
@@ -44,24 +57,24 @@ impl<C: Scalar> Joint<C> {
         self.kind == JointKind::Prismatic
     }
 
-    /// A motion vector from parent to child coordinates.
+    /// A twist from parent to child coordinates.
     #[inline]
-    pub(super) fn motion_to_child<T: Over<C>>(&self, pose: &Pose<T>, m: &Motion<T>) -> Motion<T> {
+    pub(super) fn twist_to_child<T: Over<C>>(&self, pose: &Pose<T>, m: &Twist<T>) -> Twist<T> {
         let angular = self.unrotate(pose, m.angular);
         let linear = self.unrotate(pose, m.linear + m.angular.cross_constant(&self.translation));
         match *pose {
-            Pose::Turned { .. } => Motion { angular, linear },
+            Pose::Turned { .. } => Twist { angular, linear },
             // v + ω × e_z q
-            Pose::Slid(q) => Motion {
+            Pose::Slid(q) => Twist {
                 angular,
                 linear: Vec3::new(linear.x + angular.y * q, linear.y - angular.x * q, linear.z),
             },
         }
     }
 
-    /// A force vector from child to parent coordinates.
+    /// A wrench from child to parent coordinates.
     #[inline]
-    pub(super) fn force_to_parent<T: Over<C>>(&self, pose: &Pose<T>, f: &Force<T>) -> Force<T> {
+    pub(super) fn wrench_to_parent<T: Over<C>>(&self, pose: &Pose<T>, f: &Wrench<T>) -> Wrench<T> {
         let (moment, linear) = match *pose {
             Pose::Turned { sin, cos } => (turn(f.moment, sin, cos), turn(f.linear, sin, cos)),
             // n + e_z q × f
@@ -71,7 +84,7 @@ impl<C: Scalar> Joint<C> {
             }
         };
         let linear = self.rotation.rotate(linear);
-        Force { moment: self.rotation.rotate(moment) - linear.cross_constant(&self.translation), linear }
+        Wrench { moment: self.rotation.rotate(moment) - linear.cross_constant(&self.translation), linear }
     }
 
     /// A free vector from child to parent axes.
@@ -103,29 +116,29 @@ impl<C: Scalar> Joint<C> {
         }
     }
 
-    /// `S q̇`: the joint's own velocity in child coordinates.
+    /// `S q̇`: the joint's own twist in child coordinates.
     #[inline]
-    pub(super) fn along_axis<T: Scalar>(&self, rate: T) -> Motion<T> {
+    pub(super) fn along_axis<T: Scalar>(&self, rate: T) -> Twist<T> {
         let axis = Vec3::new(T::ZERO, T::ZERO, rate);
         match self.kind {
-            JointKind::Revolute => Motion { angular: axis, linear: Vec3::ZERO },
-            JointKind::Prismatic => Motion { angular: Vec3::ZERO, linear: axis },
+            JointKind::Revolute => Twist { angular: axis, linear: Vec3::ZERO },
+            JointKind::Prismatic => Twist { angular: Vec3::ZERO, linear: axis },
         }
     }
 
     /// `v × (S q̇)`.
     #[inline]
-    pub(super) fn cross_axis<T: Scalar>(&self, v: &Motion<T>, rate: T) -> Motion<T> {
+    pub(super) fn cross_axis<T: Scalar>(&self, v: &Twist<T>, rate: T) -> Twist<T> {
         let across = |a: Vec3<T>| Vec3::new(a.y * rate, -a.x * rate, T::ZERO);
         match self.kind {
-            JointKind::Revolute => Motion { angular: across(v.angular), linear: across(v.linear) },
-            JointKind::Prismatic => Motion { angular: Vec3::ZERO, linear: across(v.angular) },
+            JointKind::Revolute => Twist { angular: across(v.angular), linear: across(v.linear) },
+            JointKind::Prismatic => Twist { angular: Vec3::ZERO, linear: across(v.angular) },
         }
     }
 
     /// `Sᵀ f`: the torque [N m] or force in N at the joint.
     #[inline]
-    pub(super) fn project<T: Scalar>(&self, f: &Force<T>) -> T {
+    pub(super) fn project<T: Scalar>(&self, f: &Wrench<T>) -> T {
         match self.kind {
             JointKind::Revolute => f.moment.z,
             JointKind::Prismatic => f.linear.z,

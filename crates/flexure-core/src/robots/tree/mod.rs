@@ -6,12 +6,12 @@ mod factor;
 mod joint;
 mod recursions;
 
-use crate::linalg::Matrix;
+use crate::linalg::{Matrix, Vector};
 use crate::scalar::Scalar;
 use crate::spatial::{RigidInertia, Rotation, Vec3};
 
 pub use factor::TreeFactor;
-use joint::Joint;
+use joint::{Joint, Pose};
 
 /// How a joint moves along or about its axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,17 +59,58 @@ impl<C: Copy> Body<C> {
     }
 }
 
-/// Rigid links joined in a tree, `N` joints, constants of type `C`.
+/// Rigid links joined in a tree: up to `N` joints, constants of type `C`.
+///
+/// Firmware takes exactly as many joints as the robot has ([`Tree::new`]), a program that reads robots from files one capacity
+/// for many robots ([`Tree::from_bodies`]). Joints beyond [`joints`](Self::joints) are *phantoms*: they hang on the base, have
+/// unit inertia (1 kg m²), feel no gravity and are coupled to nothing. Their block of the mass matrix is the identity,
+/// solving with it and inverse dynamics give back what they are given there, and gravity, potential energy and carrier rates
+/// are 0. What is built on [`Links`](crate::model::Links) therefore needs no special case: a phantom that starts at rest with
+/// a reference of 0 stays exactly there, with a torque of exactly 0, and the numbers of the real joints are those of the tree
+/// of exact size. It needs what every joint needs: positive stiffness, motor inertia and gains, for instance 1. Recursions run
+/// over the real joints only.
 ///
 /// Link frames are turned so that every joint axis is z: joint transforms then cost four products instead of nine.
+///
+/// ```
+/// use flexure_core::linalg::Vector;
+/// use flexure_core::model::Links;
+/// use flexure_core::robots::{Body, JointKind, Tree};
+///
+/// // A pendulum of 2 kg on a horizontal axis (y), its centre of mass 0.5 m below it.
+/// let pendulum = Body {
+///     parent: None,
+///     kind: JointKind::Revolute,
+///     axis: [0.0, 1.0, 0.0],
+///     rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+///     translation: [0.0; 3],
+///     mass: 2.0,
+///     com: [0.0, 0.0, -0.5],
+///     inertia: [[0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.1]],
+/// };
+/// let gravity = [0.0, 0.0, -10.0];
+/// let exact = Tree::new(&[pendulum], gravity).unwrap();
+/// // m r² + I, and m g r where the link is horizontal.
+/// assert!((exact.mass_matrix(&Vector([0.3]))[(0, 0)] - 0.6).abs() < 1e-12);
+/// let horizontal = core::f64::consts::FRAC_PI_2;
+/// assert!((exact.gravity_torque(&Vector([horizontal]))[0] - 10.0).abs() < 1e-12);
+///
+/// // The same robot where up to four joints fit.
+/// let roomy: Tree<f64, 4> = Tree::from_bodies(&[pendulum], gravity, |x| x).unwrap();
+/// assert_eq!(roomy.joints(), 1);
+/// assert_eq!(roomy.gravity_torque(&Vector([0.7, 0.0, 0.0, 0.0]))[0], exact.gravity_torque(&Vector([0.7]))[0]);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Tree<C, const N: usize> {
     joints: [Joint<C>; N],
+    /// Joints that are no phantoms, at most `N`.
+    count: usize,
     gravity: Vec3<C>,
 }
 
 impl<const N: usize> Tree<f64, N> {
-    /// From bodies in an order where parents come before children, and the gravity vector in the base frame [m/s²].
+    /// A tree of exactly `N` joints: from bodies in an order where parents come before children, and the gravity vector in
+    /// the base frame [m/s²].
     ///
     /// None if some body's parent does not come before it. The physics (positive masses and inertias, unit axes) is
     /// the caller's duty: the file reader checks it where it can point at the number.
@@ -79,26 +120,25 @@ impl<const N: usize> Tree<f64, N> {
 }
 
 impl<C: Scalar, const N: usize> Tree<C, N> {
-    /// [`new`](Tree::new) over any constants: on intervals the tree encloses every robot whose numbers they contain.
+    /// [`new`](Tree::new) from at most `N` bodies and over any constants: on intervals the tree encloses every robot whose
+    /// numbers they contain. Joints that no body is given for are phantoms.
     ///
     /// `approximate` gives a float near a constant. It only says which coordinate axis, of those far from the joint axis,
     /// the turned frame of a joint starts from: the tree is the same robot with any of them. Axes that are coordinate axes
     /// turn frames by permutations, which round nothing.
-    pub fn from_bodies(
-        bodies: &[Body<C>; N],
-        gravity: [C; 3],
-        approximate: impl Fn(C) -> f64,
-    ) -> Option<Self> {
+    ///
+    /// None if there are more than `N` bodies or some body's parent does not come before it.
+    pub fn from_bodies(bodies: &[Body<C>], gravity: [C; 3], approximate: impl Fn(C) -> f64) -> Option<Self> {
         let ordered = bodies.iter().enumerate().all(|(i, body)| body.parent.is_none_or(|parent| parent < i));
         let turn = |body: &Body<C>| axis_frame(body.axis, &approximate);
-        let joints = bodies.each_ref().map(|body| {
+        let joint = |body: &Body<C>| {
             let own = turn(body);
             // Everything that was said in the parent's link frame, in the parent's turned frame.
             let carrier =
                 body.parent.and_then(|parent| bodies.get(parent)).map_or_else(Matrix::identity, turn);
             let rotation = carrier.transpose() * Matrix(body.rotation) * own;
-            let translation = carrier.transpose() * crate::linalg::Vector(body.translation);
-            let com = own.transpose() * crate::linalg::Vector(body.com);
+            let translation = carrier.transpose() * Vector(body.translation);
+            let com = own.transpose() * Vector(body.com);
             let inertia = own.transpose() * Matrix(body.inertia) * own;
             let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = inertia.0;
             Joint {
@@ -108,13 +148,37 @@ impl<C: Scalar, const N: usize> Tree<C, N> {
                 translation: Vec3::from_array(translation.0),
                 inertia: RigidInertia::new(body.mass, com.0, [xx, xy, xz, yy, yz, zz]),
             }
-        });
-        ordered.then_some(Self { joints, gravity: Vec3::from_array(gravity) })
+        };
+        let joints = core::array::from_fn(|i| bodies.get(i).map_or_else(Joint::phantom, joint));
+        (ordered && bodies.len() <= N).then_some(Self {
+            joints,
+            count: bodies.len(),
+            gravity: Vec3::from_array(gravity),
+        })
+    }
+
+    /// How many joints the robot has, at most the capacity `N`; those beyond are phantoms.
+    #[inline]
+    pub fn joints(&self) -> usize {
+        self.count
+    }
+
+    /// The real joints with their poses, from the base outwards; backwards, from the tips inwards.
+    #[inline]
+    fn chain<'a, T>(
+        &'a self,
+        poses: &'a [Pose<T>; N],
+    ) -> impl DoubleEndedIterator<Item = (usize, (&'a Joint<C>, &'a Pose<T>))> {
+        (0..self.count).filter_map(|i| Some((i, (self.joints.get(i)?, poses.get(i)?))))
     }
 
     /// The same robot with constants of another type.
     pub fn map<D: Scalar>(&self, f: impl Fn(C) -> D) -> Tree<D, N> {
-        Tree { joints: self.joints.each_ref().map(|joint| joint.map(&f)), gravity: self.gravity.map(&f) }
+        Tree {
+            joints: self.joints.each_ref().map(|joint| joint.map(&f)),
+            count: self.count,
+            gravity: self.gravity.map(&f),
+        }
     }
 }
 

@@ -5,13 +5,17 @@ use super::{Tree, TreeFactor};
 use crate::linalg::{Matrix, Vector};
 use crate::model::Links;
 use crate::scalar::{Over, Scalar};
-use crate::spatial::{Force, Motion, Vec3};
+use crate::spatial::{Twist, Vec3, Wrench};
 
 impl<C: Scalar, const N: usize> Tree<C, N> {
+    /// Where the real joints are.
     #[inline]
     pub(super) fn poses<T: Over<C>>(&self, q: &Vector<T, N>) -> [Pose<T>; N] {
-        let mut angles = q.iter();
-        self.joints.each_ref().map(|joint| joint.at(angles.next().unwrap_or(T::ZERO)))
+        let mut poses = [Pose::Slid(T::ZERO); N];
+        for ((pose, joint), q) in poses.iter_mut().zip(&self.joints).zip(q.iter()).take(self.count) {
+            *pose = joint.at(q);
+        }
+        poses
     }
 
     /// The modified Newton–Euler pass: M(q) a_r + C(q, v) v_r plus the torque that holds the tree against a base
@@ -28,23 +32,23 @@ impl<C: Scalar, const N: usize> Tree<C, N> {
         a_r: &Vector<T, N>,
         base: Vec3<T>,
     ) -> Vector<T, N> {
-        let base = Motion { angular: Vec3::ZERO, linear: base };
+        let base = Twist { angular: Vec3::ZERO, linear: base };
         let poses = self.poses(q);
         let half = T::from_f64(0.5);
-        let mut velocity = Vector([Motion::ZERO; N]);
-        let mut reference = Vector([Motion::ZERO; N]);
-        let mut acceleration = Vector([Motion::ZERO; N]);
-        let mut force = Vector([Force::ZERO; N]);
-        for (i, (joint, pose)) in self.joints.iter().zip(&poses).enumerate() {
-            let carried = |bodies: &Vector<Motion<T>, N>, base: &Motion<T>| {
-                joint.motion_to_child(pose, bodies.0.get(joint.parent).unwrap_or(base))
+        let mut velocity = Vector([Twist::ZERO; N]);
+        let mut reference = Vector([Twist::ZERO; N]);
+        let mut acceleration = Vector([Twist::ZERO; N]);
+        let mut force = Vector([Wrench::ZERO; N]);
+        for (i, (joint, pose)) in self.chain(&poses) {
+            let carried = |bodies: &Vector<Twist<T>, N>, base: &Twist<T>| {
+                joint.twist_to_child(pose, bodies.0.get(joint.parent).unwrap_or(base))
             };
             let v_i = match velocity.0.get(joint.parent) {
-                Some(parent) => joint.motion_to_child(pose, parent) + joint.along_axis(v[i]),
+                Some(parent) => joint.twist_to_child(pose, parent) + joint.along_axis(v[i]),
                 None => joint.along_axis(v[i]),
             };
             let v_ri = match reference.0.get(joint.parent) {
-                Some(parent) => joint.motion_to_child(pose, parent) + joint.along_axis(v_r[i]),
+                Some(parent) => joint.twist_to_child(pose, parent) + joint.along_axis(v_r[i]),
                 None => joint.along_axis(v_r[i]),
             };
             let a_ri =
@@ -52,16 +56,17 @@ impl<C: Scalar, const N: usize> Tree<C, N> {
             let inertia = &joint.inertia;
             let split = a_ri - v_i.cross(&v_ri).scaled(half);
             let products =
-                v_i.cross_force(&inertia.momentum(&v_ri)) + v_ri.cross_force(&inertia.momentum(&v_i));
+                v_i.cross_wrench(&inertia.momentum(&v_ri)) + v_ri.cross_wrench(&inertia.momentum(&v_i));
             force[i] = inertia.momentum(&split) + products.scaled(half);
             (velocity[i], reference[i], acceleration[i]) = (v_i, v_ri, a_ri);
         }
-        let mut torque = Vector::ZERO;
-        for (i, (joint, pose)) in self.joints.iter().zip(&poses).enumerate().rev() {
+        // Phantoms: unit inertia.
+        let mut torque = *a_r;
+        for (i, (joint, pose)) in self.chain(&poses).rev() {
             torque[i] = joint.project(&force[i]);
             let passed = force[i];
             if let Some(parent) = force.0.get_mut(joint.parent) {
-                *parent += joint.force_to_parent(pose, &passed);
+                *parent += joint.wrench_to_parent(pose, &passed);
             }
         }
         torque
@@ -79,8 +84,8 @@ impl<C: Scalar, const N: usize> Links<C, N> for Tree<C, N> {
     fn mass_matrix<T: Over<C>>(&self, q: &Vector<T, N>) -> Matrix<T, N, N> {
         let poses = self.poses(q);
         let mut composite = Vector(self.joints.each_ref().map(|joint| joint.inertia.map(T::constant)));
-        let mut mass = Matrix::ZERO;
-        for (i, (joint, pose)) in self.joints.iter().zip(&poses).enumerate().rev() {
+        let mut mass = Matrix::identity();
+        for (i, (joint, pose)) in self.chain(&poses).rev() {
             let body = composite[i];
             if let Some(parent) = composite.0.get_mut(joint.parent) {
                 *parent = parent.plus(&body.moved(|v| joint.rotate(pose, v), joint.origin(pose)));
@@ -91,7 +96,7 @@ impl<C: Scalar, const N: usize> Links<C, N> for Tree<C, N> {
             let mut carrier = (joint, pose);
             let mut next = carrier.0.parent;
             while let (Some(parent), Some(parent_pose)) = (self.joints.get(next), poses.get(next)) {
-                force = carrier.0.force_to_parent(carrier.1, &force);
+                force = carrier.0.wrench_to_parent(carrier.1, &force);
                 mass[(i, next)] = parent.project(&force);
                 mass[(next, i)] = mass[(i, next)];
                 carrier = (parent, parent_pose);
@@ -109,7 +114,7 @@ impl<C: Scalar, const N: usize> Links<C, N> for Tree<C, N> {
         let mut moment =
             Vector(self.joints.each_ref().map(|joint| joint.inertia.first_moment.map(T::constant)));
         let mut total = Vec3::ZERO;
-        for (i, (joint, pose)) in self.joints.iter().zip(&poses).enumerate().rev() {
+        for (i, (joint, pose)) in self.chain(&poses).rev() {
             let h = joint.rotate(pose, moment[i]) + joint.origin(pose).map(|x| x.scale(mass[i]));
             let m = mass[i];
             match (moment.0.get_mut(joint.parent), mass.0.get_mut(joint.parent)) {
@@ -129,7 +134,7 @@ impl<C: Scalar, const N: usize> Links<C, N> for Tree<C, N> {
         let poses = self.poses(q);
         let mut angular = Vector([Vec3::ZERO; N]);
         let mut rates = Vector::ZERO;
-        for (i, (joint, pose)) in self.joints.iter().zip(&poses).enumerate() {
+        for (i, (joint, pose)) in self.chain(&poses) {
             let carrier = angular.0.get(joint.parent).map_or(Vec3::ZERO, |&w| joint.unrotate(pose, w));
             rates[i] = carrier.z;
             angular[i] = carrier + joint.along_axis(v[i]).angular;

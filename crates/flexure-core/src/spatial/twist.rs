@@ -1,33 +1,33 @@
-//! Spatial motion and force vectors.
+//! Twists and wrenches: spatial motion and force vectors.
 
 use core::ops::{Add, AddAssign, Sub};
 
 use super::Vec3;
 use crate::scalar::Scalar;
 
-/// A spatial velocity or acceleration: angular part and linear part at the frame's origin.
+/// A spatial velocity [rad/s, m/s] or acceleration [rad/s², m/s²] of a body, in Plücker coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion<S> {
-    /// Angular part [rad/s].
+pub struct Twist<S> {
+    /// Angular velocity [rad/s] or acceleration [rad/s²].
     pub angular: Vec3<S>,
-    /// Linear part at the frame's origin [m/s].
+    /// Velocity [m/s] or spatial acceleration [m/s²] of the body's point at the frame's origin.
     pub linear: Vec3<S>,
 }
 
-/// A spatial force: moment about the frame's origin, and force.
+/// A spatial force [N m, N] or momentum [kg m²/s, kg m/s], in Plücker coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Force<S> {
-    /// Moment about the frame's origin [N m].
+pub struct Wrench<S> {
+    /// Moment [N m] or angular momentum [kg m²/s] about the frame's origin.
     pub moment: Vec3<S>,
-    /// Force in N.
+    /// Force in N or linear momentum [kg m/s].
     pub linear: Vec3<S>,
 }
 
-impl<S: Scalar> Motion<S> {
-    /// No motion.
+impl<S: Scalar> Twist<S> {
+    /// At rest.
     pub const ZERO: Self = Self { angular: Vec3::ZERO, linear: Vec3::ZERO };
 
-    /// `self × m`: the rate of a motion vector that is constant in a frame moving with `self`.
+    /// `self × m`: the rate of a twist that is constant in a frame moving with `self`.
     #[inline]
     pub fn cross(&self, m: &Self) -> Self {
         Self {
@@ -36,10 +36,10 @@ impl<S: Scalar> Motion<S> {
         }
     }
 
-    /// `self ×* f`: the rate of a force vector that is constant in a frame moving with `self`.
+    /// `self ×* f`: the rate of a wrench that is constant in a frame moving with `self`.
     #[inline]
-    pub fn cross_force(&self, f: &Force<S>) -> Force<S> {
-        Force {
+    pub fn cross_wrench(&self, f: &Wrench<S>) -> Wrench<S> {
+        Wrench {
             moment: self.angular.cross(f.moment) + self.linear.cross(f.linear),
             linear: self.angular.cross(f.linear),
         }
@@ -52,7 +52,7 @@ impl<S: Scalar> Motion<S> {
     }
 }
 
-impl<S: Scalar> Force<S> {
+impl<S: Scalar> Wrench<S> {
     /// No force.
     pub const ZERO: Self = Self { moment: Vec3::ZERO, linear: Vec3::ZERO };
 
@@ -63,7 +63,7 @@ impl<S: Scalar> Force<S> {
     }
 }
 
-impl<S: Scalar> Add for Motion<S> {
+impl<S: Scalar> Add for Twist<S> {
     type Output = Self;
     #[inline]
     fn add(self, b: Self) -> Self {
@@ -71,7 +71,7 @@ impl<S: Scalar> Add for Motion<S> {
     }
 }
 
-impl<S: Scalar> Sub for Motion<S> {
+impl<S: Scalar> Sub for Twist<S> {
     type Output = Self;
     #[inline]
     fn sub(self, b: Self) -> Self {
@@ -79,7 +79,7 @@ impl<S: Scalar> Sub for Motion<S> {
     }
 }
 
-impl<S: Scalar> Add for Force<S> {
+impl<S: Scalar> Add for Wrench<S> {
     type Output = Self;
     #[inline]
     fn add(self, b: Self) -> Self {
@@ -87,7 +87,7 @@ impl<S: Scalar> Add for Force<S> {
     }
 }
 
-impl<S: Scalar> AddAssign for Force<S> {
+impl<S: Scalar> AddAssign for Wrench<S> {
     #[inline]
     fn add_assign(&mut self, b: Self) {
         *self = *self + b;
