@@ -6,7 +6,6 @@ use flexure_core::model::{Fjr, Links, Motion};
 
 use crate::estimators::{self, Encoders};
 use crate::files::Entry;
-use crate::imperfections::{Imperfection, VelocityFilter};
 use crate::robot::padded;
 
 /// The registered estimators.
@@ -32,13 +31,14 @@ pub enum AnyEstimator<const N: usize> {
     MotorObserver(MotorObserver<f64, N>),
 }
 
-/// The estimator of a loop with control periods of `period` in s; none if the law sees the readings themselves.
+/// The estimator of a loop with control periods of `period` in s: the one that is asked for, else differences of positions through the
+/// filter for `velocities`; none if the law sees the readings themselves.
 ///
 /// # Panics
-/// For bandwidths or cut-offs that the reader of scenarios refuses.
+/// For bandwidths that the reader of scenarios refuses.
 pub fn estimator<const N: usize>(
     estimator: Option<&estimators::Estimator>,
-    imperfections: &[Imperfection],
+    velocities: Option<LowPass<f64>>,
     period: f64,
 ) -> Option<AnyEstimator<N>> {
     const CHECKED: &str = "the reader takes positive numbers only";
@@ -51,15 +51,7 @@ pub fn estimator<const N: usize>(
             }
         });
     }
-    let filter = imperfections.iter().find_map(|imperfection| match imperfection {
-        Imperfection::VelocityFilter(filter) => Some(filter),
-        _ => None,
-    })?;
-    let filter = match *filter {
-        VelocityFilter::First { cutoff } => LowPass::first_order(cutoff, period),
-        VelocityFilter::Second { cutoff, damping } => LowPass::second_order(cutoff, damping, period),
-    };
-    Some(AnyEstimator::FilteredDifference(FilteredDifference::new(filter.expect(CHECKED))))
+    velocities.map(|filter| AnyEstimator::FilteredDifference(FilteredDifference::new(filter)))
 }
 
 impl<const N: usize> Estimator<f64, N> for AnyEstimator<N> {
