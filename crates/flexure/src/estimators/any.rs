@@ -2,6 +2,7 @@
 
 use flexure_core::estimate::{Estimator, FilteredDifference, LowPass, MotorObserver, Observer};
 use flexure_core::linalg::Vector;
+use flexure_core::memory::{Memory, Port};
 use flexure_core::model::{Fjr, Links, Motion};
 
 use crate::estimators::{self, Encoders};
@@ -74,6 +75,17 @@ impl<const N: usize> Estimator<f64, N> for AnyEstimator<N> {
             Self::FilteredDifference(estimator) => estimator.update(robot, q_l, q_m, u_m),
             Self::Observer(estimator) => estimator.update(robot, q_l, q_m, u_m),
             Self::MotorObserver(estimator) => estimator.update(robot, q_l, q_m, u_m),
+        }
+    }
+}
+
+/// What the estimator remembers.
+impl<const N: usize> Memory<f64> for AnyEstimator<N> {
+    fn memory(&mut self, port: &mut dyn Port<f64>) {
+        match self {
+            Self::FilteredDifference(estimator) => estimator.memory(port),
+            Self::Observer(estimator) => estimator.memory(port),
+            Self::MotorObserver(estimator) => estimator.memory(port),
         }
     }
 }

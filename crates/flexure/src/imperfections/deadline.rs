@@ -34,11 +34,10 @@ impl Kind for Deadline {
 
     fn read(table: &Table<'_>, _: &Context<'_>) -> Option<Self> {
         match (table.get("probability"), table.get("every")) {
-            (Some(field), None) => {
-                Some(Self::Random { probability: field.number(&quantity::PROBABILITY)? })
-            }
+            (Some(field), None) => Some(Self::Random { probability: field.number(&quantity::PROBABILITY)? }),
             (None, Some(field)) => {
-                let every = field.whole("each so many-th control instant is missed", 2, u64::from(u32::MAX))?;
+                let every =
+                    field.whole("each so many-th control instant is missed", 2, u64::from(u32::MAX))?;
                 Some(Self::Every(u32::try_from(every).ok()?))
             }
             _ => {

@@ -70,8 +70,7 @@ impl Kind for Dropout {
             (true, [None, None]) => window(table, context),
             (false, [Some(probability), mean_length]) => {
                 let probability = probability.number(&quantity::PROBABILITY);
-                let mean_length =
-                    mean_length.map_or(Some(1.0), |field| field.number(&quantity::MEAN_LENGTH));
+                let mean_length = mean_length.map_or(Some(1.0), |field| field.number(&quantity::MEAN_LENGTH));
                 Some(Outage::Random { probability: probability?, mean_length: mean_length? })
             }
             _ => {

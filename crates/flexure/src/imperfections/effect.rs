@@ -45,6 +45,9 @@ pub struct Effects<'a> {
 impl<'a> Effects<'a> {
     /// Of `imperfections` on a robot with so many `joints`, in a loop with control periods of `period` \[s\]. Random numbers come
     /// from streams of `seed`, a stream for each imperfection.
+    ///
+    /// # Panics
+    /// For cut-offs of filters that the reader of scenarios refuses.
     pub fn of(imperfections: &'a [Imperfection], joints: usize, period: f64, seed: u64) -> Self {
         let (mut effects, mut delay) = (Self { count: joints, ..Self::default() }, 0.0);
         let (mut sensing, mut actuating) = (Vec::new(), Vec::new());

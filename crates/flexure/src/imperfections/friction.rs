@@ -48,7 +48,8 @@ impl Kind for Friction {
                 table.per_joint("stribeck_velocity", context.joints, &quantity::STRIBECK_VELOCITY).map(Some)
             }
             (None, Some(field)) => {
-                let message = format!("{} is given, but static is not: the friction does not rise", field.path);
+                let message =
+                    format!("{} is given, but static is not: the friction does not rise", field.path);
                 field.error("unused", message, "give static in N m, or remove it");
                 None
             }

@@ -9,6 +9,8 @@ mod registry;
 pub(crate) mod document;
 mod effect;
 mod kind;
+#[cfg(test)]
+mod recipe;
 mod side;
 pub mod stages;
 
@@ -20,8 +22,8 @@ use crate::imperfections::effect::Effect;
 use crate::imperfections::kind::{Place, Setup};
 
 pub use effect::Effects;
-pub(crate) use kind::{Kind, Overlap};
 pub use kind::Strengths;
+pub(crate) use kind::{Kind, Overlap};
 pub use side::{Side, Sides};
 
 // In the order of things in a loop: sensors, what is made of them, computer, drives, joints, the world.
@@ -41,6 +43,9 @@ imperfections! {
     spring::Spring,
     model_error::ModelError,
     push::Push,
+    // The example of CONTRIBUTING.md.
+    #[cfg(test)]
+    current_loop::CurrentLoop,
 }
 
 impl Imperfection {

@@ -45,13 +45,19 @@ impl Kind for VelocityFilter {
             && cutoff >= 0.5 / period
         {
             let field = table.get("cutoff")?;
-            let message =
-                format!("{} is {cutoff} Hz, must be < {} Hz, half the control rate", field.path, 0.5 / period);
+            let message = format!(
+                "{} is {cutoff} Hz, must be < {} Hz, half the control rate",
+                field.path,
+                0.5 / period
+            );
             field.error("range", message, "remove the filter's entry for none, or shorten control_period");
             return None;
         }
         if order != 1 {
-            return Some(Self::Second { cutoff, damping: table.number("damping", &quantity::DAMPING_RATIO)? });
+            return Some(Self::Second {
+                cutoff,
+                damping: table.number("damping", &quantity::DAMPING_RATIO)?,
+            });
         }
         if let Some(field) = table.get("damping") {
             let message = format!("{} is given, but the order is 1, which has no damping", field.path);

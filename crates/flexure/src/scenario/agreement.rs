@@ -137,10 +137,7 @@ impl<'a> Loop<'a> {
             ),
         };
         if let Some(missing) = need.iter().find(|&&side| !placed(side)) {
-            let who = match (
-                self.root.get("estimator"),
-                self.first::<VelocityFilter>(),
-            ) {
+            let who = match (self.root.get("estimator"), self.first::<VelocityFilter>()) {
                 (Some(field), _) => format!("[estimator] in line {}", field.line()),
                 (_, Some((filter, _))) => format!("velocity-filter in line {}", filter.field.line()),
                 _ => "the law without [estimator]".to_owned(),
@@ -251,9 +248,7 @@ impl<'a> Loop<'a> {
         if self.guard.is_some() {
             return;
         }
-        let fails = |(_, dropout): &(_, &Dropout)| {
-            !matches!(dropout.outage, Outage::Random { probability, .. } if probability == 0.0)
-        };
+        let fails = |(_, dropout): &(_, &Dropout)| !matches!(dropout.outage, Outage::Random { probability, .. } if probability == 0.0);
         if let Some((found, _)) = self.all().find(fails) {
             found.field.warn(
                 "unguarded",
