@@ -3,8 +3,7 @@
 use crate::plant::friction::Friction;
 use crate::plant::plant::Plant;
 
-/// What joints have that the model leaves out, to be changed: an entry per joint each, those of the robot's joints first. Units as in
-/// [`Plant`].
+/// What joints have that the model leaves out, to be changed: an entry per joint each, in units as in [`Plant`].
 pub(crate) struct Departures<'a> {
     /// k in K ε + k ε³.
     pub spring_hardening: &'a mut [f64],
