@@ -7,7 +7,6 @@ use flexure_core::model::{Fjr, Links, Motion};
 
 use crate::estimators::{self, Encoders};
 use crate::files::Entry;
-use crate::imperfections::{Imperfection, VelocityFilter};
 use crate::robot::padded;
 
 /// The registered estimators.
@@ -33,13 +32,14 @@ pub enum AnyEstimator<const N: usize> {
     MotorObserver(MotorObserver<f64, N>),
 }
 
-/// The estimator of a loop with control periods of `period` in s; none if the law sees the readings themselves.
+/// The estimator of a loop with control periods of `period` in s: the one that is asked for, else differences of positions through the
+/// filter for `velocities`; none if the law sees the readings themselves.
 ///
 /// # Panics
-/// For bandwidths or cut-offs that the reader of scenarios refuses.
+/// For bandwidths that the reader of scenarios refuses.
 pub fn estimator<const N: usize>(
     estimator: Option<&estimators::Estimator>,
-    imperfections: &[Imperfection],
+    velocities: Option<LowPass<f64>>,
     period: f64,
 ) -> Option<AnyEstimator<N>> {
     const CHECKED: &str = "the reader takes positive numbers only";
@@ -52,25 +52,7 @@ pub fn estimator<const N: usize>(
             }
         });
     }
-    let filter = imperfections.iter().find_map(|imperfection| match imperfection {
-        Imperfection::VelocityFilter(filter) => Some(filter),
-        _ => None,
-    })?;
-    let filter = match *filter {
-        VelocityFilter::First { cutoff } => LowPass::first_order(cutoff, period),
-        VelocityFilter::Second { cutoff, damping } => LowPass::second_order(cutoff, damping, period),
-    };
-    Some(AnyEstimator::FilteredDifference(FilteredDifference::new(filter.expect(CHECKED))))
-}
-
-impl<const N: usize> Memory<f64> for AnyEstimator<N> {
-    fn memory(&mut self, port: &mut dyn Port<f64>) {
-        match self {
-            Self::FilteredDifference(estimator) => estimator.memory(port),
-            Self::Observer(estimator) => estimator.memory(port),
-            Self::MotorObserver(estimator) => estimator.memory(port),
-        }
-    }
+    velocities.map(|filter| AnyEstimator::FilteredDifference(FilteredDifference::new(filter)))
 }
 
 impl<const N: usize> Estimator<f64, N> for AnyEstimator<N> {
@@ -93,6 +75,17 @@ impl<const N: usize> Estimator<f64, N> for AnyEstimator<N> {
             Self::FilteredDifference(estimator) => estimator.update(robot, q_l, q_m, u_m),
             Self::Observer(estimator) => estimator.update(robot, q_l, q_m, u_m),
             Self::MotorObserver(estimator) => estimator.update(robot, q_l, q_m, u_m),
+        }
+    }
+}
+
+/// What the estimator remembers.
+impl<const N: usize> Memory<f64> for AnyEstimator<N> {
+    fn memory(&mut self, port: &mut dyn Port<f64>) {
+        match self {
+            Self::FilteredDifference(estimator) => estimator.memory(port),
+            Self::Observer(estimator) => estimator.memory(port),
+            Self::MotorObserver(estimator) => estimator.memory(port),
         }
     }
 }

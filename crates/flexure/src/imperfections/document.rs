@@ -2,121 +2,11 @@
 
 use crate::files::base::Base;
 use crate::files::field::{Field, Joints};
+use crate::files::quantity::Quantity;
 use crate::files::table::Table;
-use crate::imperfections::{
-    Deadline, Delay, Dropout, Encoder, Friction, ModelError, Noise, Push, Sampling, Spring, VelocityFilter,
-    actuation, mechanics, model_error, sensing,
-};
+use crate::imperfections::kind::Kind;
+use crate::imperfections::{Imperfection, READERS};
 use crate::robot::Robot;
-
-/// An imperfection as data. Vectors have one entry per joint.
-#[derive(Clone, Debug)]
-pub enum Imperfection {
-    /// Positions come in counts: kind `encoder`.
-    Encoder(Encoder),
-    /// White noise on what is measured: kind `noise`.
-    Noise(Noise),
-    /// Sensors deliver less often than the law runs: kind `sampling`.
-    Sampling(Sampling),
-    /// Sensors deliver nothing for a while: kind `dropout`.
-    Dropout(Dropout),
-    /// Velocities are filtered differences of measured positions: kind `velocity-filter`.
-    VelocityFilter(VelocityFilter),
-    /// Torque arrives late: kind `delay`.
-    Delay(Delay),
-    /// The law misses some control instants: kind `deadline`.
-    Deadline(Deadline),
-    /// What the motor torque is multiplied by > 0: kind `torque-gain`.
-    TorqueGain(Vec<f64>),
-    /// Largest motor torque > 0 [N m]: kind `saturation`.
-    Saturation(Vec<f64>),
-    /// Largest rate of the motor torque > 0 [N m/s]: kind `torque-rate`.
-    TorqueRate(Vec<f64>),
-    /// Steps ≥ 0 that the motor torque comes in [N m]: kind `current-quantisation`.
-    CurrentQuantisation(Vec<f64>),
-    /// Coulomb and Stribeck friction: kind `friction`.
-    Friction(Friction),
-    /// What the springs do beside K ζ: kind `spring`.
-    Spring(Spring),
-    /// The simulated robot is another one than the law's: kind `model-error`.
-    ModelError(Box<ModelError>),
-    /// Torque from outside on the links: kind `push`.
-    Push(Push),
-}
-
-/// Links or motors.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
-    /// The links.
-    Link,
-    /// The motors.
-    Motor,
-}
-
-/// Which sides an imperfection is on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sides {
-    /// One of them.
-    One(Side),
-    /// Links and motors.
-    Both,
-}
-
-impl Sides {
-    /// Whether `side` is among them.
-    pub fn contain(self, side: Side) -> bool {
-        match self {
-            Self::One(one) => one == side,
-            Self::Both => true,
-        }
-    }
-}
-
-impl Side {
-    /// Links, motors.
-    pub const ALL: [Self; 2] = [Self::Link, Self::Motor];
-
-    /// The name in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Link => "link",
-            Self::Motor => "motor",
-        }
-    }
-}
-
-pub(crate) const SIDE: &[(&str, Side)] = &[("link", Side::Link), ("motor", Side::Motor)];
-
-pub(crate) const SIDES: &[(&str, Sides)] =
-    &[("link", Sides::One(Side::Link)), ("motor", Sides::One(Side::Motor)), ("both", Sides::Both)];
-
-impl Imperfection {
-    /// The name in files.
-    pub fn kind(&self) -> &'static str {
-        match self {
-            Self::Encoder(_) => "encoder",
-            Self::Noise(_) => "noise",
-            Self::Sampling(_) => "sampling",
-            Self::Dropout(_) => "dropout",
-            Self::VelocityFilter(_) => "velocity-filter",
-            Self::Delay(_) => "delay",
-            Self::Deadline(_) => "deadline",
-            Self::TorqueGain(_) => "torque-gain",
-            Self::Saturation(_) => "saturation",
-            Self::TorqueRate(_) => "torque-rate",
-            Self::CurrentQuantisation(_) => "current-quantisation",
-            Self::Friction(_) => "friction",
-            Self::Spring(_) => "spring",
-            Self::ModelError(_) => "model-error",
-            Self::Push(_) => "push",
-        }
-    }
-
-    /// Whether it is in sensors, computer or drives rather than in the mechanics: what makes the loop a sampled one.
-    pub fn is_of_devices(&self) -> bool {
-        !matches!(self, Self::Friction(_) | Self::Spring(_) | Self::ModelError(_) | Self::Push(_))
-    }
-}
 
 /// What readers of imperfections know of the rest of the scenario.
 #[derive(Clone, Copy)]
@@ -130,26 +20,33 @@ pub(crate) struct Context<'a> {
     pub base: &'a Base,
 }
 
-/// A kind of imperfection: its keys and its reader. One line adds one.
-type Reader = (&'static [&'static str], fn(&Table<'_>, &Context<'_>) -> Option<Imperfection>);
+impl Context<'_> {
+    /// What `table` has at `limit`, per joint, or the robot's limit, which stands under `key` in its file and must then be there.
+    pub fn limit(
+        &self,
+        table: &Table<'_>,
+        quantity: &Quantity,
+        (key, of): (&str, impl Fn(&Robot) -> Vec<f64>),
+    ) -> Option<Vec<f64>> {
+        if let Some(field) = table.get("limit") {
+            return field.per_joint(self.joints, quantity);
+        }
+        let robot = self.robot?;
+        let limit = of(robot);
+        if limit.iter().any(|limit| !limit.is_finite()) {
+            let message =
+                format!("missing key {}, and robot {} has no {key}", table.key("limit"), robot.name);
+            let hint =
+                format!("{}, per joint; or add {key} to [joints] of the robot file", quantity.described());
+            table.error("missing-key", message, hint);
+            return None;
+        }
+        Some(limit)
+    }
+}
 
-const KINDS: &[(&str, Reader)] = &[
-    ("encoder", (sensing::ENCODER, sensing::encoder)),
-    ("noise", (sensing::NOISE, sensing::noise)),
-    ("sampling", (sensing::SAMPLING, sensing::sampling)),
-    ("dropout", (sensing::DROPOUT, sensing::dropout)),
-    ("velocity-filter", (sensing::VELOCITY_FILTER, sensing::velocity_filter)),
-    ("delay", (actuation::DELAY, actuation::delay)),
-    ("deadline", (actuation::DEADLINE, actuation::deadline)),
-    ("torque-gain", (actuation::TORQUE_GAIN, actuation::torque_gain)),
-    ("saturation", (actuation::SATURATION, actuation::saturation)),
-    ("torque-rate", (actuation::TORQUE_RATE, actuation::torque_rate)),
-    ("current-quantisation", (actuation::CURRENT_QUANTISATION, actuation::current_quantisation)),
-    ("friction", (mechanics::FRICTION, mechanics::friction)),
-    ("spring", (mechanics::SPRING, mechanics::spring)),
-    ("model-error", (model_error::KEYS, model_error::read)),
-    ("push", (mechanics::PUSH, mechanics::push)),
-];
+/// Reads an entry, whose kind was read before.
+pub(crate) type Reader = fn(&Table<'_>, &Context<'_>) -> Option<Imperfection>;
 
 /// An imperfection with the entry that it was read from.
 pub(crate) struct Found<'a> {
@@ -167,8 +64,13 @@ pub(crate) fn read<'a>(root: &Table<'a>, context: &Context<'_>) -> Option<Vec<Fo
 
 fn one<'a>(field: Field<'a>, context: &Context<'_>) -> Option<Found<'a>> {
     let table = field.any_table()?;
-    let (known, reader) = table.choice("kind", KINDS)?;
-    table.refuse_unknown(known);
+    let reader = table.choice("kind", READERS)?;
     let what = reader(&table, context)?;
     Some(Found { field, table, what })
+}
+
+/// The data of an entry of kind `K`, which has no other keys than the kind's.
+pub(crate) fn entry<K: Kind>(table: &Table<'_>, context: &Context<'_>) -> Option<K> {
+    table.refuse_unknown(&[&["kind"], K::KEYS].concat());
+    K::read(table, context)
 }

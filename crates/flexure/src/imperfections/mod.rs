@@ -1,16 +1,61 @@
 //! Imperfections: what sensors, computers, drives and joints do that the ideal loop does not.
+//!
+//! A kind is a file with its documentation, keys, reader, strengths and effect, and a line in the list below. Everything else
+//! follows from the list; what a kind's file forgets does not compile.
 
-mod actuation;
-pub(crate) mod document;
-mod mechanics;
-mod model_error;
+#[macro_use]
 mod registry;
-mod sensing;
+
+pub(crate) mod document;
+mod effect;
+mod kind;
+#[cfg(test)]
+mod recipe;
+mod side;
 pub mod stages;
 
-pub use actuation::{Deadline, Delay};
-pub use document::{Imperfection, Side, Sides};
-pub use mechanics::{Friction, Push, PushShape, Spring, Stribeck};
-pub use model_error::{Factors, ModelError, Payload};
-pub use registry::{IMPERFECTIONS, actuator, sensors};
-pub use sensing::{Dropout, DropoutMode, Encoder, Noise, Outage, Sampling, VelocityFilter};
+use std::any::Any;
+
+use crate::files::Entry;
+use crate::imperfections::document::{Reader, entry};
+use crate::imperfections::effect::Effect;
+use crate::imperfections::kind::{Place, Setup};
+
+pub use effect::Effects;
+pub use kind::Strengths;
+pub(crate) use kind::{Kind, Overlap};
+pub use side::{Side, Sides};
+
+// In the order of things in a loop: sensors, what is made of them, computer, drives, joints, the world.
+imperfections! {
+    noise::Noise,
+    encoder::Encoder,
+    sampling::Sampling,
+    dropout::Dropout,
+    velocity_filter::VelocityFilter,
+    deadline::Deadline,
+    torque_gain::TorqueGain,
+    current_quantisation::CurrentQuantisation,
+    saturation::Saturation,
+    torque_rate::TorqueRate,
+    delay::Delay,
+    friction::Friction,
+    spring::Spring,
+    model_error::ModelError,
+    push::Push,
+    // The example of CONTRIBUTING.md.
+    #[cfg(test)]
+    current_loop::CurrentLoop,
+}
+
+impl Imperfection {
+    /// Whether it is in sensors, computer or drives rather than in the mechanics: what makes the loop a sampled one.
+    pub fn is_of_devices(&self) -> bool {
+        self.place() == Place::Devices
+    }
+
+    /// The data, if this is of kind `K`.
+    pub(crate) fn of<K: Kind>(&self) -> Option<&K> {
+        self.data().downcast_ref()
+    }
+}

@@ -5,14 +5,16 @@ use std::mem::discriminant;
 use crate::files::field::Field;
 use crate::files::table::Table;
 use crate::files::{quantity, suggest};
-use crate::imperfections::document::{Context, Imperfection};
+use crate::imperfections::document::Context;
+use crate::imperfections::effect::Effect;
+use crate::imperfections::kind::{Kind, Overlap, Place, Setup, Strengths};
 use crate::robot::{self, Robot};
 
 /// What the simulated robot is; the law keeps the scenario's.
 #[derive(Clone, Debug)]
 pub struct ModelError {
     /// Another robot of the same kind of links and joint count; none for the scenario's.
-    pub robot: Option<Robot>,
+    pub robot: Option<Box<Robot>>,
     /// What its numbers are multiplied by.
     pub factors: Factors,
     /// What it carries.
@@ -60,7 +62,7 @@ pub struct Payload {
 impl ModelError {
     /// The robot that is simulated where the law knows `robot`.
     pub fn apply(&self, robot: &Robot) -> Robot {
-        let mut plant = self.robot.as_ref().unwrap_or(robot).clone();
+        let mut plant = self.robot.as_deref().unwrap_or(robot).clone();
         for (values, factors) in [
             (&mut plant.stiffness, &self.factors.stiffness),
             (&mut plant.link_damping, &self.factors.link_damping),
@@ -81,37 +83,59 @@ impl ModelError {
     }
 }
 
-pub(crate) const KEYS: &[&str] =
-    &["kind", "robot", "mass", "stiffness", "link_damping", "motor_damping", "motor_inertia", "payload"];
-
 /// The keys that are factors.
 const FACTORS: [&str; 5] = ["mass", "stiffness", "link_damping", "motor_damping", "motor_inertia"];
 
-pub(crate) fn read(table: &Table<'_>, context: &Context<'_>) -> Option<Imperfection> {
-    if KEYS.iter().skip(1).all(|key| table.get(key).is_none()) {
-        let hint = "give robot = \"FILE\", factors (mass, stiffness, link_damping, motor_damping, motor_inertia) or payload";
-        table.error("missing-key", "model-error: nothing is given", hint);
-        return None;
-    }
-    let robot = table.optional("robot", |field| other_robot(field, context));
-    if let (Some(_), Some(field)) = (table.get("robot"), FACTORS.iter().find_map(|key| table.get(key))) {
-        let message = format!("{} is given, and another robot too", field.path);
-        field.error("contradiction", message, "give the robot's file with these numbers, or factors alone");
-    }
-    let [mass, stiffness, link_damping, motor_damping, motor_inertia] =
-        FACTORS.map(|key| match table.get(key) {
-            Some(field) => field.per_joint(context.joints, &quantity::FACTOR),
-            None => context.joints.count.map(|n| vec![1.0; n]),
-        });
-    let payload = table.optional("payload", |field| payload(field, context));
-    let factors = Factors {
-        mass: mass?,
-        stiffness: stiffness?,
-        link_damping: link_damping?,
-        motor_damping: motor_damping?,
-        motor_inertia: motor_inertia?,
+impl Kind for ModelError {
+    const NAME: &'static str = "model-error";
+    const SUMMARY: &'static str = "a simulated robot that is not the one of the law";
+    const KEYS: &'static [&'static str] =
+        &["robot", "mass", "stiffness", "link_damping", "motor_damping", "motor_inertia", "payload"];
+    const PLACE: Place = Place::Mechanics;
+    const STRENGTHS: Strengths = Strengths {
+        none: Some("stiffness = 1.0\nmass = 1.0\npayload = { mass = 0.0, position = [0.2, 0.0, 0.0] }"),
+        little: "stiffness = 0.95",
+        much: "stiffness = 0.7\npayload = { mass = 0.08, position = [0.2, 0.0, 0.0] }",
     };
-    Some(Imperfection::ModelError(Box::new(ModelError { robot: robot?, factors, payload: payload? })))
+
+    fn read(table: &Table<'_>, context: &Context<'_>) -> Option<Self> {
+        if Self::KEYS.iter().all(|key| table.get(key).is_none()) {
+            let hint = "give robot = \"FILE\", factors (mass, stiffness, link_damping, motor_damping, motor_inertia) or payload";
+            table.error("missing-key", "model-error: nothing is given", hint);
+            return None;
+        }
+        let robot = table.optional("robot", |field| other_robot(field, context).map(Box::new));
+        if let (Some(_), Some(field)) = (table.get("robot"), FACTORS.iter().find_map(|key| table.get(key))) {
+            let message = format!("{} is given, and another robot too", field.path);
+            field.error(
+                "contradiction",
+                message,
+                "give the robot's file with these numbers, or factors alone",
+            );
+        }
+        let [mass, stiffness, link_damping, motor_damping, motor_inertia] =
+            FACTORS.map(|key| match table.get(key) {
+                Some(field) => field.per_joint(context.joints, &quantity::FACTOR),
+                None => context.joints.count.map(|n| vec![1.0; n]),
+            });
+        let payload = table.optional("payload", |field| payload(field, context));
+        let factors = Factors {
+            mass: mass?,
+            stiffness: stiffness?,
+            link_damping: link_damping?,
+            motor_damping: motor_damping?,
+            motor_inertia: motor_inertia?,
+        };
+        Some(Self { robot: robot?, factors, payload: payload? })
+    }
+
+    fn overlap(&self, _: &Self) -> Option<Overlap> {
+        Some(Overlap::Whole)
+    }
+
+    fn effect(&self, _: Setup) -> Effect<'_> {
+        Effect::Robot(Box::new(|robot| self.apply(robot)))
+    }
 }
 
 /// The robot in another file, which must be of the same kind.

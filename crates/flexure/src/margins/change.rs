@@ -1,6 +1,6 @@
 //! A scenario with a little more of one imperfection.
 
-use crate::imperfections::{Delay, Factors, Imperfection, ModelError, Noise};
+use crate::imperfections::{Delay, Factors, Imperfection, ModelError, Noise, TorqueGain};
 use crate::scenario::Scenario;
 
 /// What is changed.
@@ -33,7 +33,7 @@ impl Change {
         let multiply = |values: &mut Vec<f64>, factor: f64| values.iter_mut().for_each(|x| *x *= factor);
         match (self, imperfection) {
             (Self::Delay(more), Imperfection::Delay(delay)) => delay.actuation += more,
-            (Self::TorqueGain(factor), Imperfection::TorqueGain(gain)) => multiply(gain, factor),
+            (Self::TorqueGain(factor), Imperfection::TorqueGain(gain)) => multiply(&mut gain.factor, factor),
             (Self::Stiffness(factor), Imperfection::ModelError(error)) => {
                 multiply(&mut error.factors.stiffness, factor);
             }
@@ -52,12 +52,12 @@ impl Change {
         let all = |x: f64| vec![x; joints];
         match self {
             Self::Delay(actuation) => Imperfection::Delay(Delay { computation: 0.0, actuation }),
-            Self::TorqueGain(factor) => Imperfection::TorqueGain(all(factor)),
-            Self::Stiffness(factor) => Imperfection::ModelError(Box::new(ModelError {
+            Self::TorqueGain(factor) => Imperfection::TorqueGain(TorqueGain { factor: all(factor) }),
+            Self::Stiffness(factor) => Imperfection::ModelError(ModelError {
                 robot: None,
                 factors: Factors { stiffness: all(factor), ..Factors::ones(joints) },
                 payload: None,
-            })),
+            }),
             Self::Noise(deviation) => Imperfection::Noise(Noise {
                 link: all(deviation),
                 motor: all(deviation),

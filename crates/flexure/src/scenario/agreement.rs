@@ -3,7 +3,10 @@
 use crate::estimators::{Encoders, Estimator};
 use crate::files::table::Table;
 use crate::imperfections::document::{Context, Found};
-use crate::imperfections::{Imperfection, Outage, Side};
+use crate::imperfections::{
+    Dropout, Encoder, Kind, Noise, Outage, Overlap, Sampling, Saturation, Side, Spring, TorqueRate,
+    VelocityFilter,
+};
 use crate::scenario::document::Hold;
 use crate::scenario::guard::GuardSettings;
 use crate::scenario::plant::Plant;
@@ -33,16 +36,26 @@ pub(crate) fn agree(real: &Loop<'_>) {
 }
 
 impl<'a> Loop<'a> {
-    fn first(&self, is: impl Fn(&Imperfection) -> bool) -> Option<&'a Found<'a>> {
-        self.found.iter().find(|found| is(&found.what))
+    /// The entries of kind `K` and what they say.
+    fn all<K: Kind>(&self) -> impl Iterator<Item = (&'a Found<'a>, &'a K)> {
+        self.found.iter().filter_map(|found| Some((found, found.what.of()?)))
+    }
+
+    /// The first of them.
+    fn first<K: Kind>(&self) -> Option<(&'a Found<'a>, &'a K)> {
+        self.all().next()
     }
 
     /// Each kind once, or once a side; what comes and goes as often as wanted.
     fn repeated(&self) {
         for (i, second) in self.found.iter().enumerate() {
             let mut earlier = self.found.iter().take(i);
-            let clash = earlier.find_map(|first| Some((first, collision(&first.what, &second.what)?)));
-            let Some((first, what)) = clash else { continue };
+            let clash = earlier.find_map(|first| Some((first, second.what.overlap(&first.what)?)));
+            let Some((first, overlap)) = clash else { continue };
+            let what = match overlap {
+                Overlap::Whole => String::new(),
+                Overlap::On(side) => format!(" on the {} side", side.name()),
+            };
             let kind = second.what.kind();
             let message = format!("a second {kind}{what}; the first is in line {}", first.field.line());
             second.field.error(
@@ -58,8 +71,8 @@ impl<'a> Loop<'a> {
         if self.hold != Hold::Continuous {
             return;
         }
-        let device =
-            self.first(Imperfection::is_of_devices).map(|found| (found.field.clone(), found.what.kind()));
+        let device = self.found.iter().find(|found| found.what.is_of_devices());
+        let device = device.map(|found| (found.field.clone(), found.what.kind()));
         let tables = ["estimator", "disturbance_observer", "guard"];
         let table = tables.iter().find_map(|&key| Some((self.root.get(key)?, key)));
         if let (Some((field, what)), Some(hold)) = (device.or(table), self.root.get("hold")) {
@@ -77,7 +90,7 @@ impl<'a> Loop<'a> {
 
     /// One source of velocities; what is measured of them is used.
     fn velocities(&self) {
-        let filter = self.first(|what| matches!(what, Imperfection::VelocityFilter(_)));
+        let filter = self.first::<VelocityFilter>().map(|(filter, _)| filter);
         let estimator = self.root.get("estimator");
         if let (Some(filter), Some(estimator)) = (filter, &estimator) {
             let message =
@@ -88,37 +101,31 @@ impl<'a> Loop<'a> {
             (Some(filter), _) => Some(&filter.field),
             (_, estimator) => estimator.as_ref(),
         };
-        for found in self.found {
-            match (&found.what, source) {
-                (Imperfection::Noise(noise), Some(source))
-                    if noise.link_velocity.iter().chain(&noise.motor_velocity).any(|&x| x != 0.0) =>
-                {
-                    let message = format!(
-                        "noise on velocities, but they are computed from positions, as line {} says",
-                        source.line()
-                    );
-                    found.field.error("contradiction", message, "remove link_velocity and motor_velocity");
-                }
-                (Imperfection::Encoder(_), None) => found.field.warn(
+        let Some(source) = source else {
+            for (found, Encoder { .. }) in self.all() {
+                found.field.warn(
                     "exact-velocity",
                     "encoder, but velocities stay exact",
                     "add [[imperfection]] kind = \"velocity-filter\", or [estimator]",
-                ),
-                _ => {}
+                );
+            }
+            return;
+        };
+        for (found, Noise { link_velocity, motor_velocity, .. }) in self.all() {
+            if link_velocity.iter().chain(motor_velocity).any(|&x| x != 0.0) {
+                let message = format!(
+                    "noise on velocities, but they are computed from positions, as line {} says",
+                    source.line()
+                );
+                found.field.error("contradiction", message, "remove link_velocity and motor_velocity");
             }
         }
     }
 
     /// What is needed is measured.
     fn placement(&self) {
-        let encoders = || {
-            self.found.iter().filter_map(|found| match &found.what {
-                Imperfection::Encoder(encoder) => Some((found, encoder)),
-                _ => None,
-            })
-        };
-        let Some((entry, _)) = encoders().next() else { return };
-        let placed = |side| encoders().any(|(_, encoder)| encoder.resolution(side).is_some());
+        let Some((entry, Encoder { .. })) = self.first() else { return };
+        let placed = |side| self.all().any(|(_, encoder): (_, &Encoder)| encoder.resolution(side).is_some());
         let (need, hint): (&[Side], _) = match self.estimator {
             Some(Estimator::Observer { encoders: Encoders::Motor, .. }) => {
                 (&[Side::Motor], "add an encoder with placement = \"motor\"")
@@ -130,12 +137,9 @@ impl<'a> Loop<'a> {
             ),
         };
         if let Some(missing) = need.iter().find(|&&side| !placed(side)) {
-            let who = match (
-                self.root.get("estimator"),
-                self.first(|what| matches!(what, Imperfection::VelocityFilter(_))),
-            ) {
+            let who = match (self.root.get("estimator"), self.first::<VelocityFilter>()) {
                 (Some(field), _) => format!("[estimator] in line {}", field.line()),
-                (_, Some(filter)) => format!("velocity-filter in line {}", filter.field.line()),
+                (_, Some((filter, _))) => format!("velocity-filter in line {}", filter.field.line()),
                 _ => "the law without [estimator]".to_owned(),
             };
             let message = format!("no encoder on the {} side, but {who} needs one", missing.name());
@@ -162,7 +166,7 @@ impl<'a> Loop<'a> {
 
     /// One place for the hardening of springs.
     fn hardening(&self) {
-        let Some(spring) = self.first(|what| matches!(what, Imperfection::Spring(_))) else { return };
+        let Some((spring, Spring { .. })) = self.first() else { return };
         if let (Some(own), Some(field), true) = (
             spring.table.get("hardening"),
             self.root.get("plant").and_then(|plant| plant.any_table()?.get("spring_hardening")),
@@ -180,16 +184,10 @@ impl<'a> Loop<'a> {
 
     /// Limits that do not undo each other.
     fn limits(&self) {
-        let saturation = self.found.iter().find_map(|found| match &found.what {
-            Imperfection::Saturation(limit) => Some((found, limit)),
-            _ => None,
-        });
+        let saturation = self.first().map(|(found, Saturation { limit })| (found, limit));
         let torque =
             saturation.map(|(_, limit)| limit).or(self.context.robot.map(|robot| &robot.limits.torque));
-        let rates = self.found.iter().find_map(|found| match &found.what {
-            Imperfection::TorqueRate(rate) => Some((found, rate)),
-            _ => None,
-        });
+        let rates = self.first().map(|(found, TorqueRate { limit })| (found, limit));
         if let Some(guard) = self.guard {
             self.keeps_to(("torque_limit", "N m"), &guard.torque_limit, saturation);
             // A guard need not know of rates at all.
@@ -229,11 +227,9 @@ impl<'a> Loop<'a> {
     /// A guard must not take for dead what is only slow.
     fn ages(&self) {
         let Some(guard) = self.guard else { return };
-        for found in self.found {
-            if let Imperfection::Sampling(sampling) = &found.what
-                && sampling.periods - 1 > guard.max_age
-            {
-                let needed = sampling.periods - 1;
+        for (found, Sampling { periods, .. }) in self.all() {
+            let needed = periods - 1;
+            if needed > guard.max_age {
                 let message = format!(
                     "readings become {needed} control periods old, guard.max_age is {}",
                     guard.max_age
@@ -252,36 +248,14 @@ impl<'a> Loop<'a> {
         if self.guard.is_some() {
             return;
         }
-        if let Some(found) = self.first(|what| {
-            matches!(what, Imperfection::Dropout(dropout)
-            if !matches!(dropout.outage, Outage::Random { probability, .. } if probability == 0.0))
-        }) {
+        let fails = |(_, dropout): &(_, &Dropout)| !matches!(dropout.outage, Outage::Random { probability, .. } if probability == 0.0);
+        if let Some((found, _)) = self.all().find(fails) {
             found.field.warn(
                 "unguarded",
                 "dropout, but there is no guard: the law goes on with what it reads",
                 "add [guard] with stop_damping",
             );
         }
-    }
-}
-
-/// Where the entries are about the same thing, in words, if they are.
-fn collision(first: &Imperfection, second: &Imperfection) -> Option<String> {
-    let sides = |meet: &dyn Fn(Side) -> bool| {
-        Side::ALL.into_iter().find(|&side| meet(side)).map(|side| format!(" on the {} side", side.name()))
-    };
-    match (first, second) {
-        (Imperfection::Push(_) | Imperfection::Dropout(_), _) => None,
-        (Imperfection::Encoder(a), Imperfection::Encoder(b)) => {
-            sides(&|side| a.resolution(side).is_some() && b.resolution(side).is_some())
-        }
-        (Imperfection::Sampling(a), Imperfection::Sampling(b)) => {
-            sides(&|side| a.sides.contain(side) && b.sides.contain(side))
-        }
-        (Imperfection::Friction(a), Imperfection::Friction(b)) => {
-            sides(&|side| a.side == side && b.side == side)
-        }
-        (a, b) => (a.kind() == b.kind()).then(String::new),
     }
 }
 

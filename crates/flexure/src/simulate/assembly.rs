@@ -7,9 +7,9 @@ use flexure_core::model::{Fjr, Links, Motion, RotorCoupling};
 use flexure_core::reference::Reference;
 
 use crate::estimators::{AnyEstimator, estimator};
-use crate::imperfections::{self, Imperfection, PushShape, Side, actuator, sensors};
+use crate::imperfections::{Effects, Imperfection, Saturation};
 use crate::laws::AnyLaw;
-use crate::plant::{Friction, Hysteresis, Plant, Push, Shape};
+use crate::plant::{Plant, Push};
 use crate::robot::{Robot, padded, vector};
 use crate::scenario::{self, Scenario};
 use crate::simulate::controller::{Compensation, Controller, Feedback, Guarded};
@@ -58,13 +58,15 @@ pub(crate) fn initial<const N: usize>(scenario: &Scenario) -> Motion<f64, N> {
     }
 }
 
+/// What the imperfections of the scenario do.
+fn effects(scenario: &Scenario) -> Effects<'_> {
+    let Scenario { imperfections, robot, control_period, seed, .. } = scenario;
+    Effects::of(imperfections, robot.joint_count(), *control_period, *seed)
+}
+
 /// The robot that is simulated: the scenario's, but for its model errors.
 pub(crate) fn simulated(scenario: &Scenario) -> Robot {
-    let error = scenario.imperfections.iter().find_map(|imperfection| match imperfection {
-        Imperfection::ModelError(error) => Some(error),
-        _ => None,
-    });
-    error.map_or_else(|| scenario.robot.clone(), |error| error.apply(&scenario.robot))
+    effects(scenario).simulated(&scenario.robot)
 }
 
 /// The simulated robot with what the law does not know of its joints.
@@ -77,58 +79,13 @@ pub(crate) fn plant<L, const N: usize>(scenario: &Scenario, robot: Fjr<f64, L, N
             .map(|gears| RotorCoupling::new(&robot.motor_inertia, &padded(gears, 1.0))),
         ..Plant::from(robot)
     };
-    for imperfection in &scenario.imperfections {
-        match imperfection {
-            Imperfection::Friction(friction) => {
-                let side = match friction.side {
-                    Side::Link => &mut plant.link_friction,
-                    Side::Motor => &mut plant.motor_friction,
-                };
-                *side = dry(friction);
-            }
-            Imperfection::TorqueGain(factor) => plant.torque_gain = padded(factor, 1.0),
-            Imperfection::Spring(spring) => {
-                plant.spring_hardening += vector(&spring.hardening);
-                // The file gives it to either side.
-                plant.spring_gap = vector(&spring.dead_zone).scaled(2.0);
-                plant.hysteresis = Hysteresis {
-                    stiffness: vector(&spring.hysteresis_stiffness),
-                    yield_torque: vector(&spring.hysteresis_torque),
-                };
-            }
-            _ => {}
-        }
-    }
+    effects(scenario).depart(&mut plant);
     plant
-}
-
-fn dry<const N: usize>(friction: &imperfections::Friction) -> Friction<N> {
-    let coulomb = vector(&friction.coulomb);
-    match &friction.stribeck {
-        None => Friction::coulomb(coulomb),
-        Some(stribeck) => Friction {
-            coulomb,
-            stiction: vector(&stribeck.breakaway),
-            stribeck_velocity: vector(&stribeck.velocity),
-        },
-    }
 }
 
 /// What pushes the links.
 pub(crate) fn pushes<const N: usize>(scenario: &Scenario) -> Vec<Push<N>> {
-    let push = |imperfection: &Imperfection| match imperfection {
-        Imperfection::Push(push) => Some(Push {
-            torque: vector(&push.torque),
-            from: push.from,
-            duration: push.duration,
-            shape: match push.shape {
-                PushShape::Rectangle => Shape::Rectangle,
-                PushShape::HalfSine => Shape::HalfSine,
-            },
-        }),
-        _ => None,
-    };
-    scenario.imperfections.iter().filter_map(push).collect()
+    effects(scenario).pushes()
 }
 
 /// The law with everything between it and the robot, started at `x` with the springs holding the links.
@@ -144,19 +101,21 @@ where
     R: Reference<f64, N>,
     F: Feedback<L, N>,
 {
-    let Scenario { imperfections, seed, control_period: period, .. } = scenario;
+    let Effects { sensors, mut actuator, velocities, .. } = effects(scenario);
+    let period = scenario.control_period;
     // Until the first command arrives the motors are held where they are.
     let before = robot.spring_torque(&x.q_l, &x.q_m);
     let mut controller = Controller::new(robot, reference, law);
-    controller.sensors = sensors(imperfections, *seed);
-    controller.actuator = actuator(imperfections, *seed, *period, before);
-    controller.estimator = estimator(scenario.estimator.as_ref(), imperfections, *period);
+    actuator.start(&before);
+    controller.sensors = sensors;
+    controller.actuator = actuator;
+    controller.estimator = estimator(scenario.estimator.as_ref(), velocities, period);
     controller.disturbance = scenario.disturbance_observer.as_ref().map(|settings| Compensation {
-        observer: DisturbanceObserver::new(&padded(&settings.bandwidth, 1.0), *period)
+        observer: DisturbanceObserver::new(&padded(&settings.bandwidth, 1.0), period)
             .expect("bandwidths are above 0"),
         compensate: settings.compensate,
     });
-    controller.guard = scenario.guard.as_ref().map(|settings| guard(settings, *period, before));
+    controller.guard = scenario.guard.as_ref().map(|settings| guard(settings, period, before));
     controller.start(x, before);
     controller
 }
@@ -185,10 +144,8 @@ fn guard<const N: usize>(
 pub(crate) fn torque_limit(scenario: &Scenario) -> Vec<f64> {
     let robot = &scenario.robot.limits.torque;
     let guard = scenario.guard.as_ref().map(|guard| &guard.torque_limit);
-    let drive = scenario.imperfections.iter().find_map(|imperfection| match imperfection {
-        Imperfection::Saturation(limit) => Some(limit),
-        _ => None,
-    });
+    let mut drives = scenario.imperfections.iter().filter_map(|imperfection| imperfection.of::<Saturation>());
+    let drive = drives.next().map(|saturation| &saturation.limit);
     let known = [Some(robot), guard, drive];
     let least = |i: usize| known.iter().flatten().fold(f64::INFINITY, |least, limit| least.min(limit[i]));
     (0..robot.len()).map(least).collect()

@@ -21,7 +21,7 @@ pub struct Controller<L, R, F, E, const N: usize> {
     /// The law.
     pub law: F,
     /// From motion to readings.
-    pub sensors: Sensors<N>,
+    pub sensors: Sensors,
     /// From readings to motion; without one the law sees the readings, velocities included.
     pub estimator: Option<E>,
     /// Torque that the model does not explain.
@@ -29,7 +29,7 @@ pub struct Controller<L, R, F, E, const N: usize> {
     /// Limits and safe stops.
     pub guard: Option<Guarded<N>>,
     /// From command to torque.
-    pub actuator: Actuator<N>,
+    pub actuator: Actuator,
     pub(crate) state: State<N>,
 }
 

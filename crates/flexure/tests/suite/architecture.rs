@@ -148,12 +148,16 @@ fn sizes_are_chosen_in_few_places() {
         .map(|(file, _)| file)
         .collect();
     assert!(users.len() <= 7, "{users:?}");
-    assert!(users.iter().all(|file| ["robot", "feasible", "simulate", "prove"].contains(&room(file))), "{users:?}");
+    assert!(
+        users.iter().all(|file| ["robot", "feasible", "simulate", "prove"].contains(&room(file))),
+        "{users:?}"
+    );
 }
 
 #[test]
 fn the_reader_of_imports_reads() {
-    let text = "use crate::a::{B, c::{D, e as f}, g};\n// crate::z::no\nlet x = crate::h::i(1);\nuse std::fmt;";
+    let text =
+        "use crate::a::{B, c::{D, e as f}, g};\n// crate::z::no\nlet x = crate::h::i(1);\nuse std::fmt;";
     let found: Vec<_> = named(text).into_iter().collect();
     assert_eq!(found, ["a::B", "a::c::D", "a::c::e", "a::g", "h::i"]);
     assert_eq!(complaints("robot/mod.rs", "use crate::simulate::Loop;").len(), 1);

@@ -9,8 +9,9 @@ use flexure::estimators::{Encoders, Estimator};
 use flexure::files::{Problem, Problems};
 use flexure::imperfections::IMPERFECTIONS;
 use flexure::imperfections::{
-    Deadline, DropoutMode, Imperfection, ModelError, Outage, PushShape, Side, Sides, VelocityFilter,
+    Deadline, DropoutMode, Imperfection, ModelError, Outage, Side, Sides, VelocityFilter,
 };
+use flexure::plant::Shape;
 use flexure::robot::load_robot;
 use flexure::robot::{Links, Robot};
 use flexure::scenario::{Scenario, scenario_from_text};
@@ -200,9 +201,9 @@ fn everything_is_read() {
     assert!((delay.total() - 7e-4).abs() < 1e-18);
     assert!(matches!(deadline, Imperfection::Deadline(Deadline::Every(100))));
     // From the robot.
-    assert!(matches!(limit, Imperfection::Saturation(limit) if *limit == [8.39, 1.67]));
-    assert!(matches!(rate, Imperfection::TorqueRate(rate) if *rate == [4000.0, 800.0]));
-    assert!(matches!(step, Imperfection::CurrentQuantisation(step) if *step == [0.01, 0.01]));
+    assert!(matches!(limit, Imperfection::Saturation(drive) if drive.limit == [8.39, 1.67]));
+    assert!(matches!(rate, Imperfection::TorqueRate(drive) if drive.limit == [4000.0, 800.0]));
+    assert!(matches!(step, Imperfection::CurrentQuantisation(drive) if drive.step == [0.01, 0.01]));
     let Imperfection::Friction(friction) = friction else { panic!() };
     let stribeck = friction.stribeck.as_ref().unwrap();
     assert_eq!((friction.side, friction.coulomb.as_slice()), (Side::Motor, &[0.2, 0.05][..]));
@@ -217,7 +218,7 @@ fn everything_is_read() {
         matches!(model, Imperfection::ModelError(model) if model.payload.is_some() && model.robot.is_none())
     );
     let Imperfection::Push(push) = push else { panic!() };
-    assert_eq!((push.torque[1], push.from, push.duration, push.shape), (-0.5, 1.0, 0.1, PushShape::HalfSine));
+    assert_eq!((push.torque[1], push.from, push.duration, push.shape), (-0.5, 1.0, 0.1, Shape::HalfSine));
     let Some(Estimator::Observer { encoders: Encoders::Both, bandwidth }) = scenario.estimator else {
         panic!()
     };

@@ -1,32 +1,47 @@
 //! Readings that are kept while no new ones come.
 
-use flexure_core::linalg::Vector;
+use flexure_core::memory::{Memory, Port};
 
-use crate::imperfections::stages::Measured;
+use crate::imperfections::stages::Readings;
 
 /// The last readings of one side.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Held<const N: usize> {
-    readings: [Vector<f64, N>; 2],
+#[derive(Clone, Debug)]
+pub(crate) struct Held {
+    position: Vec<f64>,
+    velocity: Vec<f64>,
     age: u32,
 }
 
-impl<const N: usize> Held<N> {
-    /// Before anything came.
-    pub const NOTHING: Self = Self { readings: [Vector([f64::NAN; N]); 2], age: 0 };
+impl Held {
+    /// Before anything came of so many `joints`.
+    pub fn nothing(joints: usize) -> Self {
+        let nothing = vec![f64::NAN; joints];
+        Self { position: nothing.clone(), velocity: nothing, age: 0 }
+    }
 
     /// Keeps what is read of `side`.
-    pub fn keep(&mut self, measured: &mut Measured<N>, side: usize) {
-        self.readings = measured.reading(side).map(|reading| *reading);
-        self.age = measured.age[side];
+    pub fn keep(&mut self, readings: &Readings<'_>, side: usize) {
+        let [position, velocity] = &readings.of[side];
+        self.position.copy_from_slice(position);
+        self.velocity.copy_from_slice(velocity);
+        self.age = readings.age[side];
     }
 
     /// Gives what was kept instead of what is read of `side`, a control period older than last time.
-    pub fn give(&mut self, measured: &mut Measured<N>, side: usize) {
+    pub fn give(&mut self, readings: &mut Readings<'_>, side: usize) {
         self.age = self.age.saturating_add(1);
-        measured.age[side] = self.age;
-        for (reading, kept) in measured.reading(side).into_iter().zip(self.readings) {
-            *reading = kept;
-        }
+        readings.age[side] = self.age;
+        let [position, velocity] = &mut readings.of[side];
+        position.copy_from_slice(&self.position);
+        velocity.copy_from_slice(&self.velocity);
+    }
+}
+
+/// `position` in rad, `velocity` [rad/s], `age` in control periods.
+impl Memory<f64> for Held {
+    fn memory(&mut self, port: &mut dyn Port<f64>) {
+        port.joints("position", "rad", &mut self.position);
+        port.joints("velocity", "rad/s", &mut self.velocity);
+        port.word("age", &mut self.age);
     }
 }

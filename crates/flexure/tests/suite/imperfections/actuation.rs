@@ -1,11 +1,10 @@
 //! Drives in numbers.
 
 use flexure::core::linalg::Vector;
-use flexure::imperfections::actuator;
 use flexure::imperfections::stages::Tick;
-use flexure::imperfections::{Deadline, Delay, Imperfection};
+use flexure::imperfections::{CurrentQuantisation, Deadline, Delay, Imperfection, Saturation, TorqueRate};
 
-use super::{PERIOD, driven, mean, torque, torques};
+use super::{PERIOD, actuator, driven, mean, torque, torques};
 
 /// A step of the command at the control instant 10, of 1 and −2 N m.
 fn step(t: f64) -> Vector<f64, 2> {
@@ -14,6 +13,18 @@ fn step(t: f64) -> Vector<f64, 2> {
 
 fn delay(computation: f64, actuation: f64) -> Imperfection {
     Imperfection::Delay(Delay { computation, actuation })
+}
+
+fn rate(limit: Vec<f64>) -> Imperfection {
+    Imperfection::TorqueRate(TorqueRate { limit })
+}
+
+fn saturation(limit: Vec<f64>) -> Imperfection {
+    Imperfection::Saturation(Saturation { limit })
+}
+
+fn steps(step: Vec<f64>) -> Imperfection {
+    Imperfection::CurrentQuantisation(CurrentQuantisation { step })
 }
 
 /// A step acts exactly `delay` later, whatever part of a control period that is.
@@ -81,8 +92,8 @@ fn whole_delays_are_whole() {
 #[test]
 fn the_torque_before_goes_on() {
     let before = Vector([5.0, -3.0]);
-    let stages = [delay(0.0, 1.5e-3), Imperfection::TorqueRate(vec![1000.0; 2])];
-    let mut late = actuator::<2>(&stages, 0, PERIOD, before);
+    let stages = [delay(0.0, 1.5e-3), rate(vec![1000.0; 2])];
+    let mut late = actuator(&stages, 0, before);
     let given: Vec<_> = (0..4).map(|k| late.actuate(&Tick::new(k, PERIOD), Vector::ZERO)).collect();
     assert_eq!(given[0].last(), before);
     assert_eq!(given[1].iter().next().unwrap().1, before);
@@ -94,7 +105,7 @@ fn the_torque_before_goes_on() {
 /// 1 N m at 250 N m/s takes four control periods of 1 ms, 2 N m eight.
 #[test]
 fn torque_rises_in_so_many_periods() {
-    let rise: Vec<_> = driven(&[Imperfection::TorqueRate(vec![250.0; 2])], 0, 30, step)
+    let rise: Vec<_> = driven(&[rate(vec![250.0; 2])], 0, 30, step)
         .iter()
         .map(flexure::imperfections::stages::Pieces::last)
         .collect();
@@ -103,7 +114,7 @@ fn torque_rises_in_so_many_periods() {
         assert_eq!(*u, Vector([(0.25 * periods).min(1.0), -(0.25 * periods).min(2.0)]), "{k}");
     }
     // No two torques of a wild command are farther apart.
-    let wild = torques(&[Imperfection::TorqueRate(vec![20.0, 35.0])], 0, 2000);
+    let wild = torques(&[rate(vec![20.0, 35.0])], 0, 2000);
     for pair in wild.windows(2) {
         let change = pair[1].last() - pair[0].last();
         assert!(change[0].abs() <= 0.02 * (1.0 + 1e-12) && change[1].abs() <= 0.035 * (1.0 + 1e-12));
@@ -112,7 +123,7 @@ fn torque_rises_in_so_many_periods() {
 
 #[test]
 fn saturation_cuts_and_nothing_else() {
-    for (k, pieces) in torques(&[Imperfection::Saturation(vec![1.5, 0.5])], 0, 2000).iter().enumerate() {
+    for (k, pieces) in torques(&[saturation(vec![1.5, 0.5])], 0, 2000).iter().enumerate() {
         let u = torque(k as f64 * PERIOD);
         assert_eq!(pieces.last(), Vector([u[0].clamp(-1.5, 1.5), u[1].clamp(-0.5, 0.5)]));
     }
@@ -121,7 +132,7 @@ fn saturation_cuts_and_nothing_else() {
 /// Steps of 0.3 N m: whole ones, the nearest, with errors of deviation 0.3/√12 N m.
 #[test]
 fn current_comes_in_steps() {
-    let given = torques(&[Imperfection::CurrentQuantisation(vec![0.3; 2])], 0, 20_000);
+    let given = torques(&[steps(vec![0.3; 2])], 0, 20_000);
     let errors: Vec<f64> =
         given.iter().enumerate().map(|(k, pieces)| pieces.last()[0] - torque(k as f64 * PERIOD)[0]).collect();
     assert!(errors.iter().all(|error| error.abs() <= 0.15 + 1e-12));
@@ -158,16 +169,11 @@ fn deadlines_are_missed_with_their_probability() {
 #[test]
 fn stages_are_in_physical_order() {
     let limit = 1.0;
-    let stages = [
-        Imperfection::TorqueRate(vec![1e4; 2]),
-        Imperfection::Saturation(vec![limit; 2]),
-        Imperfection::CurrentQuantisation(vec![0.3; 2]),
-        delay(4e-4, 0.0),
-    ];
+    let stages = [rate(vec![1e4; 2]), saturation(vec![limit; 2]), steps(vec![0.3; 2]), delay(4e-4, 0.0)];
     let given = torques(&stages, 0, 1000);
     let peak = given.iter().flat_map(|p| p.iter().map(|(_, u)| u[0])).fold(0.0, f64::max);
     assert!((peak - limit).abs() < 1e-15, "not the multiple of 0.3 below the limit: {peak}");
-    let mut drive = actuator::<2>(&stages[..2], 0, PERIOD, Vector::ZERO);
+    let mut drive = actuator(&stages[..2], 0, Vector::ZERO);
     let nan = drive.actuate(&Tick::new(0, PERIOD), Vector([f64::NAN, 1.0]));
     assert!(nan.last()[0].is_nan(), "the drive invents nothing");
     assert_eq!(drive.actuate(&Tick::new(1, PERIOD), Vector([0.5, 1.0])).last(), Vector([0.5, 1.0]));

@@ -2,21 +2,20 @@
 //! random numbers of its own.
 
 use flexure::core::linalg::Vector;
+use flexure::core::memory::{Memory, Port};
 use flexure::core::model::Motion;
-use flexure::imperfections::IMPERFECTIONS;
-use flexure::imperfections::stages::Measured;
-use flexure::imperfections::stages::{Pieces, Random};
+use flexure::imperfections::stages::{Measured, Pieces, Random, Tick};
 use flexure::imperfections::{
-    Deadline, Delay, Dropout, DropoutMode, Encoder, Imperfection, Noise, Outage, Sampling, Side, Sides,
+    Dropout, DropoutMode, Effects, Encoder, IMPERFECTIONS, Imperfection, Noise, Outage, STRENGTHS, Side,
+    Sides,
 };
 
-use super::{PERIOD, mean, motion, positions, readings, torque, torques};
+use super::{PERIOD, mean, motion, positions, readings, registered, sensors, torque, torques};
 
-/// An imperfection of strength none (0), little (1) or much (2).
+/// An imperfection of strength none (0), if it has that, little (1) or much (2).
 struct Graded {
     name: &'static str,
-    at: fn(usize) -> Imperfection,
-    is_random: bool,
+    at: [Option<Imperfection>; 3],
 }
 
 fn noise(deviation: f64) -> Imperfection {
@@ -34,50 +33,14 @@ fn dropout(probability: f64) -> Imperfection {
     Imperfection::Dropout(Dropout { sides: Sides::Both, mode: DropoutMode::Hold, outage })
 }
 
-const SENSING: &[Graded] = &[
-    Graded { name: "noise", at: |i| noise([0.0, 1e-3, 1e-2][i]), is_random: true },
-    Graded { name: "encoder", at: |i| encoder([0.0, 1e-3, 1e-2][i], false), is_random: false },
-    Graded { name: "encoder", at: |i| encoder([0.0, 1e-3, 1e-2][i], true), is_random: true },
-    Graded {
-        name: "sampling",
-        at: |i| Imperfection::Sampling(Sampling { sides: Sides::Both, periods: [1, 3, 10][i] }),
-        is_random: false,
-    },
-    Graded { name: "dropout", at: |i| dropout([0.0, 0.01, 0.2][i]), is_random: true },
-];
-
-const ACTUATION: &[Graded] = &[
-    Graded {
-        name: "deadline",
-        at: |i| Imperfection::Deadline(Deadline::Random { probability: [0.0, 0.05, 0.5][i] }),
-        is_random: true,
-    },
-    Graded {
-        name: "current-quantisation",
-        at: |i| Imperfection::CurrentQuantisation(vec![[0.0, 0.05, 0.5][i]; 2]),
-        is_random: false,
-    },
-    Graded {
-        name: "saturation",
-        at: |i| Imperfection::Saturation(vec![[f64::INFINITY, 1.9, 1.0][i]; 2]),
-        is_random: false,
-    },
-    Graded {
-        name: "torque-rate",
-        at: |i| Imperfection::TorqueRate(vec![[f64::INFINITY, 50.0, 20.0][i]; 2]),
-        is_random: false,
-    },
-    Graded {
-        name: "delay",
-        at: |i| {
-            Imperfection::Delay(Delay { computation: [0.0, 4e-4, 4e-4][i], actuation: [0.0, 0.0, 2.3e-3][i] })
-        },
-        is_random: false,
-    },
-];
-
-/// Those that are not between law and robot, or are made of something else that has tests of its own.
-const ELSEWHERE: &[&str] = &["velocity-filter", "torque-gain", "friction", "spring", "model-error", "push"];
+/// Every registered kind, and encoders of one sort each.
+fn all() -> Vec<Graded> {
+    let encoders = [false, true].map(|dither| {
+        let at = [0.0, 1e-3, 1e-2].map(|resolution| Some(encoder(resolution, dither)));
+        Graded { name: "encoder", at }
+    });
+    registered().map(|(name, at)| Graded { name, at }).chain(encoders).collect()
+}
 
 const COUNT: u64 = 2000;
 
@@ -114,32 +77,43 @@ fn misery(torques: &[Pieces<2>]) -> f64 {
     }))
 }
 
-#[test]
-fn every_registered_one_is_here_or_has_tests_of_its_own() {
-    let here = SENSING.iter().chain(ACTUATION).map(|graded| graded.name);
-    for graded in SENSING.iter().chain(ACTUATION) {
-        assert_eq!((graded.at)(1).kind(), graded.name);
+/// How many streams of random numbers something draws from.
+fn streams(of: &mut dyn Memory<f64>) -> usize {
+    struct Streams(usize);
+    impl Port<f64> for Streams {
+        fn numbers(&mut self, _: &'static str, _: &'static str, _: &mut [f64]) {}
+        fn joints(&mut self, _: &'static str, _: &'static str, _: &mut [f64]) {}
+        fn word(&mut self, _: &'static str, _: &mut u32) {}
+        fn flag(&mut self, _: &'static str, _: &mut bool) {}
+        fn enter(&mut self, name: &'static str) {
+            self.0 += usize::from(name == "random");
+        }
     }
-    let mut known: Vec<_> = here.chain(ELSEWHERE.iter().copied()).collect();
-    known.sort_unstable();
-    known.dedup();
-    let mut registered: Vec<_> = IMPERFECTIONS.iter().map(|entry| entry.name).collect();
-    registered.sort_unstable();
-    assert_eq!(known, registered);
+    let mut streams = Streams(0);
+    of.memory(&mut streams);
+    streams.0
+}
+
+#[test]
+fn strengths_are_of_their_kind() {
+    for (name, at) in registered() {
+        assert!(at.iter().flatten().all(|imperfection| imperfection.kind() == name), "{name}");
+    }
+    assert!(STRENGTHS.iter().map(|(kind, _)| kind).eq(IMPERFECTIONS.iter().map(|entry| &entry.name)));
 }
 
 #[test]
 fn at_zero_strength_no_bit_changes() {
-    for Graded { name, at, .. } in SENSING {
-        let read = readings(&[at(0)], 7, COUNT);
+    let nothing = (sensed_bits(&readings(&[], 7, COUNT)), torque_bits(&torques(&[], 7, COUNT)));
+    for Graded { name, at: [none, ..] } in all() {
+        let Some(none) = none.map(|none| [none]) else { continue };
+        let read = readings(&none, 7, COUNT);
         assert!(read.iter().all(|measured| measured.age == [0; 2] && measured.placed == [true; 2]));
-        assert_eq!(sensed_bits(&read), sensed_bits(&readings(&[], 7, COUNT)), "{name}");
+        assert_eq!((sensed_bits(&read), torque_bits(&torques(&none, 7, COUNT))), nothing, "{name}");
     }
-    for Graded { name, at, .. } in ACTUATION {
-        assert_eq!(torque_bits(&torques(&[at(0)], 7, COUNT)), torque_bits(&torques(&[], 7, COUNT)), "{name}");
-    }
-    let all: Vec<_> = SENSING.iter().map(|graded| (graded.at)(0)).collect();
-    assert_eq!(sensed_bits(&readings(&all, 7, COUNT)), sensed_bits(&readings(&[], 7, COUNT)));
+    let together: Vec<_> = all().into_iter().filter_map(|Graded { at: [none, ..], .. }| none).collect();
+    assert_eq!(sensed_bits(&readings(&together, 7, COUNT)), nothing.0);
+    assert_eq!(torque_bits(&torques(&together, 7, COUNT)), nothing.1);
     let exact = motion(5.0 * PERIOD);
     assert_eq!(readings(&[], 0, 6)[5], Measured::exactly(exact));
     assert_eq!(torques(&[], 0, 6)[5], Pieces::constant(torque(5.0 * PERIOD)));
@@ -154,56 +128,59 @@ fn signs_of_zeros_survive() {
         v_l: Vector([-0.0; 2]),
         v_m: Vector([0.0; 2]),
     };
-    for Graded { name, at, .. } in SENSING {
-        let mut sensors = flexure::imperfections::sensors(&[at(0)], 3);
-        let read = sensors.sense(&flexure::imperfections::stages::Tick::new(0, PERIOD), &zero);
+    for Graded { name, at: [none, ..] } in all() {
+        let Some(none) = none else { continue };
+        let read = sensors(&[none], 3).sense(&Tick::new(0, PERIOD), &zero);
         assert_eq!(sensed_bits(&[read]), sensed_bits(&[Measured::exactly(zero)]), "{name}");
     }
 }
 
+/// Another seed makes a difference exactly where random numbers are drawn.
 #[test]
 fn a_seed_says_everything_and_another_something_else() {
-    let check = |name: &str, is_random: bool, run: &dyn Fn(u64) -> Vec<u64>| {
+    let check = |name: &str, streams: usize, run: &dyn Fn(u64) -> Vec<u64>| {
         assert_eq!(run(1), run(1), "{name}");
-        assert_eq!(run(1) != run(2), is_random, "{name}");
+        assert_eq!(run(1) != run(2), streams > 0, "{name}");
     };
-    for Graded { name, at, is_random } in SENSING {
-        check(name, *is_random, &|seed| sensed_bits(&readings(&[at(2)], seed, COUNT)));
+    let mut random = 0;
+    for Graded { name, at: [.., much] } in all() {
+        let much = &much.map(|much| [much]).unwrap();
+        let Effects { mut sensors, mut actuator, .. } = Effects::of(much, 2, PERIOD, 1);
+        let (sensing, acting) = (streams(&mut sensors), streams(&mut actuator));
+        check(name, sensing, &|seed| sensed_bits(&readings(much, seed, COUNT)));
+        check(name, acting, &|seed| torque_bits(&torques(much, seed, COUNT)));
+        random += sensing + acting;
     }
-    for Graded { name, at, is_random } in ACTUATION {
-        check(name, *is_random, &|seed| torque_bits(&torques(&[at(2)], seed, COUNT)));
-    }
+    assert!(random >= 5, "noise, dither twice, dropouts, deadlines");
 }
 
+/// By a factor: less would be chance. What changes neither readings nor torques is tested in whole loops.
 #[test]
 fn stronger_is_worse() {
-    let check = |name: &str, errors: [f64; 3]| {
-        // By a factor: less would be chance.
-        assert!(errors[0] == 0.0 && errors[1] > 0.0 && errors[2] > 2.0 * errors[1], "{name}: {errors:?}");
-    };
-    for Graded { name, at, .. } in SENSING {
-        check(name, [0, 1, 2].map(|strength| error(&readings(&[at(strength)], 7, COUNT))));
+    let mut between = 0;
+    for Graded { name, at } in all() {
+        let of = |measure: &dyn Fn(&[Imperfection]) -> f64| {
+            let [none, little, much] =
+                at.each_ref().map(|at| at.as_ref().map_or(0.0, |at| measure(&[at.clone()])));
+            assert!(
+                none == 0.0 && ((little, much) == (0.0, 0.0) || little > 0.0 && much > 2.0 * little),
+                "{name}"
+            );
+            usize::from(much > 0.0)
+        };
+        between += of(&|imperfections| error(&readings(imperfections, 7, COUNT)));
+        between += of(&|imperfections| misery(&torques(imperfections, 7, COUNT)));
     }
-    for Graded { name, at, .. } in ACTUATION {
-        check(name, [0, 1, 2].map(|strength| misery(&torques(&[at(strength)], 7, COUNT))));
-    }
+    assert!(between >= 11, "six of sensors, five of drives");
 }
 
 #[test]
 fn order_in_the_file_does_not_matter() {
-    let reversed = |imperfections: &[Imperfection]| imperfections.iter().rev().cloned().collect::<Vec<_>>();
-    let sensing: Vec<_> =
-        SENSING.iter().filter(|graded| graded.name != "encoder" || graded.is_random).collect();
-    let sensing: Vec<_> = sensing.into_iter().map(|graded| (graded.at)(2)).collect();
-    let actuation: Vec<_> = ACTUATION.iter().map(|graded| (graded.at)(2)).collect();
-    assert_eq!(
-        sensed_bits(&readings(&sensing, 7, COUNT)),
-        sensed_bits(&readings(&reversed(&sensing), 7, COUNT))
-    );
-    assert_eq!(
-        torque_bits(&torques(&actuation, 7, COUNT)),
-        torque_bits(&torques(&reversed(&actuation), 7, COUNT))
-    );
+    let much: Vec<_> = registered().filter_map(|(_, [.., much])| much).collect();
+    let reversed: Vec<_> = much.iter().rev().cloned().collect();
+    let sensed = |imperfections: &[Imperfection]| sensed_bits(&readings(imperfections, 7, COUNT));
+    let driven = |imperfections: &[Imperfection]| torque_bits(&torques(imperfections, 7, COUNT));
+    assert_eq!((sensed(&much), driven(&much)), (sensed(&reversed), driven(&reversed)));
 }
 
 /// Noise is the same with dither, outages, late deadlines and another noise around it; and the other noise is another.

@@ -2,14 +2,14 @@
 
 mod actuation;
 mod all;
+mod memory;
 mod sensing;
 
 use flexure::core::linalg::Vector;
 use flexure::core::model::Motion;
-use flexure::imperfections::Imperfection;
-use flexure::imperfections::stages::Pieces;
-use flexure::imperfections::stages::{Measured, Tick};
-use flexure::imperfections::{actuator, sensors};
+use flexure::imperfections::stages::{Actuator, Measured, Pieces, Sensors, Tick};
+use flexure::imperfections::{Effects, Imperfection, STRENGTHS, Strengths};
+use flexure::scenario::scenario_from_text;
 
 /// Control period of all loops here \[s\].
 const PERIOD: f64 = 0.001;
@@ -25,6 +25,35 @@ fn motion(t: f64) -> Motion<f64, 2> {
 /// A torque of the same sort, up to 3.5 N m.
 fn torque(t: f64) -> Vector<f64, 2> {
     Vector([3.0 * (21.0 * t + 0.3).sin() + 0.5, 2.0 * (33.0 * t - 0.4).cos()])
+}
+
+/// Sensors of a robot with two joints.
+fn sensors(imperfections: &[Imperfection], seed: u64) -> Sensors {
+    Effects::of(imperfections, 2, PERIOD, seed).sensors
+}
+
+/// Drives of a robot with two joints that gave `before` N m until now.
+fn actuator(imperfections: &[Imperfection], seed: u64, before: Vector<f64, 2>) -> Actuator {
+    let mut actuator = Effects::of(imperfections, 2, PERIOD, seed).actuator;
+    actuator.start(&before);
+    actuator
+}
+
+/// The entry of `kind` with these keys, read in the scenario that registered strengths are for.
+fn entry(kind: &str, keys: &str) -> Imperfection {
+    let text = flexure::files::SCENARIOS.iter().find(|(name, _)| *name == "two-link-hardware").unwrap().1;
+    let text = text.split("[guard]").next().unwrap();
+    let text = format!("{text}[[imperfection]]\nkind = \"{kind}\"\n{keys}\n");
+    let scenario = scenario_from_text(kind, &text, ".".as_ref()).unwrap_or_else(|bad| panic!("{bad}"));
+    let [imperfection] = &scenario.imperfections[..] else { panic!("one entry") };
+    imperfection.clone()
+}
+
+/// Every registered kind with no, little and much strength.
+fn registered() -> impl Iterator<Item = (&'static str, [Option<Imperfection>; 3])> {
+    STRENGTHS.iter().map(|&(kind, Strengths { none, little, much })| {
+        (kind, [none, Some(little), Some(much)].map(|keys| keys.map(|keys| entry(kind, keys))))
+    })
 }
 
 /// What is read at the first `count` control instants.
@@ -48,7 +77,7 @@ fn driven(
     count: u64,
     command: impl Fn(f64) -> Vector<f64, 2>,
 ) -> Vec<Pieces<2>> {
-    let mut actuator = actuator(imperfections, seed, PERIOD, Vector::ZERO);
+    let mut actuator = actuator(imperfections, seed, Vector::ZERO);
     (0..count)
         .map(|k| Tick::new(k, PERIOD))
         .map(|instant| actuator.actuate(&instant, command(instant.t)))

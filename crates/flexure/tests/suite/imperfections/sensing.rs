@@ -2,13 +2,12 @@
 
 use flexure::core::linalg::Vector;
 use flexure::core::model::Motion;
-use flexure::imperfections::sensors;
 use flexure::imperfections::stages::{Measured, Tick};
 use flexure::imperfections::{
     Dropout, DropoutMode, Encoder, Imperfection, Noise, Outage, Sampling, Side, Sides,
 };
 
-use super::{PERIOD, mean, motion, readings};
+use super::{PERIOD, mean, motion, readings, sensors};
 
 const LINK: usize = 0;
 const MOTOR: usize = 1;
@@ -150,8 +149,8 @@ fn windows_begin_where_the_file_says() {
         short += u32::from(f64::from(first) * period < from);
         let outage = Outage::Window { from, until: from + 10.0 };
         let dropout = Imperfection::Dropout(Dropout { sides: Sides::Both, mode: DropoutMode::Nan, outage });
-        let mut sensors = sensors::<2>(&[dropout], 0);
-        let rest = Motion::at_rest(Vector::ZERO);
+        let mut sensors = sensors(&[dropout], 0);
+        let rest = Motion::<f64, 2>::at_rest(Vector::ZERO);
         let begin = (0..401_u64).find(|&k| sensors.sense(&Tick::new(k, period), &rest).age[LINK] > 0);
         assert_eq!(begin, Some(u64::from(first)));
     }

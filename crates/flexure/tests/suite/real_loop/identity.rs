@@ -1,85 +1,29 @@
 //! Imperfections of no strength are none, bit by bit.
 
+use std::fmt::Write;
+
 use flexure::estimators::Estimator;
-use flexure::imperfections::Imperfection;
-use flexure::scenario::{GuardSettings, Scenario, scenario_from_text};
+use flexure::imperfections::{Imperfection, STRENGTHS, Strengths};
+use flexure::scenario::{GuardSettings, scenario_from_text};
 
 use super::{ideal, same_bits, simulate, with_these};
 
-/// Every imperfection at zero strength, as a file would have it.
-const NOTHING: &str = r#"
-[[imperfection]]
-kind = "noise"
-link = 0.0
-[[imperfection]]
-kind = "encoder"
-resolution = 0.0
-[[imperfection]]
-kind = "sampling"
-period = 0.002
-side = "both"
-[[imperfection]]
-kind = "dropout"
-probability = 0.0
-[[imperfection]]
-kind = "deadline"
-probability = 0.0
-[[imperfection]]
-kind = "torque-gain"
-factor = 1.0
-[[imperfection]]
-kind = "current-quantisation"
-step = 0.0
-[[imperfection]]
-kind = "saturation"
-limit = 1e9
-[[imperfection]]
-kind = "torque-rate"
-limit = 1e8
-[[imperfection]]
-kind = "delay"
-actuation = 0.0
-[[imperfection]]
-kind = "friction"
-side = "link"
-coulomb = 0.0
-[[imperfection]]
-kind = "friction"
-side = "motor"
-coulomb = 0.0
-[[imperfection]]
-kind = "spring"
-hardening = 0.0
-dead_zone = 0.0
-hysteresis_stiffness = 0.0
-hysteresis_torque = 0.0
-[[imperfection]]
-kind = "model-error"
-stiffness = 1.0
-mass = 1.0
-payload = { mass = 0.0, position = [0.2, 0.0, 0.0] }
-[[imperfection]]
-kind = "push"
-torque = 0.0
-from = 0.0
-duration = 1.0
-"#;
-
-fn nothing() -> Vec<Imperfection> {
+/// The entries of the given kinds and keys in a file.
+fn read(entries: impl IntoIterator<Item = (&'static str, &'static str)>) -> Vec<Imperfection> {
     let text = flexure::files::SCENARIOS.iter().find(|(name, _)| *name == "two-link-hardware").unwrap().1;
-    let text = text.split("[guard]").next().unwrap();
-    let scenario: Scenario = scenario_from_text("nothing", &format!("{text}{NOTHING}"), ".".as_ref())
-        .unwrap_or_else(|problems| panic!("{problems}"));
+    let mut text = text.split("[guard]").next().unwrap().to_owned();
+    for (kind, keys) in entries {
+        write!(text, "[[imperfection]]\nkind = \"{kind}\"\n{keys}\n").unwrap();
+    }
+    let scenario =
+        scenario_from_text("entries", &text, ".".as_ref()).unwrap_or_else(|bad| panic!("{bad}\n{text}"));
     scenario.imperfections
 }
 
-#[test]
-fn every_kind_is_there() {
-    let kinds: Vec<_> = nothing().iter().map(Imperfection::kind).collect();
-    for entry in flexure::imperfections::IMPERFECTIONS {
-        // A filter has no strength to be zero.
-        assert!(kinds.contains(&entry.name) || entry.name == "velocity-filter", "{}", entry.name);
-    }
+/// Every imperfection at zero strength, friction on both sides.
+fn nothing() -> Vec<Imperfection> {
+    let registered = STRENGTHS.iter().filter_map(|&(kind, Strengths { none, .. })| Some((kind, none?)));
+    read(registered.chain([("friction", "side = \"motor\"\ncoulomb = 0.0")]))
 }
 
 #[test]
@@ -92,6 +36,19 @@ fn imperfections_of_no_strength_are_none() {
     }
     let with_all = with_these(ideal(1.0), nothing());
     assert!(same_bits(&perfect, &simulate(&with_all)) > 20);
+}
+
+/// No kind is read and then forgotten: little of it moves the robot elsewhere, and much of it elsewhere again.
+#[test]
+fn every_registered_kind_does_something() {
+    let link = |imperfections| {
+        simulate(&with_these(ideal(1.0), imperfections)).trace.column("q_l2").unwrap().to_vec()
+    };
+    let perfect = link(Vec::new());
+    for &(kind, Strengths { little, much, .. }) in STRENGTHS {
+        let [little, much] = [little, much].map(|keys| link(read([(kind, keys)])));
+        assert!(little != perfect && much != perfect && little != much, "{kind}");
+    }
 }
 
 #[test]

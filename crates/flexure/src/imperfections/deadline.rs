@@ -1,0 +1,95 @@
+//! A computer that is late at times.
+
+use flexure_core::memory::{Memory, Port};
+
+use crate::files::quantity;
+use crate::files::table::Table;
+use crate::imperfections::document::Context;
+use crate::imperfections::effect::Effect;
+use crate::imperfections::kind::{Kind, Overlap, Place, Setup, Strengths};
+use crate::imperfections::stages::{Actuating, Random, Tick};
+
+/// Control instants that the law misses: the last command stays for a period.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Deadline {
+    /// Each with this probability in [0, 1], which is drawn from one number a control instant.
+    Random {
+        /// Per control instant.
+        probability: f64,
+    },
+    /// Each `every`-th, ≥ 2, counted from 1 at t = 0.
+    Every(u32),
+}
+
+impl Kind for Deadline {
+    const NAME: &'static str = "deadline";
+    const SUMMARY: &'static str = "control instants that the law misses";
+    const KEYS: &'static [&'static str] = &["probability", "every"];
+    const PLACE: Place = Place::Devices;
+    const STRENGTHS: Strengths = Strengths {
+        none: Some("probability = 0.0"),
+        little: "probability = 0.05",
+        much: "probability = 0.5",
+    };
+
+    fn read(table: &Table<'_>, _: &Context<'_>) -> Option<Self> {
+        match (table.get("probability"), table.get("every")) {
+            (Some(field), None) => Some(Self::Random { probability: field.number(&quantity::PROBABILITY)? }),
+            (None, Some(field)) => {
+                let every =
+                    field.whole("each so many-th control instant is missed", 2, u64::from(u32::MAX))?;
+                Some(Self::Every(u32::try_from(every).ok()?))
+            }
+            _ => {
+                table.error(
+                    "missing-key",
+                    "deadline: either probability or every must be given",
+                    "probability per control instant, or every = 10 for each tenth",
+                );
+                None
+            }
+        }
+    }
+
+    fn overlap(&self, _: &Self) -> Option<Overlap> {
+        Some(Overlap::Whole)
+    }
+
+    fn effect(&self, setup: Setup) -> Effect<'_> {
+        let last = vec![0.0; setup.joints];
+        Effect::Actuating(Box::new(Keeping { deadline: *self, random: setup.random, last }))
+    }
+}
+
+/// Keeps the last command for another period where the law misses its instant.
+struct Keeping {
+    deadline: Deadline,
+    random: Random,
+    last: Vec<f64>,
+}
+
+impl Actuating for Keeping {
+    fn start(&mut self, torque: &[f64]) {
+        self.last.copy_from_slice(torque);
+    }
+
+    fn actuate(&mut self, instant: &Tick, torque: &mut [f64]) {
+        let is_missed = match self.deadline {
+            Deadline::Random { probability } => self.random.uniform() < probability,
+            Deadline::Every(every) => (instant.k + 1).is_multiple_of(u64::from(every)),
+        };
+        if is_missed {
+            torque.copy_from_slice(&self.last);
+        } else {
+            self.last.copy_from_slice(torque);
+        }
+    }
+}
+
+/// `random`, the state of the stream, and the last `torque` [N m].
+impl Memory<f64> for Keeping {
+    fn memory(&mut self, port: &mut dyn Port<f64>) {
+        port.part("random", &mut self.random);
+        port.joints("torque", "N m", &mut self.last);
+    }
+}
