@@ -8,7 +8,6 @@ use serde::Serialize;
 
 use crate::files::{Problem, Problems, StateFile, StateRow};
 use crate::laws::{self, AnyLaw, any_law};
-use crate::references::AnyReference;
 use crate::robot::{Robot, RobotVisitor, vector, with_robot};
 use crate::scenario::Scenario;
 
@@ -99,7 +98,7 @@ impl RobotVisitor for EvaluateLaw<'_> {
 
     fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) -> Self::Output {
         let law: AnyLaw<f64, N> = any_law(&self.scenario.controller, |x| x);
-        let reference = AnyReference::new(self.scenario)?;
+        let reference = feasible::reference::<N>(self.scenario)?;
         let row = |state: &StateRow| -> Result<LawRow, Problem> {
             let x = motion(state);
             let row = law_row(&law, &robot, state.t, &x, &reference.at(state.t));

@@ -5,6 +5,7 @@ use flexure_core::model::{Fjr, Links};
 use flexure_core::reference::Reference as _;
 use flexure_core::scalar::Jet;
 
+use crate::feasible::at_speed;
 use crate::feasible::bounds::{Bound, Quantity};
 use crate::files::Problems;
 use crate::references::AnyReference;
@@ -57,7 +58,7 @@ impl<R> RobotVisitor for Visitor<'_, R> {
     type Output = Result<R, Problems>;
 
     fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) -> Self::Output {
-        let reference = AnyReference::<f64, N>::at_speed(self.scenario, 1.0)?;
+        let reference = at_speed(self.scenario, 1.0)?;
         Ok((self.then)(&Pair { robot, reference }))
     }
 }

@@ -34,10 +34,10 @@ impl Quantity {
     const fn any(what: &'static str, unit: &'static str) -> Self {
         Self { what, unit, sign: Sign::Any, plausible: (TINY, LARGEST, "") }
     }
-    const fn positive(what: &'static str, unit: &'static str) -> Self {
+    pub const fn positive(what: &'static str, unit: &'static str) -> Self {
         Self { sign: Sign::Positive, ..Self::any(what, unit) }
     }
-    const fn non_negative(what: &'static str, unit: &'static str) -> Self {
+    pub const fn non_negative(what: &'static str, unit: &'static str) -> Self {
         Self { sign: Sign::NonNegative, ..Self::any(what, unit) }
     }
     const fn nonzero(what: &'static str, unit: &'static str) -> Self {
@@ -194,34 +194,6 @@ pub(crate) const FREQUENCY: Quantity = Quantity::any("angular frequency, 2π tim
     .plausible(TINY, 1e4, "that is beyond any joint");
 pub(crate) const VELOCITY: Quantity =
     Quantity::any("joint velocity", "rad/s").plausible(TINY, 1e3, "is it in degrees/s or rev/min?");
-pub(crate) const GAIN_METRIC: Quantity = Quantity::positive("metric Π, diagonal", "N m/rad");
-pub(crate) const GAIN_HARDENING: Quantity =
-    Quantity::non_negative("growth of Π_l with the error squared", "N m/rad^3");
-pub(crate) const GAIN_SHAPING: Quantity = Quantity::positive("gain Λ inside φ", "1/s");
-pub(crate) const GAIN_DAMPING: Quantity = Quantity::positive("injected damping K_d", "N m s/rad");
-pub(crate) const GAIN_KAPPA: Quantity = Quantity::positive("rate κ of coupled-tanh", "1/s");
-pub(crate) const GAIN_STIFFNESS: Quantity =
-    Quantity::positive("stiffness K_P of the feedback of motor positions", "N m/rad");
-pub(crate) const GAIN_SNAP_POSITION: Quantity =
-    Quantity::positive("gain k_0 of the link position error", "1/s^4");
-pub(crate) const GAIN_SNAP_VELOCITY: Quantity =
-    Quantity::positive("gain k_1 of the link velocity error", "1/s^3");
-pub(crate) const GAIN_SNAP_ACCELERATION: Quantity =
-    Quantity::positive("gain k_2 of the link acceleration error", "1/s^2");
-pub(crate) const GAIN_SNAP_JERK: Quantity = Quantity::positive("gain k_3 of the link jerk error", "1/s");
-pub(crate) const GAIN_POSITION: Quantity = Quantity::positive("gain k_p of the position error", "1/s^2");
-pub(crate) const GAIN_RATE: Quantity = Quantity::positive("gain k_v of the velocity error", "1/s");
-pub(crate) const GAIN_LINK: Quantity = Quantity::non_negative("damping injected into the links", "N m s/rad");
-pub(crate) const GAIN_MOTOR: Quantity =
-    Quantity::non_negative("damping injected into the motors", "N m s/rad");
-pub(crate) const GAIN_INERTIA: Quantity =
-    Quantity::positive("motor inertia that feedback of the spring torque makes", "kg m^2");
-pub(crate) const GAIN_WEIGHT: Quantity = Quantity::positive("weight W of motor position errors", "N m/rad");
-pub(crate) const GAIN_MOTOR_SHAPING: Quantity =
-    Quantity::positive("rate a at which motor errors decay", "1/s");
-pub(crate) const GAIN_SPRING: Quantity = Quantity::non_negative("damping K_f of the springs", "N m s/rad");
-pub(crate) const GAIN_VELOCITY: Quantity =
-    Quantity::non_negative("damping K_D of the feedback of motor velocities", "N m s/rad");
 pub(crate) const TORQUE_RATE_LIMIT: Quantity = Quantity::positive(
     "largest rate of the motor torque, link side of the gear",
     "N m/s",

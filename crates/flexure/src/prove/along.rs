@@ -19,7 +19,6 @@ use crate::prove::engine::envelope::witness::candidates;
 use crate::prove::engine::envelope::{Course, Request, course};
 use crate::prove::engine::number::Number;
 use crate::prove::engine::verdict::{Undecided, Verdict};
-use crate::references::{self, AnyReference, Profile};
 use crate::robot::{RobotVisitor, with_enclosed_robot};
 use crate::scenario::Scenario;
 
@@ -102,7 +101,7 @@ impl<R> RobotVisitor<Interval> for Build<'_, R> {
     fn visit<L: Links<Interval, N> + Sync, const N: usize>(self, robot: Fjr<Interval, L, N>) -> Self::Output {
         let scenario = self.scenario;
         suitable(scenario)?;
-        let reference = AnyReference::<Interval, N>::enclosed(scenario)?;
+        let reference = feasible::enclosed_reference::<N>(scenario)?;
         let law = law_over(scenario.vcbc()?, |x| scenario.bounds(x));
         let [breaks, kinks] = [reference.breaks(), reference.kinks()];
         Ok((self.then)(&Enclosed { robot, law, reference, breaks, kinks }))
@@ -115,7 +114,7 @@ fn suitable(scenario: &Scenario) -> Result<(), Problems> {
     if let Some(problem) = uneven_metric(scenario) {
         return Err(problem.into());
     }
-    if matches!(&scenario.reference, references::Reference::PointToPoint { profile: Profile::Quintic, .. }) {
+    if scenario.reference.jump().is_some_and(|jump| jump.derivative <= 3) {
         let message = "the third derivative of a quintic jumps, and the errors with it: no tube holds them";
         let help = "take septic or nonic";
         return Err(scenario.places.problem("reference.kind", "reference", message, help).into());

@@ -14,7 +14,7 @@ pub(crate) fn gains(scenario: &Scenario, gains: &laws::SideGains) -> Gains {
         metric: numbers(&gains.metric),
         shaping: numbers(&gains.shaping),
         damping: numbers(&gains.damping),
-        kappa: gains.kappa.as_deref().map(numbers),
+        kappa: gains.extra("kappa").map(|kappa| numbers(kappa)),
     }
 }
 

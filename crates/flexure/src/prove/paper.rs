@@ -16,7 +16,7 @@ pub fn paper_rate(robot: &Robot, gains: &VcbcGains, problem: &Problem, largest_i
     let largest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
 
     let beta_q = if problem.controller.phi == Phi::CoupledTanh {
-        let kappa = [&link.kappa, &motor.kappa].map(|kappa| kappa.clone().unwrap_or_default()).concat();
+        let kappa = [link, motor].map(|side| side.extra("kappa").cloned().unwrap_or_default()).concat();
         0.5 * smallest(&mut kappa.into_iter())
     } else {
         let metric: Vec<_> =

@@ -9,7 +9,6 @@ use flexure_core::scalar::Jet;
 use crate::files::{Problem, Problems};
 use crate::imperfections::Imperfection;
 use crate::laws::{self, AnyLaw, BlockRates, any_law};
-use crate::references::AnyReference;
 use crate::robot::{PairVisitor, with_pair};
 use crate::scenario::Scenario;
 use crate::simulate::figures::Figures;
@@ -73,7 +72,7 @@ impl PairVisitor for Simulate<'_> {
             return Err(too_heavy(scenario).into());
         }
         let law: AnyLaw<f64, N> = any_law(&scenario.controller, |x| x);
-        let reference = AnyReference::<f64, N>::new(scenario)?;
+        let reference = feasible::reference::<N>(scenario)?;
         let torque =
             |_: f64, x: &Motion<f64, N>, q_ld: &Vector<Jet<f64, 5>, N>| laws::torque(&law, &model, x, q_ld);
         let mut controller = assembly::controller(scenario, &model, &reference, torque, &start);

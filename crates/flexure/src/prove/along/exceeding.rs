@@ -8,7 +8,6 @@ use serde::Serialize;
 
 use crate::laws::{self, Law, law};
 use crate::prove::engine::envelope::witness::Candidate;
-use crate::references::AnyReference;
 use crate::robot::{RobotVisitor, vector, with_robot};
 use crate::scenario::Scenario;
 
@@ -56,7 +55,7 @@ impl RobotVisitor for Look<'_> {
     fn visit<L: Links<f64, N> + Sync, const N: usize>(self, robot: Fjr<f64, L, N>) -> Self::Output {
         let Candidate { time: t, error } = self.candidate;
         let law: Law<f64, N> = law(self.scenario.vcbc().ok()?);
-        let reference = AnyReference::new(self.scenario).ok()?;
+        let reference = feasible::reference::<N>(self.scenario).ok()?;
         let q_ld = reference.at(*t);
         let part = |i: usize| vector::<N>(&error[i * N..(i + 1) * N]);
         let [e_l, e_m, s_l, s_m] = [0, 1, 2, 3].map(part);
