@@ -6,6 +6,7 @@ use flexure_core::reference::Reference;
 use flexure_core::scalar::Jet;
 use serde::Serialize;
 
+use crate::feasible;
 use crate::files::{Problem, Problems, StateFile, StateRow};
 use crate::laws::{self, AnyLaw, any_law};
 use crate::robot::{Robot, RobotVisitor, vector, with_robot};

@@ -105,7 +105,7 @@ fn tops(bounds: &[Bound], [a, b, c]: [&Demand; 3]) -> Vec<f64> {
 
 /// When the reference asks for a torque that jumps, in s, and whether it even asks for an infinite one.
 fn jumps(course: &Course<'_>) -> Option<(f64, bool)> {
-    let Jump { derivative, time } = course.scenario.reference.jump()?;
+    let Jump { derivative, time, .. } = course.scenario.reference.jump()?;
     let speed = Interval::point(course.speed);
     let clock = match course.scenario.time_scaling.and_then(|scaling| scaling.rise) {
         Some(rise) => Clock::FromRest { speed, rise: Interval::point(rise) },

@@ -10,6 +10,7 @@ use flexure_core::model::{Fjr, Links};
 use flexure_core::scalar::{Interval, Scalar};
 use serde::Serialize;
 
+use crate::feasible;
 use crate::files::{Problem, Problems};
 use crate::laws::law_over;
 use crate::prove::engine::envelope::closed_loop::{ClosedLoop, Enclosed, Place, Slope};
@@ -114,8 +115,11 @@ fn suitable(scenario: &Scenario) -> Result<(), Problems> {
     if let Some(problem) = uneven_metric(scenario) {
         return Err(problem.into());
     }
-    if scenario.reference.jump().is_some_and(|jump| jump.derivative <= 3) {
-        let message = "the third derivative of a quintic jumps, and the errors with it: no tube holds them";
+    if let Some(jump) = scenario.reference.jump().filter(|jump| jump.derivative <= 3) {
+        let message = format!(
+            "the third derivative of a {} jumps, and the errors with it: no tube holds them",
+            jump.of
+        );
         let help = "take septic or nonic";
         return Err(scenario.places.problem("reference.kind", "reference", message, help).into());
     }

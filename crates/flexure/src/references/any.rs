@@ -2,7 +2,7 @@
 
 use flexure_core::linalg::Vector;
 use flexure_core::reference::{Clock, Reference, Retimed, SmoothStart, Stop};
-use flexure_core::scalar::{Interval, Jet, Over, Piecewise};
+use flexure_core::scalar::{Interval, Jet, Over, Piecewise, Scalar};
 
 use crate::files::{Places, Problems};
 use crate::references::{self, AnyPath, Instant, TimeScaling, when};

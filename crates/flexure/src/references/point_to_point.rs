@@ -37,6 +37,15 @@ pub enum Profile {
 }
 
 impl Profile {
+    /// The name in files.
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Quintic => "quintic",
+            Self::Septic => "septic",
+            Self::Nonic => "nonic",
+        }
+    }
+
     fn step(self) -> Smoothstep {
         match self {
             Self::Quintic => Smoothstep::Quintic,
@@ -51,17 +60,23 @@ const KEYS: &[&str] = &["from", "to", "start", "duration"];
 impl Named for PointToPoint {
     const NAMES: &'static [Name] = &[
         Name {
-            entry: Entry { name: "quintic", summary: "rest to rest, continuous up to the acceleration" },
+            entry: Entry {
+                name: Profile::Quintic.name(),
+                summary: "rest to rest, continuous up to the acceleration",
+            },
             keys: KEYS,
             read: |table, context| read(table, context, Profile::Quintic),
         },
         Name {
-            entry: Entry { name: "septic", summary: "rest to rest, continuous up to the jerk" },
+            entry: Entry { name: Profile::Septic.name(), summary: "rest to rest, continuous up to the jerk" },
             keys: KEYS,
             read: |table, context| read(table, context, Profile::Septic),
         },
         Name {
-            entry: Entry { name: "nonic", summary: "rest to rest, continuous up to the fourth derivative" },
+            entry: Entry {
+                name: Profile::Nonic.name(),
+                summary: "rest to rest, continuous up to the fourth derivative",
+            },
             keys: KEYS,
             read: |table, context| read(table, context, Profile::Nonic),
         },
@@ -105,7 +120,7 @@ impl ReferenceKind for PointToPoint {
 
     fn jump(&self) -> Option<Jump> {
         let derivative = self.profile.step().smoothness() + 1;
-        (derivative <= 4).then_some(Jump { derivative, time: self.start })
+        (derivative <= 4).then_some(Jump { of: self.profile.name(), derivative, time: self.start })
     }
 
     fn breaks<const N: usize>(motion: &Self::Core<Interval, N>) -> Vec<Interval> {

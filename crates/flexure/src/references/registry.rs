@@ -42,6 +42,8 @@ impl Instant for Interval {
 /// Where derivatives of a reference jump.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jump {
+    /// The name of the kind of motion.
+    pub of: &'static str,
     /// The lowest derivative that jumps, at most the fourth: the torque has a step for 4, an impulse for less.
     pub derivative: usize,
     /// When it does so first, by the reference's own clock, in s.

@@ -6,6 +6,7 @@ use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion};
 use flexure_core::scalar::Jet;
 
+use crate::feasible;
 use crate::files::{Problem, Problems};
 use crate::imperfections::Imperfection;
 use crate::laws::{self, AnyLaw, BlockRates, any_law};

@@ -5,6 +5,7 @@ use flexure::core::linalg::Vector;
 use flexure::core::model::{Fjr, Links, Motion};
 use flexure::core::reference::Reference;
 use flexure::core::robots::{Pendulum, PlanarTwoLink};
+use flexure::feasible;
 use flexure::laws::{Law, command, law};
 use flexure::references::AnyReference;
 use flexure::robot;
@@ -39,7 +40,7 @@ fn floats<L, const N: usize>(scenario: &Scenario, links: L) -> Floats<L, N> {
         link_damping: drive(&data.link_damping),
         motor_damping: drive(&data.motor_damping),
     };
-    Floats { robot, law: law(scenario.vcbc().unwrap()), reference: AnyReference::new(scenario).unwrap() }
+    Floats { robot, law: law(scenario.vcbc().unwrap()), reference: feasible::reference(scenario).unwrap() }
 }
 
 pub fn arm(scenario: &Scenario) -> Floats<PlanarTwoLink<f64>, 2> {

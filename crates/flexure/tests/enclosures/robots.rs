@@ -8,9 +8,9 @@ use flexure::core::reference::Reference as _;
 use flexure::core::robots::PlanarTwoLink;
 use flexure::core::scalar::{Interval, Over};
 use flexure::eval::evaluate_law;
+use flexure::feasible;
 use flexure::files::{ROBOTS, SCENARIOS, StateFile, StateRow};
 use flexure::laws::{Law, law_over};
-use flexure::references::AnyReference;
 use flexure::robot::load_robot;
 use flexure::robot::{Links, Robot};
 use flexure::robot::{RobotVisitor, with_enclosed_robot, with_robot};
@@ -103,7 +103,7 @@ fn laws_are_enclosed() {
     for (name, _) in SCENARIOS.iter().filter(|(name, _)| name.starts_with("two-link")) {
         let scenario = load_scenario(name).expect("built in");
         let law: Law<Interval, 2> = law_over(scenario.vcbc().unwrap(), |x| scenario.bounds(x));
-        let reference = AnyReference::<Interval, 2>::enclosed(&scenario).expect("a path");
+        let reference = feasible::enclosed_reference::<2>(&scenario).expect("a path");
         let robot = two_links(&scenario.robot);
         for _ in 0..5 {
             let [q_l, q_m, dq_l, dq_m] =

@@ -6,6 +6,7 @@ use flexure_core::model::{Fjr, Links, Motion};
 use flexure_core::reference::Reference;
 use serde::Serialize;
 
+use crate::feasible;
 use crate::laws::{self, Law, law};
 use crate::prove::engine::envelope::witness::Candidate;
 use crate::robot::{RobotVisitor, vector, with_robot};

@@ -17,6 +17,7 @@ pub mod position;
 pub mod rate;
 pub mod reach;
 pub mod region;
+pub mod shaping;
 pub mod structural;
 pub mod structure;
 pub mod verdict;
