@@ -93,8 +93,10 @@ fn factors_are_per_joint() {
     };
     let real = with_factors(&model, factors);
     assert_eq!(drives(&real), [&[9.0 * 0.7, 4.0][..], &[0.23, 0.03], &[0.0, 0.55], &[0.2, 45.0]]);
-    let (Links::PlanarTwoLink { mass: m, inertia: i, .. }, Links::PlanarTwoLink { mass, inertia, .. }) =
-        (model.links, real.links)
+    let (
+        Links::PlanarTwoLink(flexure::robot::PlanarTwoLink { mass: m, inertia: i, .. }),
+        Links::PlanarTwoLink(flexure::robot::PlanarTwoLink { mass, inertia, .. }),
+    ) = (model.links, real.links)
     else {
         panic!("two links");
     };

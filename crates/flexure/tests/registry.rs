@@ -14,7 +14,9 @@ use flexure::simulate::preload;
 #[test]
 fn the_pendulum_swings_about_its_joint() {
     let robot = load_robot("pendulum-1dof").expect("built in");
-    let Links::Pendulum { mass, com, inertia } = robot.links else { panic!("a pendulum") };
+    let Links::Pendulum(flexure::robot::Pendulum { mass, com, inertia }) = robot.links else {
+        panic!("a pendulum")
+    };
     let (q, v, a, jerk) = (0.7, 1.3, -2.1, 3.4);
     let state = StateRow {
         q_l: vec![q],

@@ -34,21 +34,22 @@ pub(crate) fn robot(data: &robot::Robot) -> Robot {
 
 fn links(data: &robot::Robot) -> Links {
     let number = |x: f64| Number::read(x, data.bounds(x));
-    match (&data.links, &data.enclosed) {
-        (robot::Links::PlanarTwoLink { mass, length, com, inertia }, _) => Links::PlanarTwoLink {
-            mass: mass.map(number),
-            length: number(length[0]),
-            com: com.map(number),
-            inertia: inertia.map(number),
-        },
-        (robot::Links::Pendulum { mass, com, inertia }, _) => {
+    match &data.links {
+        robot::Links::PlanarTwoLink(robot::PlanarTwoLink { mass, length, com, inertia }) => {
+            Links::PlanarTwoLink {
+                mass: mass.map(number),
+                length: number(length[0]),
+                com: com.map(number),
+                inertia: inertia.map(number),
+            }
+        }
+        robot::Links::Pendulum(robot::Pendulum { mass, com, inertia }) => {
             Links::Pendulum { mass: number(*mass), com: number(*com), inertia: number(*inertia) }
         }
-        (_, robot::Links::Tree(bodies)) => {
-            let bodies = bodies.iter().enumerate().map(|(i, enclosed)| body(data, i, enclosed));
-            Links::Tree { bodies: bodies.collect() }
+        robot::Links::Tree(_) => {
+            let bodies = data.enclosed.tree().iter().enumerate();
+            Links::Tree { bodies: bodies.map(|(i, enclosed)| body(data, i, enclosed)).collect() }
         }
-        _ => unreachable!("enclosed links are of the same kind"),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links};
-use flexure_core::robots::{self, Body, Tree};
+use flexure_core::robots::{Body, Tree};
 use flexure_core::scalar::{Interval, Scalar};
 
 use crate::{files, robot};
@@ -86,19 +86,14 @@ pub fn with_twins<V: TwinVisitor>(data: &robot::Robot, visitor: V) -> Result<V::
     }
     Ok(match (&data.enclosed, &data.links) {
         (robot::Links::Tree(enclosed), robot::Links::Tree(bodies)) => joint_counts!(tree, enclosed, bodies),
-        (
-            &robot::Links::PlanarTwoLink { mass, length, com, inertia },
-            &robot::Links::PlanarTwoLink { mass: m, length: l, com: c, inertia: i },
-        ) => visitor.visit::<_, _, 2>(
-            robot(data, robots::PlanarTwoLink::new(mass, length[0], com, inertia), bounds),
-            robot(data, robots::PlanarTwoLink::new(m, l[0], c, i), |x| x),
-        ),
-        (
-            &robot::Links::Pendulum { mass, com, inertia },
-            &robot::Links::Pendulum { mass: m, com: c, inertia: i },
-        ) => visitor.visit::<_, _, 1>(
-            robot(data, pendulum(mass, com, inertia, gravity), bounds),
-            robot(data, pendulum(m, c, i, data.gravity), |x| x),
+        (robot::Links::PlanarTwoLink(enclosed), robot::Links::PlanarTwoLink(point)) => visitor
+            .visit::<_, _, 2>(
+                robot(data, enclosed.core(gravity), bounds),
+                robot(data, point.core(data.gravity), |x| x),
+            ),
+        (robot::Links::Pendulum(enclosed), robot::Links::Pendulum(point)) => visitor.visit::<_, _, 1>(
+            robot(data, enclosed.core(gravity), bounds),
+            robot(data, point.core(data.gravity), |x| x),
         ),
         _ => unreachable!("enclosed links are of the same kind"),
     })
@@ -129,19 +124,13 @@ pub fn with_pair<V: PairVisitor>(
         (robot::Links::Tree(known), robot::Links::Tree(real)) if known.len() == real.len() => {
             joint_counts!(tree, known, real)
         }
-        (
-            &robot::Links::PlanarTwoLink { mass, length, com, inertia },
-            &robot::Links::PlanarTwoLink { mass: m, length: l, com: c, inertia: i },
-        ) => visitor.visit::<_, 2>(
-            robot(model, robots::PlanarTwoLink::new(mass, length[0], com, inertia), point),
-            robot(plant, robots::PlanarTwoLink::new(m, l[0], c, i), point),
+        (robot::Links::PlanarTwoLink(known), robot::Links::PlanarTwoLink(real)) => visitor.visit::<_, 2>(
+            robot(model, known.core(model.gravity), point),
+            robot(plant, real.core(plant.gravity), point),
         ),
-        (
-            &robot::Links::Pendulum { mass, com, inertia },
-            &robot::Links::Pendulum { mass: m, com: c, inertia: i },
-        ) => visitor.visit::<_, 1>(
-            robot(model, pendulum(mass, com, inertia, model.gravity), point),
-            robot(plant, pendulum(m, c, i, plant.gravity), point),
+        (robot::Links::Pendulum(known), robot::Links::Pendulum(real)) => visitor.visit::<_, 1>(
+            robot(model, known.core(model.gravity), point),
+            robot(plant, real.core(plant.gravity), point),
         ),
         _ => return Err(no_pair(model, plant)),
     })
@@ -149,11 +138,7 @@ pub fn with_pair<V: PairVisitor>(
 
 fn no_pair(model: &robot::Robot, plant: &robot::Robot) -> files::Problems {
     let what = |robot: &robot::Robot| {
-        let kind = match robot.links {
-            robot::Links::PlanarTwoLink { .. } => "a planar two-link arm",
-            robot::Links::Pendulum { .. } => "a pendulum",
-            robot::Links::Tree(_) => "a tree",
-        };
+        let kind = robot.links.what();
         format!("{} is {kind} with joints: {}", robot.name, robot.joint_count())
     };
     let message = format!("a law for one robot cannot move the other: {}; {}", what(model), what(plant));
@@ -180,23 +165,10 @@ fn over<C: Scalar + Sync, V: RobotVisitor<C>>(
         };
     }
     Ok(match links {
-        robot::Links::PlanarTwoLink { mass, length, com, inertia } => {
-            let links = robots::PlanarTwoLink::new(*mass, length[0], *com, *inertia);
-            visitor.visit::<_, 2>(robot(data, links, number))
-        }
-        &robot::Links::Pendulum { mass, com, inertia } => {
-            visitor.visit::<_, 1>(robot(data, pendulum(mass, com, inertia, gravity), number))
-        }
+        robot::Links::PlanarTwoLink(form) => visitor.visit::<_, 2>(robot(data, form.core(gravity), number)),
+        robot::Links::Pendulum(form) => visitor.visit::<_, 1>(robot(data, form.core(gravity), number)),
         robot::Links::Tree(bodies) => joint_counts!(tree, bodies),
     })
-}
-
-fn pendulum<C: Scalar>(mass: C, com: C, inertia: C, gravity: [C; 3]) -> robots::Pendulum<C> {
-    let [x, y, z] = gravity.map(C::square);
-    robots::Pendulum {
-        inertia: inertia + mass * com.square(),
-        weight_moment: mass * com * (x + y + z).sqrt(),
-    }
 }
 
 /// Whether this program is built for the robot's joint count.

@@ -44,14 +44,18 @@ fn floats<L, const N: usize>(scenario: &Scenario, links: L) -> Floats<L, N> {
 }
 
 pub fn arm(scenario: &Scenario) -> Floats<PlanarTwoLink<f64>, 2> {
-    let robot::Links::PlanarTwoLink { mass, length, com, inertia } = scenario.robot.links else {
+    let robot::Links::PlanarTwoLink(flexure::robot::PlanarTwoLink { mass, length, com, inertia }) =
+        scenario.robot.links
+    else {
         panic!("two links")
     };
     floats(scenario, PlanarTwoLink::new(mass, length[0], com, inertia))
 }
 
 pub fn pendulum(scenario: &Scenario) -> Floats<Pendulum<f64>, 1> {
-    let robot::Links::Pendulum { mass, com, inertia } = scenario.robot.links else { panic!("pendulum") };
+    let robot::Links::Pendulum(flexure::robot::Pendulum { mass, com, inertia }) = scenario.robot.links else {
+        panic!("pendulum")
+    };
     let gravity = scenario.robot.gravity.iter().map(|x| x * x).sum::<f64>().sqrt();
     floats(scenario, Pendulum { inertia: inertia + mass * com * com, weight_moment: mass * com * gravity })
 }

@@ -28,7 +28,10 @@ type Arm = Enclosed<
 /// The two-link arm, without the visitor, which would compile the law ten times.
 fn enclosed(scenario: &Scenario) -> Arm {
     let data = &scenario.robot;
-    let Links::PlanarTwoLink { mass, length, com, inertia } = data.enclosed else { panic!("two links") };
+    let Links::PlanarTwoLink(flexure::robot::PlanarTwoLink { mass, length, com, inertia }) = data.enclosed
+    else {
+        panic!("two links")
+    };
     let drive = |values: &[f64]| Vector([values[0], values[1]].map(|x| data.bounds(x)));
     let robot = Fjr {
         links: PlanarTwoLink::new(mass, length[0], com, inertia),

@@ -21,8 +21,10 @@ use super::{Numbers, encloses};
 /// Every number of the links.
 fn numbers<C: Copy>(links: &Links<C>) -> Vec<C> {
     match links {
-        Links::PlanarTwoLink { mass, length, com, inertia } => [*mass, *length, *com, *inertia].concat(),
-        Links::Pendulum { mass, com, inertia } => vec![*mass, *com, *inertia],
+        Links::PlanarTwoLink(flexure::robot::PlanarTwoLink { mass, length, com, inertia }) => {
+            [*mass, *length, *com, *inertia].concat()
+        }
+        Links::Pendulum(flexure::robot::Pendulum { mass, com, inertia }) => vec![*mass, *com, *inertia],
         Links::Tree(bodies) => bodies
             .iter()
             .flat_map(|body| {
@@ -125,7 +127,10 @@ fn laws_are_enclosed() {
 
 /// The two-link arm, without the visitor, which would compile the law ten times.
 fn two_links(robot: &Robot) -> Fjr<Interval, PlanarTwoLink<Interval>, 2> {
-    let Links::PlanarTwoLink { mass, length, com, inertia } = robot.enclosed else { panic!("two links") };
+    let Links::PlanarTwoLink(flexure::robot::PlanarTwoLink { mass, length, com, inertia }) = robot.enclosed
+    else {
+        panic!("two links")
+    };
     let drive = |values: &[f64]| Vector([values[0], values[1]].map(|x| robot.bounds(x)));
     Fjr {
         links: PlanarTwoLink::new(mass, length[0], com, inertia),
