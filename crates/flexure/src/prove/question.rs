@@ -310,3 +310,19 @@ pub fn certified_rate(scenario: &Scenario) -> Result<Option<f64>, Problems> {
     let problem = problem(scenario, &Question::default(), start_level(scenario).ok())?;
     Ok(certify(&problem).proved().map(|certificate| certificate.contraction_rate.approximate()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::uncertified;
+    use crate::laws;
+    use crate::scenario::load_scenario;
+
+    /// What a shaping function without a file in `engine/shaping` is refused with.
+    #[test]
+    fn a_shaping_function_without_certificate_is_refused_by_name() {
+        let scenario = load_scenario("two-link-tanh").expect("built in");
+        let problem = uncertified(&scenario, laws::Phi::Tanh);
+        assert!(problem.to_string().contains("controller.phi is 'tanh', of which no certificate speaks"));
+        assert!(problem.hint().contains("phi = tanh, linear, coupled-tanh"), "{}", problem.hint());
+    }
+}
