@@ -59,10 +59,12 @@ mod rough_plant {
     #[divan::bench(args = [1e-3, 2e-3], sample_count = 2000, sample_size = 1)]
     fn two_link(bencher: Bencher, seconds: f64) {
         let file = load_robot("quanser-2dof").expect("built in");
-        let robot::Links::PlanarTwoLink { mass, length, com, inertia } = file.links else {
-            panic!("two links")
-        };
-        period::<_, 2>(bencher, robot(&file, PlanarTwoLink::new(mass, length[0], com, inertia)), seconds);
+        let robot::Links::PlanarTwoLink(form) = &file.links else { panic!("two links") };
+        period::<_, 2>(
+            bencher,
+            robot(&file, PlanarTwoLink::new(form.mass, form.length[0], form.com, form.inertia)),
+            seconds,
+        );
     }
 
     #[divan::bench(args = [1e-3, 2e-3], sample_count = 2000, sample_size = 1)]

@@ -7,6 +7,41 @@ use crate::scalar::{Dual, Jet, Over, Scalar};
 ///
 /// A robot in closed form gives its mass matrix and potential energy; torques follow by [`Dual`] numbers. A tree of
 /// joints overrides the torques with O(n) recursions. Either way no derivative is written by hand.
+///
+/// A robot of one's own in closed form:
+///
+/// ```
+/// use flexure_core::linalg::{Ldl, Matrix, Vector};
+/// use flexure_core::model::Links;
+/// use flexure_core::scalar::{Over, Scalar};
+///
+/// /// A mass in kg that slides up and down.
+/// struct Lift<C>(C);
+///
+/// impl<C: Scalar> Links<C, 1> for Lift<C> {
+///     type Factor<'a, T: Over<C>> = Ldl<T, 1> where C: 'a;
+///
+///     fn mass_matrix<T: Over<C>>(&self, _: &Vector<T, 1>) -> Matrix<T, 1, 1> {
+///         Matrix([[T::constant(self.0)]])
+///     }
+///
+///     fn potential_energy<T: Over<C>>(&self, q: &Vector<T, 1>) -> T {
+///         q[0].scale(self.0 * C::from_f64(9.81))
+///     }
+///
+///     fn carrier_rates<T: Over<C>>(&self, _: &Vector<T, 1>, _: &Vector<T, 1>) -> Vector<T, 1> {
+///         Vector::ZERO // the motor stands on the ground
+///     }
+///
+///     fn factor<T: Over<C>>(&self, q: &Vector<T, 1>) -> Ldl<T, 1> {
+///         self.mass_matrix(q).ldl()
+///     }
+/// }
+///
+/// let lift = Lift(2.0);
+/// assert_eq!(lift.gravity_torque(&Vector([0.3])), Vector([2.0 * 9.81])); // by dual numbers
+/// assert_eq!(lift.forward_dynamics(&Vector([0.3]), &Vector([1.0]), &Vector([0.0])), Vector([-9.81]));
+/// ```
 pub trait Links<C: Scalar, const N: usize> {
     /// The mass matrix made ready for solving.
     type Factor<'a, T: Over<C>>: MassFactor<T, N>

@@ -47,6 +47,29 @@ use crate::scalar::{Jet, Over, Piecewise, Scalar};
 /// let [jet] = q_d.at::<4>(0.0).0;
 /// assert_eq!([0, 1, 2, 3].map(|k| jet.derivative(k)), [0.0, 1.0, 0.0, -1.0]);
 /// ```
+///
+/// A reference of one's own, whose derivatives come of themselves:
+///
+/// ```
+/// use flexure_core::linalg::Vector;
+/// use flexure_core::reference::Reference;
+/// use flexure_core::scalar::{Over, Piecewise, Scalar};
+///
+/// /// q_d = rate t², joint by joint.
+/// struct Parabola<C, const N: usize> {
+///     /// Half the acceleration [rad/s²].
+///     rate: Vector<C, N>,
+/// }
+///
+/// impl<C: Scalar, const N: usize> Reference<C, N> for Parabola<C, N> {
+///     fn on<T: Over<C> + Piecewise>(&self, t: T) -> Vector<T, N> {
+///         Vector::from_fn(|i| t.square().scale(self.rate[i]))
+///     }
+/// }
+///
+/// let [jet] = Parabola { rate: Vector([2.0]) }.at::<4>(3.0).0;
+/// assert_eq!([0, 1, 2, 3].map(|k| jet.derivative(k)), [18.0, 12.0, 4.0, 0.0]);
+/// ```
 pub trait Reference<C: Scalar, const N: usize> {
     /// Position in rad at time `t` in s.
     ///

@@ -92,3 +92,18 @@ fn metric_is_the_slope_of_its_integral() {
         }
     }
 }
+
+/// In a longer vector the joints that are there have the same φ to the bit, and those that are not have none.
+#[test]
+fn joints_that_are_not_there_change_nothing() {
+    let mut r = Numbers(7);
+    let (kappa, gain) = (r.between::<3>(1.0, 10.0), r.between::<3>(1.0, 60.0));
+    let longer = |v: &Vector<f64, 3>, pad| Vector::<f64, 5>::from_fn(|i| if i < 3 { v[i] } else { pad });
+    let exact = CoupledTanh::new(kappa, &gain);
+    let padded = CoupledTanh::of_joints(3, longer(&kappa, 1.0), &longer(&gain, 1.0));
+    for _ in 0..20 {
+        let e = r.vector::<3>(2.0);
+        let (short, long) = (exact.eval(&e), padded.eval(&longer(&e, 0.0)));
+        assert_eq!(long.0.map(f64::to_bits), longer(&short, 0.0).0.map(f64::to_bits));
+    }
+}

@@ -1,7 +1,7 @@
 //! The laws that take part, by name.
 
 use crate::files::{Problem, Problems, suggest};
-use crate::laws::{CONTROLLERS, Controller, Phi, SideGains};
+use crate::laws::{CONTROLLERS, Controller, Phi};
 use crate::robot::Robot;
 
 /// A law that takes part: a registered controller, v-CBC with one of its shaping functions.
@@ -11,9 +11,13 @@ pub struct Entrant {
     phi: Option<Phi>,
 }
 
-/// v-CBC by the names of its shaping functions here; the first is what `vcbc` alone means.
-const VCBC: [(&str, Phi); 3] =
-    [("vcbc", Phi::Linear), ("vcbc:tanh", Phi::Tanh), ("vcbc:coupled-tanh", Phi::CoupledTanh)];
+/// v-CBC by the names of its shaping functions here, `vcbc` alone for the one that starting gains are of.
+fn vcbc(phi: Phi) -> String {
+    if phi == Phi::Linear { VCBC.to_owned() } else { format!("{VCBC}:{}", phi.name()) }
+}
+
+/// The registered name of v-CBC.
+const VCBC: &str = "vcbc";
 
 impl Entrant {
     /// The law of that name: one of `flexure list controllers`, `vcbc:tanh` or `vcbc:coupled-tanh`; `vcbc` is φ linear.
@@ -21,24 +25,23 @@ impl Entrant {
     /// # Errors
     /// For any other name.
     pub fn named(name: &str) -> Result<Self, Problem> {
-        if let Some(&(_, phi)) = VCBC.iter().find(|(known, _)| *known == name) {
-            return Ok(Self { kind: VCBC[0].0, phi: Some(phi) });
+        if let Some(&phi) = Phi::ALL.iter().find(|phi| vcbc(**phi) == name) {
+            return Ok(Self { kind: VCBC, phi: Some(phi) });
         }
         if let Some(entry) = CONTROLLERS.iter().find(|entry| entry.name == name) {
             return Ok(Self { kind: entry.name, phi: None });
         }
-        let known = VCBC
-            .iter()
-            .map(|(name, _)| *name)
-            .chain(CONTROLLERS.iter().map(|entry| entry.name).filter(|name| *name != VCBC[0].0));
+        let shaped: Vec<_> = Phi::ALL.iter().map(|phi| vcbc(*phi)).filter(|name| *name != VCBC).collect();
+        let known = std::iter::once(VCBC)
+            .chain(shaped.iter().map(String::as_str))
+            .chain(CONTROLLERS.iter().map(|entry| entry.name).filter(|name| *name != VCBC));
         let message = format!("no controller is called {}", suggest::quoted(name));
         Err(Problem::new("unknown-name", message, suggest::hint(name, known)))
     }
 
     /// Its name.
     pub fn name(self) -> String {
-        let variant = VCBC.iter().find(|(_, phi)| self.phi == Some(*phi));
-        variant.map_or(self.kind, |(name, _)| name).to_owned()
+        self.phi.map_or_else(|| self.kind.to_owned(), vcbc)
     }
 
     /// The law with its starting gains for `robot`. Of the shaping functions, Λ of tanh is that of φ linear, its slope at
@@ -47,16 +50,10 @@ impl Entrant {
     /// # Errors
     /// As [`Controller::default_for`].
     pub fn controller(self, robot: &Robot) -> Result<Controller, Problems> {
-        let mut controller = Controller::default_for(self.kind, robot)?;
-        if let (Controller::Vcbc(gains), Some(phi)) = (&mut controller, self.phi) {
-            gains.phi = phi;
-            if phi == Phi::CoupledTanh {
-                let couple = |side: &mut SideGains| side.kappa = Some(side.shaping.clone());
-                couple(&mut gains.link);
-                couple(&mut gains.motor);
-            }
-        }
-        Ok(controller)
+        Ok(match (Controller::default_for(self.kind, robot)?, self.phi) {
+            (Controller::Vcbc(gains), Some(phi)) => Controller::Vcbc(Box::new(gains.shaped_by(phi))),
+            (controller, _) => controller,
+        })
     }
 }
 
@@ -68,7 +65,8 @@ pub fn entrants(names: &[String]) -> Result<Vec<Entrant>, Problem> {
     if names.is_empty() {
         let registered = CONTROLLERS.iter().map(|entry| entry.name);
         let (first, rest) = (registered.clone().take(1), registered.skip(1));
-        return first.chain([VCBC[1].0]).chain(rest).map(Entrant::named).collect();
+        let tanh = vcbc(Phi::Tanh);
+        return first.chain([tanh.as_str()]).chain(rest).map(Entrant::named).collect();
     }
     let mut chosen: Vec<Entrant> = Vec::new();
     for name in names {

@@ -43,11 +43,13 @@ pub fn estimator<const N: usize>(
     period: f64,
 ) -> Option<AnyEstimator<N>> {
     const CHECKED: &str = "the reader takes positive numbers only";
-    if let Some(estimators::Estimator::Observer { encoders, bandwidth }) = estimator {
-        let bandwidth = padded(bandwidth, 1.0);
-        return Some(match encoders {
-            Encoders::Both => AnyEstimator::Observer(Observer::new(&bandwidth, period).expect(CHECKED)),
-            Encoders::Motor => {
+    if let Some(estimator) = estimator {
+        return Some(match estimator {
+            estimators::Estimator::Observer { encoders: Encoders::Both, bandwidth } => {
+                AnyEstimator::Observer(Observer::new(&padded(bandwidth, 1.0), period).expect(CHECKED))
+            }
+            estimators::Estimator::Observer { encoders: Encoders::Motor, bandwidth } => {
+                let bandwidth = padded(bandwidth, 1.0);
                 AnyEstimator::MotorObserver(MotorObserver::new(&bandwidth, period).expect(CHECKED))
             }
         });

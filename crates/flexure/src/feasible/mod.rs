@@ -9,6 +9,7 @@
 mod bounds;
 mod effort;
 mod peaks;
+mod reference;
 mod search;
 mod track;
 
@@ -23,6 +24,8 @@ use crate::scenario::Scenario;
 
 pub(crate) use crate::feasible::bounds::limit_words;
 pub use crate::feasible::effort::effort;
+pub(crate) use crate::feasible::reference::at_speed;
+pub use crate::feasible::reference::{enclosed_reference, reference};
 pub use crate::feasible::search::speed;
 
 /// The largest share of a limit that is used along the reference.

@@ -5,7 +5,7 @@ use flexure_core::scalar::Interval;
 
 use crate::feasible::bounds::{Bound, LimitKind};
 use crate::feasible::track::{Demand, Demands, Track};
-use crate::references::{Profile, Reference, when};
+use crate::references::{Jump, when};
 use crate::scenario::Scenario;
 
 /// The reference of a scenario at a speed.
@@ -103,18 +103,13 @@ fn tops(bounds: &[Bound], [a, b, c]: [&Demand; 3]) -> Vec<f64> {
     bounds.iter().filter_map(top).collect()
 }
 
-/// When a motion from rest to rest asks for a torque that jumps, in s, and whether it even asks for an infinite one.
+/// When the reference asks for a torque that jumps, in s, and whether it even asks for an infinite one.
 fn jumps(course: &PacedReference<'_>) -> Option<(f64, bool)> {
-    let Reference::PointToPoint { profile, start, .. } = &course.scenario.reference else { return None };
-    let infinite = match profile {
-        Profile::Quintic => true,
-        Profile::Septic => false,
-        Profile::Nonic => return None,
-    };
+    let Jump { derivative, time, .. } = course.scenario.reference.jump()?;
     let speed = Interval::point(course.speed);
     let clock = match course.scenario.time_scaling.and_then(|scaling| scaling.rise) {
         Some(rise) => Clock::FromRest { speed, rise: Interval::point(rise) },
         None => Clock::Steady { speed },
     };
-    Some((when(&clock, Interval::point(*start)).midpoint(), infinite))
+    Some((when(&clock, Interval::point(time)).midpoint(), derivative < 4))
 }

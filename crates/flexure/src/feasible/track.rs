@@ -2,6 +2,7 @@
 
 use flexure_core::reference::Reference as _;
 
+use crate::feasible::at_speed;
 use crate::feasible::bounds::{Bound, LimitKind};
 use crate::files::Problems;
 use crate::references::AnyReference;
@@ -45,7 +46,7 @@ impl Demand {
 pub fn with_track<R>(scenario: &Scenario, then: impl Fn(&dyn Track) -> R) -> Result<R, Problems> {
     let arm = scenario.robot.arm()?;
     Ok(sized!(&scenario.robot, L, N => {
-        then(&Pair { arm, reference: AnyReference::<f64, N>::at_speed(scenario, 1.0)? })
+        then(&Pair { arm, reference: at_speed::<N>(scenario, 1.0)? })
     }))
 }
 

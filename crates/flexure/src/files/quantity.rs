@@ -35,10 +35,10 @@ impl Quantity {
     const fn any(what: &'static str, unit: Unit) -> Self {
         Self { what, unit, sign: Sign::Any, plausible: (TINY, LARGEST, "") }
     }
-    const fn positive(what: &'static str, unit: Unit) -> Self {
+    pub const fn positive(what: &'static str, unit: Unit) -> Self {
         Self { sign: Sign::Positive, ..Self::any(what, unit) }
     }
-    const fn non_negative(what: &'static str, unit: Unit) -> Self {
+    pub const fn non_negative(what: &'static str, unit: Unit) -> Self {
         Self { sign: Sign::NonNegative, ..Self::any(what, unit) }
     }
     const fn nonzero(what: &'static str, unit: Unit) -> Self {
@@ -202,38 +202,6 @@ pub(crate) const FREQUENCY: Quantity = Quantity::any(
 .plausible(TINY, 1e4, "that is beyond any joint");
 pub(crate) const VELOCITY: Quantity =
     Quantity::any("joint velocity", units::SPEED).plausible(TINY, 1e3, "is it in degrees/s or rev/min?");
-pub(crate) const GAIN_METRIC: Quantity = Quantity::positive("metric Π, diagonal", units::STIFFNESS);
-pub(crate) const GAIN_HARDENING: Quantity =
-    Quantity::non_negative("growth of Π_l with the error squared", units::HARDENING);
-pub(crate) const GAIN_SHAPING: Quantity = Quantity::positive("gain Λ inside φ", units::RATE);
-pub(crate) const GAIN_DAMPING: Quantity = Quantity::positive("injected damping K_d", units::DAMPING);
-pub(crate) const GAIN_KAPPA: Quantity = Quantity::positive("rate κ of coupled-tanh", units::RATE);
-pub(crate) const GAIN_STIFFNESS: Quantity =
-    Quantity::positive("stiffness K_P of the feedback of motor positions", units::STIFFNESS);
-pub(crate) const GAIN_SNAP_POSITION: Quantity =
-    Quantity::positive("gain k_0 of the link position error", units::RATE_4);
-pub(crate) const GAIN_SNAP_VELOCITY: Quantity =
-    Quantity::positive("gain k_1 of the link velocity error", units::RATE_3);
-pub(crate) const GAIN_SNAP_ACCELERATION: Quantity =
-    Quantity::positive("gain k_2 of the link acceleration error", units::RATE_2);
-pub(crate) const GAIN_SNAP_JERK: Quantity =
-    Quantity::positive("gain k_3 of the link jerk error", units::RATE);
-pub(crate) const GAIN_POSITION: Quantity =
-    Quantity::positive("gain k_p of the position error", units::RATE_2);
-pub(crate) const GAIN_RATE: Quantity = Quantity::positive("gain k_v of the velocity error", units::RATE);
-pub(crate) const GAIN_LINK: Quantity =
-    Quantity::non_negative("damping injected into the links", units::DAMPING);
-pub(crate) const GAIN_MOTOR: Quantity =
-    Quantity::non_negative("damping injected into the motors", units::DAMPING);
-pub(crate) const GAIN_INERTIA: Quantity =
-    Quantity::positive("motor inertia that feedback of the spring torque makes", units::INERTIA);
-pub(crate) const GAIN_WEIGHT: Quantity =
-    Quantity::positive("weight W of motor position errors", units::STIFFNESS);
-pub(crate) const GAIN_MOTOR_SHAPING: Quantity =
-    Quantity::positive("rate a at which motor errors decay", units::RATE);
-pub(crate) const GAIN_SPRING: Quantity = Quantity::non_negative("damping K_f of the springs", units::DAMPING);
-pub(crate) const GAIN_VELOCITY: Quantity =
-    Quantity::non_negative("damping K_D of the feedback of motor velocities", units::DAMPING);
 pub(crate) const TORQUE_RATE_LIMIT: Quantity =
     Quantity::positive("largest rate of the motor torque, link side of the gear", units::TORQUE_RATE)
         .plausible(1e-1, 1e9, "is it in N m/ms?");

@@ -3,41 +3,25 @@
 use std::f64::consts::FRAC_PI_2;
 
 use crate::files::{Problem, Problems};
-use crate::laws::{BASELINES, Baseline, Controller, Drive, Phi, SideGains, VcbcGains};
+use crate::laws::{Controller, Drive, MAKERS};
 use crate::robot::Robot;
 
 impl Controller {
     /// The law of this kind with gains made from stiffness, motor inertia and link inertia of each joint: where tuning
-    /// starts on any robot. All laws are to make errors decay at the same
-    /// [rate](Drive::bandwidth); [`BASELINES`] says for each gain how. For `vcbc` with φ linear: Π_l = m ω², Π_m = K,
-    /// Λ = ω, K_d = J ω with J the inertia of that side, m of the links with the other joints free.
+    /// starts on any robot. All laws are to make errors decay at the same [rate](Drive::bandwidth); the file of each law says
+    /// for each gain how.
     ///
     /// # Errors
     /// For an unknown kind, and if the robot has more joints than this program was built for.
     pub fn default_for(kind: &str, robot: &Robot) -> Result<Self, Problems> {
         let drives = drives(robot)?;
-        let of = |start: &dyn Fn(&Drive) -> f64| drives.iter().map(start).collect::<Vec<_>>();
-        if kind == "vcbc" {
-            let side = |inertia: fn(&Drive) -> f64, metric: &dyn Fn(&Drive) -> f64| SideGains {
-                metric: of(metric),
-                shaping: of(&Drive::bandwidth),
-                damping: of(&|drive| inertia(drive) * drive.bandwidth()),
-                kappa: None,
-                metric_hardening: None,
-            };
-            let link =
-                side(|drive| drive.free_inertia, &|drive| drive.free_inertia * drive.bandwidth().powi(2));
-            let motor = side(|drive| drive.motor_inertia, &|drive| drive.stiffness);
-            return Ok(Self::Vcbc(Box::new(VcbcGains { phi: Phi::Linear, link, motor })));
-        }
-        let Some(shape) = BASELINES.iter().find(|shape| shape.kind == kind) else {
+        let Some((_, maker)) = MAKERS.iter().find(|(name, _)| *name == kind) else {
             let hint = "`flexure list controllers` shows them";
             return Err(
                 Problem::new("unknown-name", format!("no controller is called '{kind}'"), hint).into()
             );
         };
-        let gains = shape.gains.iter().map(|gain| (gain.key, of(&gain.start))).collect();
-        Ok(Self::Baseline(Baseline { kind: shape.kind, gains }))
+        Ok((maker.start)(&drives))
     }
 }
 

@@ -1,7 +1,57 @@
-//! The gains of `vcbc`.
+//! Virtual-contraction based control: a metric, a shaping function and damping on either side of the springs.
+
+use flexure_core::control::{self, Command, Input, LinkGains, Metric, MotorGains};
+use flexure_core::linalg::Vector;
+use flexure_core::model::{Fjr, Links, Motion};
+use flexure_core::scalar::{Jet, Scalar};
 
 use crate::files::field::{Field, Joints};
-use crate::files::quantity;
+use crate::laws::gain::{GainSet, ReadGains};
+use crate::laws::registry::{LawKind, constants};
+use crate::laws::side::{self, SideGains};
+use crate::laws::{AnyShaping, Drive, Extra, Phi};
+
+/// The kind `vcbc`: [`control::Vcbc`] with any registered φ.
+pub struct Vcbc;
+
+impl LawKind for Vcbc {
+    const NAME: &'static str = "vcbc";
+    const SUMMARY: &'static str = "virtual-contraction law of flexible-joint robots: (φ, Π, K_d) per side";
+
+    type Gains = VcbcGains;
+    const GAINS: () = ();
+
+    type Core<C: Scalar, const N: usize> = Law<C, N>;
+
+    fn core<C: Scalar, const N: usize>(
+        gains: &VcbcGains,
+        vector: impl Fn(&Vec<f64>) -> Vector<C, N>,
+    ) -> Law<C, N> {
+        let VcbcGains { phi, link, motor } = gains;
+        let base = vector(&link.metric);
+        let metric = match &link.metric_hardening {
+            Some(hardening) => Metric::Hardening { base, hardening: vector(hardening) },
+            None => Metric::Constant(base),
+        };
+        let shaping = |side: &SideGains| {
+            let extra = |extra: &Extra| {
+                vector(side.extra(extra.key).expect("the reader asks for what φ has beside Λ"))
+            };
+            AnyShaping::new(*phi, side.metric.len(), vector(&side.shaping), &extra)
+        };
+        control::Vcbc {
+            link: LinkGains { metric, shaping: shaping(link), damping: vector(&link.damping) },
+            motor: MotorGains {
+                metric: vector(&motor.metric),
+                shaping: shaping(motor),
+                damping: vector(&motor.damping),
+            },
+        }
+    }
+}
+
+/// The v-CBC law over the registered shaping functions, with gains of type `C`.
+pub type Law<C, const N: usize> = control::Vcbc<C, AnyShaping<C, N>, AnyShaping<C, N>, N>;
 
 /// The gains of virtual-contraction based control.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,127 +65,70 @@ pub struct VcbcGains {
 }
 
 impl VcbcGains {
-    /// Every gain with its path.
-    pub(crate) fn named(&self) -> Vec<(String, &[f64])> {
-        let side = |name: &'static str, gains: &SideGains| {
-            gains.keys().map(move |key| format!("{name}.{key}")).collect::<Vec<_>>()
+    /// The same with another φ, whose gains beside Λ are those that tuning starts from.
+    pub fn shaped_by(mut self, phi: Phi) -> Self {
+        self.phi = phi;
+        self.link.start_extra(phi);
+        self.motor.start_extra(phi);
+        self
+    }
+}
+
+impl GainSet for VcbcGains {
+    type Shape = ();
+
+    /// With φ linear: Π_l = m ω², Π_m = K, Λ = ω, K_d = J ω with J the inertia of that side, m of the links with the other
+    /// joints free.
+    fn start((): &(), drives: &[Drive]) -> Self {
+        let of = |start: &dyn Fn(&Drive) -> f64| drives.iter().map(start).collect::<Vec<_>>();
+        let side = |inertia: fn(&Drive) -> f64, metric: &dyn Fn(&Drive) -> f64| SideGains {
+            metric: of(metric),
+            shaping: of(&Drive::bandwidth),
+            damping: of(&|drive| inertia(drive) * drive.bandwidth()),
+            extra: Vec::new(),
+            metric_hardening: None,
         };
-        let names = side("link", &self.link).into_iter().chain(side("motor", &self.motor));
-        names.zip(self.link.values().chain(self.motor.values()).map(Vec::as_slice)).collect()
+        let link = side(|drive| drive.free_inertia, &|drive| drive.free_inertia * drive.bandwidth().powi(2));
+        let motor = side(|drive| drive.motor_inertia, &|drive| drive.stiffness);
+        Self { phi: Phi::Linear, link, motor }
     }
 
-    /// The powers of 1/s in their units.
-    pub(crate) fn speed_powers(&self) -> Vec<i32> {
-        let power = |key: &str| match key {
-            "metric" => quantity::GAIN_METRIC.per_second(),
-            "shaping" => quantity::GAIN_SHAPING.per_second(),
-            "damping" => quantity::GAIN_DAMPING.per_second(),
-            "kappa" => quantity::GAIN_KAPPA.per_second(),
-            _ => quantity::GAIN_HARDENING.per_second(),
+    fn named<'a>(&'a self, (): &()) -> Vec<(String, &'a [f64])> {
+        let side = |name: &'static str, gains: &'a SideGains| {
+            let entries = gains.entries(self.phi).into_iter();
+            entries.map(move |(key, _, values)| (format!("{name}.{key}"), values.as_slice()))
         };
-        self.link.keys().chain(self.motor.keys()).map(power).collect()
+        side("link", &self.link).chain(side("motor", &self.motor)).collect()
     }
 
-    /// The same gains, to be changed.
-    pub(crate) fn slots(&mut self) -> Vec<&mut Vec<f64>> {
+    fn speed_powers(&self, (): &()) -> Vec<i32> {
+        let entries = [&self.link, &self.motor].map(|side| side.entries(self.phi));
+        entries.iter().flatten().map(|(_, quantity, _)| quantity.per_second()).collect()
+    }
+
+    fn slots(&mut self) -> Vec<&mut Vec<f64>> {
         self.link.slots().chain(self.motor.slots()).collect()
     }
-}
 
-/// A shaping function φ.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Phi {
-    /// φ_1 = Λ tanh q̃.
-    Tanh,
-    /// φ_2 = Λ q̃.
-    Linear,
-    /// φ_3, with κ.
-    CoupledTanh,
-}
-
-const PHIS: &[(&str, Phi)] =
-    &[("tanh", Phi::Tanh), ("linear", Phi::Linear), ("coupled-tanh", Phi::CoupledTanh)];
-
-impl Phi {
-    /// The name in files.
-    pub fn name(self) -> &'static str {
-        PHIS.iter().find(|(_, phi)| *phi == self).map_or("", |(name, _)| name)
+    fn phi(&self) -> Option<&'static str> {
+        Some(self.phi.name())
     }
 }
 
-/// The gains of one side, one number per joint.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SideGains {
-    /// Metric Π, diagonal, > 0 [N m/rad].
-    pub metric: Vec<f64>,
-    /// Gain Λ inside φ, > 0 [1/s; rad/s for `tanh`].
-    pub shaping: Vec<f64>,
-    /// Injected damping K_d, > 0 [N m s/rad].
-    pub damping: Vec<f64>,
-    /// κ > 0 of `coupled-tanh` [1/s].
-    pub kappa: Option<Vec<f64>>,
-    /// h ≥ 0 in Π_l(q̃) = metric + h q̃², link side only [N m/rad³].
-    pub metric_hardening: Option<Vec<f64>>,
-}
-
-impl SideGains {
-    /// Keys of the gains that are there.
-    fn keys(&self) -> impl Iterator<Item = &'static str> + use<> {
-        let kappa = self.kappa.is_some().then_some("kappa");
-        let hardening = self.metric_hardening.is_some().then_some("metric_hardening");
-        ["metric", "shaping", "damping"].into_iter().chain(kappa).chain(hardening)
+impl ReadGains for VcbcGains {
+    fn read((): &(), field: &Field<'_>, joints: &Joints) -> Option<Self> {
+        let table = field.table(&["kind", "phi", "link", "motor"])?;
+        let known: Vec<_> = Phi::ALL.iter().map(|phi| (phi.name(), *phi)).collect();
+        let phi = table.choice("phi", &known);
+        let link = table
+            .required("link", "gains of the link side")
+            .and_then(|field| side::read(&field, phi, joints));
+        let motor = table.required("motor", "gains of the motor side").and_then(|field| {
+            refuse_hardening(&field)?;
+            side::read(&field, phi, joints)
+        });
+        Some(Self { phi: phi?, link: link?, motor: motor? })
     }
-
-    /// Their values, in the order of [`keys`](Self::keys).
-    fn values(&self) -> impl Iterator<Item = &Vec<f64>> {
-        [&self.metric, &self.shaping, &self.damping]
-            .into_iter()
-            .chain(&self.kappa)
-            .chain(&self.metric_hardening)
-    }
-
-    fn slots(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
-        let Self { metric, shaping, damping, kappa, metric_hardening } = self;
-        [metric, shaping, damping].into_iter().chain(kappa).chain(metric_hardening)
-    }
-}
-
-/// Reads the gains of `vcbc`.
-pub(crate) fn read(field: &Field<'_>, joints: &Joints) -> Option<VcbcGains> {
-    let table = field.table(&["kind", "phi", "link", "motor"])?;
-    let phi = table.choice("phi", PHIS);
-    let link = table.required("link", "gains of the link side").and_then(|field| side(&field, phi, joints));
-    let motor = table.required("motor", "gains of the motor side").and_then(|field| {
-        refuse_hardening(&field)?;
-        side(&field, phi, joints)
-    });
-    Some(VcbcGains { phi: phi?, link: link?, motor: motor? })
-}
-
-fn side(field: &Field<'_>, phi: Option<Phi>, joints: &Joints) -> Option<SideGains> {
-    let table = field.table(&["metric", "shaping", "damping", "kappa", "metric_hardening"])?;
-    let metric = table.per_joint("metric", joints, &quantity::GAIN_METRIC);
-    let shaping = table.optional("shaping", |field| field.per_joint(joints, &quantity::GAIN_SHAPING));
-    let damping = table.per_joint("damping", joints, &quantity::GAIN_DAMPING);
-    let hardening =
-        table.optional("metric_hardening", |field| field.per_joint(joints, &quantity::GAIN_HARDENING));
-    let kappa = match (phi, table.get("kappa")) {
-        (Some(Phi::CoupledTanh), _) => table.per_joint("kappa", joints, &quantity::GAIN_KAPPA).map(Some),
-        (Some(phi), Some(field)) => {
-            let message = format!("{} is given, but phi is '{}', which has no kappa", field.path, phi.name());
-            field.error("unused", message, "remove it, or choose phi = \"coupled-tanh\"");
-            None
-        }
-        _ => Some(None),
-    };
-    let metric = metric?;
-    Some(SideGains {
-        shaping: shaping?.unwrap_or_else(|| metric.clone()),
-        metric,
-        damping: damping?,
-        kappa: kappa?,
-        metric_hardening: hardening?,
-    })
 }
 
 fn refuse_hardening(motor: &Field<'_>) -> Option<()> {
@@ -147,4 +140,29 @@ fn refuse_hardening(motor: &Field<'_>) -> Option<()> {
          only the link side may have it",
     );
     None
+}
+
+/// The v-CBC law with the gains of a scenario.
+pub fn law<const N: usize>(gains: &VcbcGains) -> Law<f64, N> {
+    law_over(gains, |x| x)
+}
+
+/// The v-CBC law with every gain of a scenario through `number`: [`Scenario::bounds`] for the law over intervals that
+/// encloses what the decimals in the file say.
+///
+/// [`Scenario::bounds`]: crate::scenario::Scenario::bounds
+pub fn law_over<C: Scalar, const N: usize>(gains: &VcbcGains, number: impl Fn(f64) -> C) -> Law<C, N> {
+    Vcbc::core(gains, constants(&number))
+}
+
+/// What the v-CBC `law` commands the robot at `x` to do, following `q_ld`, the reference in rad to order 4. Compiled once
+/// per robot: it is much code, wanted in many places.
+#[inline(never)]
+pub fn command<L: Links<f64, N>, const N: usize>(
+    law: &Law<f64, N>,
+    robot: &Fjr<f64, L, N>,
+    x: &Motion<f64, N>,
+    q_ld: &Vector<Jet<f64, 5>, N>,
+) -> Command<f64, N> {
+    law.command(robot, x, q_ld, &Input::ZERO)
 }

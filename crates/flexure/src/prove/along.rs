@@ -9,6 +9,7 @@ mod exceeding;
 use flexure_core::scalar::{Interval, Scalar};
 use serde::Serialize;
 
+use crate::feasible;
 use crate::files::{Problem, Problems};
 use crate::laws::law_over;
 use crate::prove::engine::envelope::closed_loop::{Enclosed, Place, Slope, TrackingLoop};
@@ -18,7 +19,6 @@ use crate::prove::engine::envelope::witness::candidates;
 use crate::prove::engine::envelope::{AlongRequest, Course, course};
 use crate::prove::engine::number::Number;
 use crate::prove::engine::verdict::{Undecided, Verdict};
-use crate::references::{self, AnyReference, Profile};
 use crate::robot::sized::{OF_THE_KIND, fjr, sized};
 use crate::scenario::Scenario;
 
@@ -92,7 +92,7 @@ fn enclosed(scenario: &Scenario) -> Result<Box<dyn TrackingLoop>, Problems> {
     let robot = &scenario.robot;
     Ok(sized!(robot, L, N => {
         let links = fjr::<Interval, L<Interval>, N>(robot, &robot.enclosed, |x| robot.bounds(x), &Interval::midpoint);
-        let reference = AnyReference::<Interval, N>::enclosed(scenario)?;
+        let reference = feasible::enclosed_reference::<N>(scenario)?;
         let law = law_over(scenario.vcbc()?, |x| scenario.bounds(x));
         let [breaks, kinks] = [reference.breaks(), reference.kinks()];
         Box::new(Enclosed { robot: links.expect(OF_THE_KIND), law, reference, breaks, kinks })
@@ -105,8 +105,11 @@ fn suitable(scenario: &Scenario) -> Result<(), Problems> {
     if let Some(problem) = uneven_metric(scenario) {
         return Err(problem.into());
     }
-    if matches!(&scenario.reference, references::Reference::PointToPoint { profile: Profile::Quintic, .. }) {
-        let message = "the third derivative of a quintic jumps, and the errors with it: no tube holds them";
+    if let Some(jump) = scenario.reference.jump().filter(|jump| jump.derivative <= 3) {
+        let message = format!(
+            "the third derivative of a {} jumps, and the errors with it: no tube holds them",
+            jump.of
+        );
         let help = "take septic or nonic";
         return Err(scenario.places.problem("reference.kind", "reference", message, help).into());
     }

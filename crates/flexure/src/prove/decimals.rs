@@ -14,7 +14,7 @@ pub(crate) fn gains(scenario: &Scenario, gains: &laws::SideGains) -> DecimalGain
         metric: numbers(&gains.metric),
         shaping: numbers(&gains.shaping),
         damping: numbers(&gains.damping),
-        kappa: gains.kappa.as_deref().map(numbers),
+        kappa: gains.extra("kappa").map(|kappa| numbers(kappa)),
     }
 }
 
@@ -34,21 +34,22 @@ pub(crate) fn robot(data: &robot::Robot) -> DecimalRobot {
 
 fn links(data: &robot::Robot) -> DecimalLinks {
     let number = |x: f64| Number::read(x, data.bounds(x));
-    match (&data.links, &data.enclosed) {
-        (robot::Links::PlanarTwoLink { mass, length, com, inertia }, _) => DecimalLinks::PlanarTwoLink {
-            mass: mass.map(number),
-            length: number(length[0]),
-            com: com.map(number),
-            inertia: inertia.map(number),
-        },
-        (robot::Links::Pendulum { mass, com, inertia }, _) => {
+    match &data.links {
+        robot::Links::PlanarTwoLink(robot::PlanarTwoLink { mass, length, com, inertia }) => {
+            DecimalLinks::PlanarTwoLink {
+                mass: mass.map(number),
+                length: number(length[0]),
+                com: com.map(number),
+                inertia: inertia.map(number),
+            }
+        }
+        robot::Links::Pendulum(robot::Pendulum { mass, com, inertia }) => {
             DecimalLinks::Pendulum { mass: number(*mass), com: number(*com), inertia: number(*inertia) }
         }
-        (_, robot::Links::Tree(bodies)) => {
-            let bodies = bodies.iter().enumerate().map(|(i, enclosed)| body(data, i, enclosed));
-            DecimalLinks::Tree { bodies: bodies.collect() }
+        robot::Links::Tree(_) => {
+            let bodies = data.enclosed.tree().iter().enumerate();
+            DecimalLinks::Tree { bodies: bodies.map(|(i, enclosed)| body(data, i, enclosed)).collect() }
         }
-        _ => unreachable!("enclosed links are of the same kind"),
     }
 }
 

@@ -1,7 +1,6 @@
 //! The paper's formula for the rate: products of extreme eigenvalues. A lower bound of the true rate, often a poor one.
 
 use crate::laws::VcbcGains;
-use crate::prove::engine::certificate::CertifiedPhi;
 use crate::prove::engine::region::region;
 use crate::prove::engine::structural::{Proposition, positions};
 use crate::robot::Robot;
@@ -15,10 +14,9 @@ pub fn paper_rate(robot: &Robot, gains: &VcbcGains, problem: &Proposition, large
     let smallest = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
     let largest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
 
-    let beta_q = if problem.controller.phi == CertifiedPhi::CoupledTanh {
-        let kappa = [&link.kappa, &motor.kappa].map(|kappa| kappa.clone().unwrap_or_default()).concat();
-        0.5 * smallest(&mut kappa.into_iter())
-    } else {
+    let kappa = [link, motor].map(|side| side.extra("kappa").cloned().unwrap_or_default()).concat();
+    let own = problem.controller.phi.certified().paper_rate(&kappa);
+    let beta_q = own.unwrap_or_else(|| {
         let metric: Vec<_> =
             problem.controller.link.metric.iter().chain(&problem.controller.motor.metric).collect();
         let bounds: Vec<_> = metric.iter().map(|number| number.bounds()).collect();
@@ -30,7 +28,7 @@ pub fn paper_rate(robot: &Robot, gains: &VcbcGains, problem: &Proposition, large
                 .collect::<Vec<_>>()
         });
         smallest(&mut products.into_iter()) / largest(&[link.metric.clone(), motor.metric.clone()].concat())
-    };
+    });
     let side = |plant: &[f64], injected: &[f64], inertia: f64| {
         smallest(&mut plant.iter().zip(injected).map(|(a, b)| a + b)) / inertia
     };

@@ -4,7 +4,7 @@ use std::time::Instant as Clock;
 
 use flexure_core::scalar::Interval;
 
-use crate::files::Problems;
+use crate::files::{Problem, Problems};
 use crate::linalg::Symmetric;
 use crate::prove::along::{Along, along, start_level, uneven_metric};
 use crate::prove::confirmation::{Confirmation, confirm};
@@ -102,11 +102,7 @@ pub fn problem(
     if let Some(problem) = uneven_metric(scenario) {
         return Err(problem.into());
     }
-    let phi = match phi {
-        laws::Phi::Tanh => CertifiedPhi::Tanh,
-        laws::Phi::Linear => CertifiedPhi::Linear,
-        laws::Phi::CoupledTanh => CertifiedPhi::CoupledTanh,
-    };
+    let phi = CertifiedPhi::named(phi.name()).ok_or_else(|| uncertified(scenario, *phi))?;
     let controller = DecimalLaw { phi, link: gains(scenario, link), motor: gains(scenario, motor) };
     let mut assumptions: Vec<String> = scenario
         .assumptions
@@ -120,9 +116,11 @@ pub fn problem(
     let region = match &question.region {
         Region::Errors(largest) => RequestedRegion::Box(errors(largest)),
         Region::Start(start) => RequestedRegion::Level(level_that_holds(&errors(start), &metric)),
-        Region::Chosen if phi == CertifiedPhi::Tanh => {
+        Region::Chosen if !phi.certified().has_rate_everywhere() => {
             let (request, note) = chosen(&metric, start);
-            assumptions.push(format!("no region was named and tanh has no rate everywhere: {note} is taken"));
+            let name = phi.certified().name();
+            assumptions
+                .push(format!("no region was named and {name} has no rate everywhere: {note} is taken"));
             request
         }
         Region::Chosen => RequestedRegion::Everywhere,
@@ -137,6 +135,14 @@ pub fn problem(
         region,
         disturbance,
     })
+}
+
+/// What to say of a shaping function that no certificate speaks of.
+fn uncertified(scenario: &Scenario, phi: laws::Phi) -> Problem {
+    let message = format!("controller.phi is '{}', of which no certificate speaks", phi.name());
+    let help =
+        format!("those are of phi = {}; `flexure run` simulates any", CertifiedPhi::names().join(", "));
+    scenario.places.problem("controller.phi", "unsupported", message, help)
 }
 
 /// What the scenario has and a certificate does not speak of.
@@ -299,9 +305,26 @@ fn slower(rate: f64, certificate: &Certificate, sampled: &Sampled, damping: &[f6
 /// # Errors
 /// If its level set cannot be found.
 pub fn certified_rate(scenario: &Scenario) -> Result<Option<f64>, Problems> {
-    if scenario.vcbc().is_err() || uneven_metric(scenario).is_some() {
+    let certified = scenario.vcbc().is_ok_and(|gains| CertifiedPhi::named(gains.phi.name()).is_some());
+    if !certified || uneven_metric(scenario).is_some() {
         return Ok(None);
     }
     let problem = problem(scenario, &Question::default(), start_level(scenario).ok())?;
     Ok(certify(&problem).proved().map(|certificate| certificate.contraction_rate.approximate()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::uncertified;
+    use crate::laws;
+    use crate::scenario::load_scenario;
+
+    /// What a shaping function without a file in `engine/shaping` is refused with.
+    #[test]
+    fn a_shaping_function_without_certificate_is_refused_by_name() {
+        let scenario = load_scenario("two-link-tanh").expect("built in");
+        let problem = uncertified(&scenario, laws::Phi::Tanh);
+        assert!(problem.to_string().contains("controller.phi is 'tanh', of which no certificate speaks"));
+        assert!(problem.hint().contains("phi = tanh, linear, coupled-tanh"), "{}", problem.hint());
+    }
 }

@@ -2,9 +2,10 @@
 
 use flexure_core::linalg::Vector;
 use flexure_core::reference::Reference;
-use flexure_core::scalar::{Interval, Jet, Over, Piecewise, Scalar};
+use flexure_core::scalar::{Jet, Over, Piecewise, Scalar};
 use thiserror::Error;
 
+use crate::references::registry::Instant;
 use crate::references::septic::{Segment, interpolate};
 
 /// The septic spline through samples (t_i, q_i), at rest at both ends.
@@ -165,29 +166,19 @@ impl<C: Scalar, const N: usize> Samples<C, N> {
     }
 }
 
-impl<const N: usize> Reference<f64, N> for Samples<f64, N> {
-    /// Looks at every segment, for numbers that have no order; [`at`](Self::at) finds the one it needs.
-    fn on<T: Over<f64> + Piecewise>(&self, t: T) -> Vector<T, N> {
-        self.along(&self.segments, t)
-    }
-
-    /// [`on`](Self::on) the time variable, in O(log of the number of samples).
-    fn at<const K: usize>(&self, t: f64) -> Vector<Jet<f64, K>, N> {
-        let begun = self.segments.partition_point(|segment| segment.start <= t);
-        self.along(self.needed(begun, begun), Jet::variable(t))
-    }
-}
-
-impl<const N: usize> Reference<Interval, N> for Samples<Interval, N> {
+impl<C: Instant, const N: usize> Reference<C, N> for Samples<C, N> {
     /// Looks at every segment, for numbers that have no order; [`at`](Self::at) finds those it needs.
-    fn on<T: Over<Interval> + Piecewise>(&self, t: T) -> Vector<T, N> {
+    fn on<T: Over<C> + Piecewise>(&self, t: T) -> Vector<T, N> {
         self.along(&self.segments, t)
     }
 
     /// [`on`](Self::on) the time variable, in O(log of the number of samples) and the number of segments that `t` meets.
-    fn at<const K: usize>(&self, t: Interval) -> Vector<Jet<Interval, K>, N> {
-        let begun = self.segments.partition_point(|segment| segment.start.hi() <= t.lo());
-        let possible = self.segments.partition_point(|segment| segment.start.lo() <= t.hi());
+    fn at<const K: usize>(&self, t: C) -> Vector<Jet<C, K>, N>
+    where
+        C: Over<C> + Piecewise,
+    {
+        let begun = self.segments.partition_point(|segment| segment.start.highest() <= t.lowest());
+        let possible = self.segments.partition_point(|segment| segment.start.lowest() <= t.highest());
         self.along(self.needed(begun, possible), Jet::variable(t))
     }
 }

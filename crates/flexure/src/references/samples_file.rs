@@ -9,12 +9,17 @@ use crate::files::quantity::{self, Quantity};
 use crate::files::source::{LIMIT, Source};
 use crate::files::suggest;
 use crate::files::table::Table;
-use crate::references::document::Reference;
 
 /// Fewer samples leave nothing to interpolate between with four derivatives.
 const FEWEST: usize = 8;
 
-pub(crate) fn read(table: &Table<'_>, joints: &Joints, base: &Base, end: f64) -> Option<Reference> {
+/// The times in s and the positions in rad of the samples for a run of `end` seconds.
+pub(crate) fn read(
+    table: &Table<'_>,
+    joints: &Joints,
+    base: &Base,
+    end: f64,
+) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
     let field =
         table.required("file", "path of a CSV file, relative to the scenario, with the header t,q1,q2,…")?;
     let path = field.text()?;
@@ -29,8 +34,7 @@ pub(crate) fn read(table: &Table<'_>, joints: &Joints, base: &Base, end: f64) ->
     let rows = parse(&log, joints);
     let rows = field.log.absorb(log.finish(rows))?;
     check_span(&field, &rows, end)?;
-    let (t, q) = rows.into_iter().unzip();
-    Some(Reference::Samples { t, q })
+    Some(rows.into_iter().unzip())
 }
 
 /// One sample: its time and the positions.

@@ -13,7 +13,7 @@ pub(crate) mod urdf;
 pub use arm::{Arm, PortHamiltonian};
 pub use document::{Robot, robot_from_text};
 pub use joints::Limits;
-pub use links::{Body, DriveDefaults, JointKind, Links, MovingJoint};
+pub use links::{Body, DriveDefaults, JointKind, Links, MovingJoint, Pendulum, PlanarTwoLink};
 pub use load::load_robot;
 pub(crate) use load::robot;
 pub use overview::{JointRow, overview};

@@ -51,10 +51,9 @@ pub fn overview(robot: &Robot) -> Result<Vec<JointRow>, Problems> {
     let mut mass = vec![0.0; n * n];
     robot.arm()?.mass_matrix(&vec![0.0; n], &mut mass).expect("n joints");
     let link_inertia: Vec<f64> = mass.iter().step_by(n + 1).copied().collect();
-    let parents: Vec<Option<usize>> = match &robot.links {
-        robot::Links::Tree(bodies) => bodies.iter().map(|body| body.parent).collect(),
-        _ => (0..robot.joint_count()).map(|i| i.checked_sub(1)).collect(),
-    };
+    // The links of a closed form are a chain.
+    let tree = robot.links.tree();
+    let parent = |i: usize| tree.get(i).map_or_else(|| i.checked_sub(1), |body| body.parent);
     let limit = |limits: &[f64], i: usize| Some(limits[i]).filter(|limit| limit.is_finite());
     let row = |(i, joint): (usize, &robot::MovingJoint)| {
         let (stiffness, motor_inertia) = (robot.stiffness[i], robot.motor_inertia[i]);
@@ -64,7 +63,7 @@ pub fn overview(robot: &Robot) -> Result<Vec<JointRow>, Problems> {
                 JointKind::Revolute => "revolute",
                 JointKind::Prismatic => "prismatic",
             },
-            parent: parents[i].map(|parent| robot.joints[parent].name.clone()),
+            parent: parent(i).map(|parent| robot.joints[parent].name.clone()),
             stiffness,
             motor_inertia,
             link_inertia: link_inertia[i],

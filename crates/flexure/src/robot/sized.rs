@@ -51,8 +51,8 @@ pub(crate) use sized;
 /// For a tree with more than [`MAX_JOINTS`] moving joints.
 pub(crate) fn size(data: &robot::Robot) -> Result<Size, Problems> {
     match &data.links {
-        robot::Links::Pendulum { .. } => Ok(Size::Pendulum),
-        robot::Links::PlanarTwoLink { .. } => Ok(Size::PlanarTwoLink),
+        robot::Links::Pendulum(_) => Ok(Size::Pendulum),
+        robot::Links::PlanarTwoLink(_) => Ok(Size::PlanarTwoLink),
         robot::Links::Tree(bodies) => match bodies.len() {
             0..=4 => Ok(Size::Tree4),
             5..=8 => Ok(Size::Tree8),
@@ -94,17 +94,16 @@ impl<C: Scalar, const N: usize> FromFile<C, N> for Tree<C, N> {
 }
 
 impl<C: Scalar> FromFile<C, 2> for PlanarTwoLink<C> {
-    fn from_file(links: &robot::Links<C>, _: [C; 3], _: &dyn Fn(C) -> f64) -> Option<Self> {
-        let &robot::Links::PlanarTwoLink { mass, length, com, inertia } = links else { return None };
-        Some(Self::new(mass, length[0], com, inertia))
+    fn from_file(links: &robot::Links<C>, gravity: [C; 3], _: &dyn Fn(C) -> f64) -> Option<Self> {
+        let robot::Links::PlanarTwoLink(form) = links else { return None };
+        Some(form.core(gravity))
     }
 }
 
 impl<C: Scalar> FromFile<C, 1> for Pendulum<C> {
     fn from_file(links: &robot::Links<C>, gravity: [C; 3], _: &dyn Fn(C) -> f64) -> Option<Self> {
-        let &robot::Links::Pendulum { mass, com, inertia } = links else { return None };
-        let [x, y, z] = gravity.map(C::square);
-        Some(Self { inertia: inertia + mass * com.square(), weight_moment: mass * com * (x + y + z).sqrt() })
+        let robot::Links::Pendulum(form) = links else { return None };
+        Some(form.core(gravity))
     }
 }
 
@@ -146,12 +145,7 @@ pub(crate) fn pair<L: FromFile<f64, N>, const N: usize>(
 
 fn no_pair(model: &robot::Robot, plant: &robot::Robot) -> Problem {
     let what = |robot: &robot::Robot| {
-        let kind = match robot.links {
-            robot::Links::PlanarTwoLink { .. } => "a planar two-link arm",
-            robot::Links::Pendulum { .. } => "a pendulum",
-            robot::Links::Tree(_) => "a tree",
-        };
-        format!("{} is {kind} with joints: {}", robot.name, robot.joint_count())
+        format!("{} is {} with joints: {}", robot.name, robot.links.what(), robot.joint_count())
     };
     let message = format!("a law for one robot cannot move the other: {}; {}", what(model), what(plant));
     let help =

@@ -130,7 +130,9 @@ impl<'a> Loop<'a> {
             Some(Estimator::Observer { encoders: Encoders::Motor, .. }) => {
                 (&[Side::Motor], "add an encoder with placement = \"motor\"")
             }
-            Some(_) => (&Side::ALL, "add the other encoder, or let [estimator] use encoders = \"motor\""),
+            Some(Estimator::Observer { encoders: Encoders::Both, .. }) => {
+                (&Side::ALL, "add the other encoder, or let [estimator] use encoders = \"motor\"")
+            }
             None => (
                 &Side::ALL,
                 "add the other encoder, or [estimator] kind = \"observer\" with encoders = \"motor\"",

@@ -109,8 +109,8 @@ impl Scenario {
     pub fn vcbc(&self) -> Result<&VcbcGains, Problem> {
         match &self.controller {
             Controller::Vcbc(gains) => Ok(gains.as_ref()),
-            Controller::Baseline(law) => {
-                let message = format!("controller.kind is '{}': certificates are for 'vcbc'", law.kind);
+            other => {
+                let message = format!("controller.kind is '{}': certificates are for 'vcbc'", other.kind());
                 let help = "of other laws nothing is proved; `flexure run` simulates them";
                 Err(self.places.problem("controller.kind", "unsupported", message, help))
             }

@@ -7,6 +7,7 @@ use flexure_core::reference::Reference;
 use flexure_core::scalar::Jet;
 
 use crate::estimators::AnyEstimator;
+use crate::feasible;
 use crate::files::{Problem, Problems};
 use crate::laws::{self, AnyLaw, BlockRates, any_law};
 use crate::plant::{Plant, Push};
@@ -53,7 +54,7 @@ impl<L: FromFile<f64, N> + Clone, const N: usize> Held<L, N> {
         let law = any_law(&scenario.controller, |x| x);
         let columns = assembly::columns(scenario, &law);
         let signals = columns.signals(model.links.joints());
-        let reference = AnyReference::new(scenario)?;
+        let reference = feasible::reference::<N>(scenario)?;
         let simulation = simulation(scenario, model, plant, law, reference);
         Ok(Self { simulation, scenario: scenario.clone(), columns, signals })
     }

@@ -2,15 +2,15 @@
 
 use std::path::Path;
 
+use flexure::compare::{Entrant, entrants};
 use flexure::core::control::ControlLaw;
-use flexure::core::linalg::Vector;
-use flexure::core::model::{Fjr, Motion};
+use flexure::core::linalg::{Matrix, Vector};
+use flexure::core::model::{Fjr, Links as LinkModel, MassFactor, Motion};
 use flexure::core::robots::Tree;
-use flexure::core::scalar::{Dual, Interval, Jet, Scalar};
+use flexure::core::scalar::{Dual, Interval, Jet, Over, Scalar};
 use flexure::eval::evaluate_law;
 use flexure::files::{Problems, StateFile, StateRow};
-use flexure::laws::{BASELINES, Controller};
-use flexure::laws::{CONTROLLERS, any_law};
+use flexure::laws::{CONTROLLERS, Controller, any_law};
 use flexure::prove::question::{Question, prove};
 use flexure::robot::load_robot;
 use flexure::robot::{Links, Robot};
@@ -27,16 +27,16 @@ fn read(controller: &str) -> Result<Scenario, Problems> {
 
 /// `[controller]` as a file has it, two numbers for every gain.
 fn written(kind: &str) -> String {
-    let shape = BASELINES.iter().find(|shape| shape.kind == kind).expect("registered");
+    let robot = load_robot("quanser-2dof").expect("built in");
+    let controller = Controller::default_for(kind, &robot).expect("registered");
     let gains: Vec<_> =
-        shape.gains.iter().enumerate().map(|(i, gain)| format!("{} = [{i}.5, 7]", gain.key)).collect();
+        controller.gains().iter().enumerate().map(|(i, (key, _))| format!("{key} = [{i}.5, 7]")).collect();
     format!("kind = \"{kind}\"\n{}\n", gains.join("\n"))
 }
 
 #[test]
 fn every_registered_law_is_read() {
     let kinds: Vec<_> = CONTROLLERS.iter().map(|entry| entry.name).filter(|name| *name != "vcbc").collect();
-    assert_eq!(kinds.len(), BASELINES.len());
     for kind in kinds {
         let scenario = read(&written(kind)).unwrap_or_else(|problems| panic!("{kind}: {problems}"));
         assert_eq!(scenario.controller.kind(), kind);
@@ -230,6 +230,114 @@ fn every_law_runs_on_every_number() {
                 bounds[i]
             );
             assert!(bounds[i].width() < 1e-3 * (1.0 + u[i].abs()), "{kind}: {:?}", bounds[i]);
+        }
+    }
+}
+
+/// Three joints and two that are not there: unit inertia, no gravity, coupled with nothing.
+struct Padded(Tree<f64, 3>);
+
+/// The first three entries.
+fn head<T: Scalar>(v: &Vector<T, 5>) -> Vector<T, 3> {
+    Vector::from_fn(|i| v[i])
+}
+
+/// `v` and what the others have in `rest`.
+fn joined<T: Scalar>(v: &Vector<T, 3>, rest: &Vector<T, 5>) -> Vector<T, 5> {
+    Vector::from_fn(|i| if i < 3 { v[i] } else { rest[i] })
+}
+
+struct PaddedFactor<'a, T: Over<f64>>(<Tree<f64, 3> as LinkModel<f64, 3>>::Factor<'a, T>);
+
+impl<T: Over<f64>> MassFactor<T, 5> for PaddedFactor<'_, T> {
+    fn solve(&self, b: &Vector<T, 5>) -> Vector<T, 5> {
+        joined(&self.0.solve(&head(b)), b)
+    }
+}
+
+impl LinkModel<f64, 5> for Padded {
+    type Factor<'a, T: Over<f64>> = PaddedFactor<'a, T>;
+
+    fn mass_matrix<T: Over<f64>>(&self, q: &Vector<T, 5>) -> Matrix<T, 5, 5> {
+        let mass = self.0.mass_matrix(&head(q));
+        let one = Matrix::<T, 5, 5>::identity();
+        Matrix::from_fn(|i, j| if i < 3 && j < 3 { mass[(i, j)] } else { one[(i, j)] })
+    }
+
+    fn potential_energy<T: Over<f64>>(&self, q: &Vector<T, 5>) -> T {
+        self.0.potential_energy(&head(q))
+    }
+
+    fn carrier_rates<T: Over<f64>>(&self, q: &Vector<T, 5>, v: &Vector<T, 5>) -> Vector<T, 5> {
+        joined(&self.0.carrier_rates(&head(q), &head(v)), &Vector::ZERO)
+    }
+
+    fn factor<T: Over<f64>>(&self, q: &Vector<T, 5>) -> PaddedFactor<'_, T> {
+        PaddedFactor(self.0.factor(&head(q)))
+    }
+
+    fn gravity_torque<T: Over<f64>>(&self, q: &Vector<T, 5>) -> Vector<T, 5> {
+        joined(&self.0.gravity_torque(&head(q)), &Vector::ZERO)
+    }
+
+    fn inertial_torque<T: Over<f64>>(
+        &self,
+        q: &Vector<T, 5>,
+        v: &Vector<T, 5>,
+        v_r: &Vector<T, 5>,
+        a_r: &Vector<T, 5>,
+    ) -> Vector<T, 5> {
+        joined(&self.0.inertial_torque(&head(q), &head(v), &head(v_r), &head(a_r)), a_r)
+    }
+
+    fn inverse_dynamics<T: Over<f64>>(
+        &self,
+        q: &Vector<T, 5>,
+        v: &Vector<T, 5>,
+        v_r: &Vector<T, 5>,
+        a_r: &Vector<T, 5>,
+    ) -> Vector<T, 5> {
+        joined(&self.0.inverse_dynamics(&head(q), &head(v), &head(v_r), &head(a_r)), a_r)
+    }
+}
+
+/// Joints that only fill a vector get no torque, and the others the torque that they have without them, to the bit.
+#[test]
+fn joints_that_are_not_there_change_no_law() {
+    let data = load_robot("tomei-3r").expect("built in");
+    let robot = arm(&data, |x| x, |x| x);
+    let longer = |v: &Vector<f64, 3>, pad: f64| joined(v, &Vector([pad; 5]));
+    let padded = Fjr {
+        links: Padded(arm(&data, |x| x, |x| x).links),
+        motor_inertia: longer(&robot.motor_inertia, 1.0),
+        stiffness: longer(&robot.stiffness, 1.0),
+        link_damping: longer(&robot.link_damping, 0.0),
+        motor_damping: longer(&robot.motor_damping, 0.0),
+    };
+    let (x, q_ld) = place();
+    let [q_l, q_m, v_l, v_m] = [x.q_l, x.q_m, x.v_l, x.v_m].map(|v| longer(&v, 0.0));
+    let (far, q_far) = (Motion { q_l, q_m, v_l, v_m }, joined(&q_ld, &Vector::ZERO));
+    for name in
+        entrants(&[]).expect("all laws").iter().map(|law| law.name()).chain(["vcbc:coupled-tanh".into()])
+    {
+        let controller = Entrant::named(&name).expect("known").controller(&data).expect("three joints");
+        let u = any_law::<f64, 3>(&controller, |x| x).torque(&robot, &x, &q_ld);
+        let more = any_law::<f64, 5>(&controller, |x| x).torque(&padded, &far, &q_far);
+        assert_eq!(head(&more).0.map(f64::to_bits), u.0.map(f64::to_bits), "{name}");
+        assert_eq!([more[3].abs(), more[4].abs()], [0.0; 2], "{name}");
+    }
+}
+
+/// Every law has a row in both tables of its page, and the first names all its gains.
+#[test]
+fn every_law_is_on_its_page() {
+    let page = include_str!("../../../../docs/controllers.md");
+    let robot = load_robot("tomei-3r").expect("built in");
+    for name in names().filter(|name| *name != "vcbc") {
+        let rows: Vec<_> = page.lines().filter(|line| line.starts_with(&format!("| `{name}` |"))).collect();
+        assert_eq!(rows.len(), 2, "{name}");
+        for (key, _) in Controller::default_for(name, &robot).expect("registered").gains() {
+            assert!(rows[0].contains(&format!("`{key}`")) || rows[0].contains("as above"), "{name}: {key}");
         }
     }
 }

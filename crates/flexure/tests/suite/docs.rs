@@ -169,3 +169,17 @@ fn the_files_of_the_readme_load() {
     let scenario = load_scenario(&path("my-test.toml")).expect("a good scenario");
     assert!(scenario.warnings.is_empty(), "{:?}", scenario.warnings);
 }
+
+/// Every example of CONTRIBUTING.md, under the path in its first line, stands like that in the file.
+#[test]
+fn the_recipes_quote_what_is_compiled() {
+    let contributing = page("CONTRIBUTING.md");
+    let mut quoted = 0;
+    for block in contributing.split("```rust\n// ").skip(1) {
+        let (path, rest) = block.split_once('\n').expect("a path in the first line");
+        let (code, _) = rest.split_once("```").expect("an end");
+        assert!(page(path).contains(code), "{path} is not what CONTRIBUTING.md quotes");
+        quoted += 1;
+    }
+    assert!(quoted >= 7, "{quoted} examples");
+}

@@ -4,9 +4,9 @@ use flexure::core::control::Input;
 use flexure::core::linalg::Vector;
 use flexure::core::model::{Fjr, Motion};
 use flexure::core::robots::Tree;
+use flexure::feasible;
 use flexure::laws::law;
 use flexure::plant;
-use flexure::references::AnyReference;
 use flexure::reproduce::REPRODUCED;
 use flexure::robot::Links;
 use flexure::scenario::load_scenario;
@@ -136,7 +136,7 @@ fn the_continuous_loop_starts_from_rest_on_the_reference() {
 
 #[test]
 fn an_arm_that_has_come_to_rest_costs_no_more_than_one_that_moves() {
-    use flexure::references::{Profile, Reference};
+    use flexure::references::{PointToPoint, Profile, Reference};
     for (name, hold) in [
         ("pendulum-tanh", Hold::ZeroOrder),
         ("panda-tanh-smooth", Hold::ZeroOrder),
@@ -147,8 +147,13 @@ fn an_arm_that_has_come_to_rest_costs_no_more_than_one_that_moves() {
                 let from = s.initial.q_l.clone();
                 let to = from.iter().map(|q| q + 0.4).collect();
                 (s.smooth_start, s.duration, s.hold) = (None, 4.0, hold);
-                s.reference =
-                    Reference::PointToPoint { profile: Profile::Septic, from, to, start: 0.2, duration: 1.0 };
+                s.reference = Reference::PointToPoint(PointToPoint {
+                    profile: Profile::Septic,
+                    from,
+                    to,
+                    start: 0.2,
+                    duration: 1.0,
+                });
             },
             name,
         );
@@ -178,7 +183,7 @@ fn seven_joints_with_gravity_off_by(factor: f64) -> f64 {
     };
     let (plant, model) = (plant::Plant::from(robot(factor)), robot(1.0));
     let (law, reference) =
-        (law::<7>(scenario.vcbc().expect("v-CBC")), AnyReference::<f64, 7>::new(&scenario).expect("a path"));
+        (law::<7>(scenario.vcbc().expect("v-CBC")), feasible::reference::<7>(&scenario).expect("a path"));
     let known = model.clone();
     let torque =
         move |_: f64, x: &Motion<f64, 7>, q_ld: &Vector<_, 7>| law.command(&known, x, q_ld, &Input::ZERO).u_m;

@@ -3,7 +3,7 @@
 use flexure::feasible::speed;
 use flexure::feasible::{exceeded, usage};
 use flexure::files::{Problems, SCENARIOS};
-use flexure::references::{Profile, Reference, SmoothStart, Speed, TimeScaling};
+use flexure::references::{PointToPoint, Profile, Reference, Sines, SmoothStart, Speed, TimeScaling};
 use flexure::robot::load_robot;
 use flexure::scenario::load_scenario;
 use flexure::scenario::{Hold, Scenario};
@@ -31,7 +31,7 @@ fn amplitudes(scenario: &Scenario, omega: f64) -> [f64; 4] {
     let bent = (spring.0 / robot.stiffness[0], spring.1 / robot.stiffness[0]);
     let at = (1.0 + bent.0, bent.1);
     let torque = (motor.0 * at.0 - motor.1 * at.1 + spring.0, motor.0 * at.1 + motor.1 * at.0 + spring.1);
-    let Reference::Sines { terms, .. } = &scenario.reference else { panic!("a sine") };
+    let Reference::Sines(Sines { terms, .. }) = &scenario.reference else { panic!("a sine") };
     let amplitude = terms[0].amplitude[0];
     let torque = torque.0.hypot(torque.1) * amplitude;
     [torque, omega * torque, omega * amplitude, bent.0.hypot(bent.1) * amplitude]
@@ -162,13 +162,13 @@ fn limits_that_no_speed_keeps_are_refused_with_the_number() {
     let mut scenario = weightless();
     scenario.time_scaling = Some(within(0.9));
     scenario.robot.limits.torque = vec![100.0];
-    scenario.reference = Reference::PointToPoint {
+    scenario.reference = Reference::PointToPoint(PointToPoint {
         profile: Profile::Quintic,
         from: vec![0.0],
         to: vec![1.0],
         start: 1.0,
         duration: 3.0,
-    };
+    });
     refused(&scenario, "motor torque of inf", "take nonic");
 }
 

@@ -67,11 +67,11 @@ fn close(what: &str, got: &[f64], expected: &[f64]) {
     }
 }
 
-fn side(gains: &mut laws::SideGains, metric: &[f64], damping: &[f64], kappa: bool) {
+fn side(gains: &mut laws::SideGains, metric: &[f64], damping: &[f64]) {
     gains.metric = metric.to_vec();
     gains.shaping = metric.to_vec();
     gains.damping = damping.to_vec();
-    gains.kappa = kappa.then(|| vec![1.0; metric.len()]);
+    gains.extra.clear();
 }
 
 fn scenario(case: &Case) -> scenario::Scenario {
@@ -87,18 +87,18 @@ fn scenario(case: &Case) -> scenario::Scenario {
         "linear" => laws::Phi::Linear,
         other => panic!("no case of the file has {other}"),
     };
-    side(link, &case.Lambda_l, &case.K_ld, false);
-    side(motor, &case.Lambda_m, &case.K_md, false);
+    side(link, &case.Lambda_l, &case.K_ld);
+    side(motor, &case.Lambda_m, &case.K_md);
     let Reference { offset, amplitude, frequency } = &case.reference;
     scenario.smooth_start = None;
-    scenario.reference = references::Reference::Sines {
+    scenario.reference = references::Reference::Sines(references::Sines {
         offset: offset.clone(),
         terms: vec![references::Term {
             amplitude: amplitude.clone(),
             frequency: frequency.clone(),
             phase: vec![0.0; offset.len()],
         }],
-    };
+    });
     scenario
 }
 

@@ -264,8 +264,8 @@ fn a_wrong_model_is_another_robot() {
     };
     let (plant, robot) = applied("mass = [2.0, 1.0]\nstiffness = [0.5, 1.0]\nmotor_inertia = 3.0");
     let (
-        Links::PlanarTwoLink { mass, inertia, com, .. },
-        Links::PlanarTwoLink { mass: m, inertia: i, com: r, .. },
+        Links::PlanarTwoLink(flexure::robot::PlanarTwoLink { mass, inertia, com, .. }),
+        Links::PlanarTwoLink(flexure::robot::PlanarTwoLink { mass: m, inertia: i, com: r, .. }),
     ) = (&plant.links, &robot.links)
     else {
         panic!()
@@ -274,16 +274,20 @@ fn a_wrong_model_is_another_robot() {
     assert_eq!((plant.stiffness, plant.motor_inertia[1]), (vec![4.5, 4.0], 3.0 * robot.motor_inertia[1]));
     assert_eq!(plant.link_damping, robot.link_damping);
     let (plant, robot) = applied("robot = \"cad.toml\"");
-    let Links::PlanarTwoLink { mass, .. } = plant.links else { panic!() };
+    let Links::PlanarTwoLink(flexure::robot::PlanarTwoLink { mass, .. }) = plant.links else { panic!() };
     assert_eq!((mass[0], robot.name), (1.5, "quanser-2dof".to_owned()));
     // 0.2 kg at 0.267 m: mass and first moment add, and so do inertias about the joint.
     let (plant, _) = applied("payload = { mass = 0.2, position = [0.267, 0, 0] }");
-    let Links::PlanarTwoLink { mass, inertia, com, .. } = plant.links else { panic!() };
+    let Links::PlanarTwoLink(flexure::robot::PlanarTwoLink { mass, inertia, com, .. }) = plant.links else {
+        panic!()
+    };
     assert!((mass[1] - m[1] - 0.2).abs() < 1e-15);
     assert!((mass[1] * com[1] - m[1] * r[1] - 0.2 * 0.267).abs() < 1e-15);
     let about_the_joint = inertia[1] + mass[1] * com[1] * com[1];
     assert!((about_the_joint - (i[1] + m[1] * r[1] * r[1] + 0.2 * 0.267 * 0.267)).abs() < 1e-15);
-    let Links::PlanarTwoLink { inertia: bounds, .. } = plant.enclosed else { panic!() };
+    let Links::PlanarTwoLink(flexure::robot::PlanarTwoLink { inertia: bounds, .. }) = plant.enclosed else {
+        panic!()
+    };
     assert!(bounds[1].contains_interval(Interval::point(inertia[1])) && bounds[1].width() < 1e-15);
 }
 

@@ -83,8 +83,10 @@ fn factors_are_per_joint() {
     };
     let real = with_factors(&model, factors);
     assert_eq!(drives(&real), [&[9.0 * 0.7, 4.0][..], &[0.23, 0.03], &[0.0, 0.55], &[0.2, 45.0]]);
-    let (Links::PlanarTwoLink { mass: m, inertia: i, .. }, Links::PlanarTwoLink { mass, inertia, .. }) =
-        (model.links, real.links)
+    let (
+        Links::PlanarTwoLink(flexure::robot::PlanarTwoLink { mass: m, inertia: i, .. }),
+        Links::PlanarTwoLink(flexure::robot::PlanarTwoLink { mass, inertia, .. }),
+    ) = (model.links, real.links)
     else {
         panic!("two links");
     };
@@ -184,8 +186,9 @@ fn unlike_robots_are_no_pair() {
         ("pendulum-tanh", "quanser-2dof", "pendulum-1dof is a pendulum"),
     ] {
         let mut scenario = load_scenario(scenario).expect("built in");
-        let other = ModelError { robot: Some(robot(plant)), factors: ones(&scenario.robot), payload: None };
-        scenario.imperfections.push(Imperfection::ModelError(Box::new(other)));
+        let other =
+            ModelError { robot: Some(Box::new(robot(plant))), factors: ones(&scenario.robot), payload: None };
+        scenario.imperfections.push(Imperfection::ModelError(other));
         let problems = scenario.open().map(drop).expect_err("unlike");
         assert!(problems.to_string().contains(said), "{problems}");
     }

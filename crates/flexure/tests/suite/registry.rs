@@ -2,9 +2,9 @@
 
 use flexure::core::reference::Reference as _;
 use flexure::eval::evaluate_model;
+use flexure::feasible;
 use flexure::files::{StateFile, StateRow};
-use flexure::references::AnyReference;
-use flexure::references::{Profile, Reference};
+use flexure::references::{PointToPoint, Profile, Reference};
 use flexure::robot::Links;
 use flexure::robot::load_robot;
 use flexure::robot::supported;
@@ -14,7 +14,9 @@ use flexure::simulate::preload;
 #[test]
 fn the_pendulum_swings_about_its_joint() {
     let robot = load_robot("pendulum-1dof").expect("built in");
-    let Links::Pendulum { mass, com, inertia } = robot.links else { panic!("a pendulum") };
+    let Links::Pendulum(flexure::robot::Pendulum { mass, com, inertia }) = robot.links else {
+        panic!("a pendulum")
+    };
     let (q, v, a, jerk) = (0.7, 1.3, -2.1, 3.4);
     let state = StateRow {
         q_l: vec![q],
@@ -48,9 +50,14 @@ fn point_to_point_motions_have_the_smoothness_of_their_name() {
     for (profile, smooth) in [(Profile::Quintic, 2), (Profile::Septic, 3), (Profile::Nonic, 4)] {
         let mut scenario = load_scenario("pendulum-tanh").expect("built in");
         scenario.smooth_start = None;
-        scenario.reference =
-            Reference::PointToPoint { profile, from: vec![0.1], to: vec![1.1], start: 0.5, duration: 2.0 };
-        let reference = AnyReference::<f64, 1>::new(&scenario).expect("a path");
+        scenario.reference = Reference::PointToPoint(PointToPoint {
+            profile,
+            from: vec![0.1],
+            to: vec![1.1],
+            start: 0.5,
+            duration: 2.0,
+        });
+        let reference = feasible::reference::<1>(&scenario).expect("a path");
         // Just inside the motion: derivatives up to the smoothness vanish, the next does not.
         let [jet] = reference.at::<7>(0.5 + 1e-9).0;
         for k in 1..=smooth {
@@ -66,7 +73,7 @@ fn point_to_point_motions_have_the_smoothness_of_their_name() {
 fn a_smooth_start_leaves_from_the_robot_and_reaches_the_reference() {
     let scenario = load_scenario("two-link-tanh-smooth").expect("built in");
     let duration = scenario.smooth_start.expect("smooth").duration;
-    let reference = AnyReference::<f64, 2>::new(&scenario).expect("a path");
+    let reference = feasible::reference::<2>(&scenario).expect("a path");
     let start = reference.at::<5>(0.0).0;
     assert!(start.iter().all(|jet| (0..5).all(|k| jet.derivative(k) == 0.0)), "{start:?}");
     let [later, _] = reference.at::<3>(duration + 1.0).0;

@@ -6,10 +6,10 @@ use flexure_core::model::{Fjr, Links, Motion};
 use flexure_core::reference::Reference;
 use serde::Serialize;
 
+use crate::feasible;
 use crate::files::Problems;
 use crate::laws::{self, Law, law};
 use crate::prove::engine::envelope::witness::Candidate;
-use crate::references::AnyReference;
 use crate::robot::sized::{OF_THE_KIND, fjr, sized, vector};
 use crate::scenario::Scenario;
 
@@ -60,7 +60,7 @@ fn at<L: Links<f64, N>, const N: usize>(
 ) -> Option<Exceeding> {
     let Candidate { time: t, error } = candidate;
     let law: Law<f64, N> = law(scenario.vcbc().ok()?);
-    let reference = AnyReference::new(scenario).ok()?;
+    let reference = feasible::reference::<N>(scenario).ok()?;
     let q_ld = reference.at(*t);
     let n = robot.links.joints();
     let part = |i: usize| vector::<N>(&error[i * n..(i + 1) * n]);

@@ -20,6 +20,7 @@ pub mod reach;
 pub mod region;
 #[cfg(test)]
 mod schema;
+pub mod shaping;
 pub mod structural;
 pub mod structure;
 pub mod verdict;

@@ -6,16 +6,14 @@ use flexure_core::scalar::{Interval, Scalar};
 use crate::linalg::Symmetric;
 use crate::prove::engine::certificate::{CertifiedPhi, DecimalGains, bounds};
 use crate::prove::engine::rate::Inequality;
+use crate::prove::engine::shaping::Numbers;
 
 /// φ and Π of one side, enclosed.
 #[derive(Clone, Debug)]
 pub struct Position {
     phi: CertifiedPhi,
     metric: Vec<Interval>,
-    shaping: Vec<Interval>,
-    kappa: Vec<Interval>,
-    /// √Λ.
-    theta: Vec<Interval>,
+    numbers: Numbers,
     /// Largest |q̃_i|; none for no bound.
     error: Vec<Option<Interval>>,
 }
@@ -26,15 +24,7 @@ pub type Ends = Vec<bool>;
 impl Position {
     /// From the gains of a side and the largest errors on it in rad.
     pub fn new(phi: CertifiedPhi, gains: &DecimalGains, error: &[Option<Interval>]) -> Self {
-        let shaping = bounds(&gains.shaping);
-        Self {
-            phi,
-            metric: bounds(&gains.metric),
-            theta: shaping.iter().map(|x| x.sqrt()).collect(),
-            shaping,
-            kappa: gains.kappa.as_deref().map(bounds).unwrap_or_default(),
-            error: error.to_vec(),
-        }
+        Self { phi, metric: bounds(&gains.metric), numbers: Numbers::new(gains), error: error.to_vec() }
     }
 
     /// Number of joints.
@@ -45,15 +35,7 @@ impl Position {
     /// The cases that cover every error: all of them for a φ that couples joints, the slowest slopes where each joint
     /// is for itself, one where slopes are constant.
     pub fn cases(&self) -> Vec<Ends> {
-        let n = self.joints();
-        match self.phi {
-            CertifiedPhi::Linear => vec![Vec::new()],
-            CertifiedPhi::CoupledTanh if n == 1 => vec![Vec::new()],
-            CertifiedPhi::Tanh => vec![vec![false; n]],
-            CertifiedPhi::CoupledTanh => {
-                (0..1_usize << n).map(|word| (0..n).map(|j| word >> j & 1 == 1).collect()).collect()
-            }
-        }
+        self.phi.certified().cases(self.joints())
     }
 
     /// Slopes of tanh at the `ends` of their range: sech² R = 4 t/(1 + t)² with t = e^(−2R), in which nothing cancels, and 1.
@@ -80,14 +62,7 @@ impl Position {
 
     /// ∂φ_ij with the slopes (or chords) `a` of tanh; those that do not occur may be left out.
     pub fn slope(&self, a: &[Interval], i: usize, j: usize) -> Interval {
-        let others = Interval::point(self.joints().saturating_sub(1).max(1) as f64);
-        match (self.phi, i == j) {
-            (CertifiedPhi::Tanh, true) => self.shaping[i] * a[i],
-            (CertifiedPhi::Linear, true) => self.shaping[i],
-            (CertifiedPhi::Tanh | CertifiedPhi::Linear, false) => Interval::ZERO,
-            (CertifiedPhi::CoupledTanh, true) => Interval::ONE + self.kappa[i],
-            (CertifiedPhi::CoupledTanh, false) => self.theta[j] / self.theta[i] * a[j] / others,
-        }
+        self.phi.certified().slope(&self.numbers, a, i, j)
     }
 
     /// sym(Π ∂φ) − β Π with the slopes (or chords) `a`.

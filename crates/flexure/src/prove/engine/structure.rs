@@ -28,7 +28,7 @@ pub fn claims(phi: CertifiedPhi, sides: &[SideOf<'_>]) -> Result<Vec<StructureCl
     let n = sides[0].position.joints();
 
     let variational = StructureName::VariationalPh;
-    let kept = phi != CertifiedPhi::CoupledTanh || n == 1;
+    let kept = phi.certified().is_diagonal(n);
     let variational = if kept {
         holding(variational)
     } else {
@@ -40,7 +40,7 @@ pub fn claims(phi: CertifiedPhi, sides: &[SideOf<'_>]) -> Result<Vec<StructureCl
         let pairs = side.gains.metric.iter().zip(&side.gains.shaping);
         pairs.into_iter().all(|(a, b)| matches!((a, b), (Number::Decimal(a), Number::Decimal(b)) if a == b))
     };
-    let ph_like = if phi == CertifiedPhi::Linear && sides.iter().all(equal) {
+    let ph_like = if phi.certified().is_constant() && sides.iter().all(equal) {
         holding(ph_like)
     } else {
         failing(ph_like, search(sides, distance).ok_or("∂φ may or may not be Π")?)

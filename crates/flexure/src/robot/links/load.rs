@@ -3,26 +3,21 @@
 use flexure_core::linalg::{Matrix, Vector};
 use flexure_core::scalar::Scalar;
 
-use crate::robot::links::Links;
 use crate::robot::links::rigid::{Rigid, Weight};
+use crate::robot::links::{Bodies, LineBody, Links};
 
 impl<C: Scalar> Links<C> {
     /// Multiplies mass and rotational inertia of what joint i carries by `factors[i]`.
     pub(crate) fn multiply_masses(&mut self, factors: &[f64]) {
         let scale = |x: &mut C, factor: &f64| *x *= C::from_f64(*factor);
-        match self {
-            Self::PlanarTwoLink { mass, inertia, .. } => {
-                for (x, factor) in mass.iter_mut().zip(factors).chain(inertia.iter_mut().zip(factors)) {
-                    scale(x, factor);
+        match self.bodies() {
+            Bodies::Line(bodies) => {
+                for (body, factor) in bodies.into_iter().zip(factors) {
+                    scale(body.mass, factor);
+                    scale(body.inertia, factor);
                 }
             }
-            Self::Pendulum { mass, inertia, .. } => {
-                for factor in factors {
-                    scale(mass, factor);
-                    scale(inertia, factor);
-                }
-            }
-            Self::Tree(bodies) => {
+            Bodies::Tree(bodies) => {
                 for (body, factor) in bodies.iter_mut().zip(factors) {
                     scale(&mut body.mass, factor);
                     body.inertia.as_flattened_mut().iter_mut().for_each(|x| scale(x, factor));
@@ -40,18 +35,17 @@ impl<C: Scalar> Links<C> {
             weight: Some(Weight { mass: C::from_f64(extra), com: Vector(position.map(C::from_f64)) }),
             inertia: Matrix::ZERO,
         };
-        let along = |mass: &mut C, com: &mut C, inertia: &mut C| {
-            let at = C::from_f64(position[0]);
-            let total = *mass + C::from_f64(extra);
-            let reduced = *mass * C::from_f64(extra) / total;
-            *inertia += reduced * (at - *com).square();
-            *com = (*mass * *com + C::from_f64(extra) * at) / total;
-            *mass = total;
-        };
-        match self {
-            Self::PlanarTwoLink { mass: [_, mass], com: [_, com], inertia: [_, inertia], .. }
-            | Self::Pendulum { mass, com, inertia } => along(mass, com, inertia),
-            Self::Tree(bodies) => {
+        match self.bodies() {
+            Bodies::Line(mut bodies) => {
+                let Some(LineBody { mass, com, inertia }) = bodies.pop() else { return };
+                let at = C::from_f64(position[0]);
+                let total = *mass + C::from_f64(extra);
+                let reduced = *mass * C::from_f64(extra) / total;
+                *inertia += reduced * (at - *com).square();
+                *com = (*mass * *com + C::from_f64(extra) * at) / total;
+                *mass = total;
+            }
+            Bodies::Tree(bodies) => {
                 let Some(body) = bodies.last_mut() else { return };
                 let own = Rigid {
                     weight: Some(Weight { mass: body.mass, com: Vector(body.com) }),
@@ -67,6 +61,6 @@ impl<C: Scalar> Links<C> {
 
     /// Whether [`load`](Self::load) can put something at `position` \[m\].
     pub(crate) fn takes_load_at(&self, [_, y, z]: &[f64; 3]) -> bool {
-        matches!(self, Self::Tree(_)) || (*y == 0.0 && *z == 0.0)
+        !self.tree().is_empty() || (*y == 0.0 && *z == 0.0)
     }
 }

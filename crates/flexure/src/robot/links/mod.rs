@@ -1,9 +1,12 @@
 //! The links of a robot: `[links]` of a robot file.
 
 pub(crate) mod assembly;
+mod closed_form;
 pub(crate) mod inertia;
 pub(crate) mod joint;
 mod load;
+mod pendulum;
+mod planar_two_link;
 pub(crate) mod rigid;
 mod tree;
 mod urdf;
@@ -16,61 +19,24 @@ use flexure_core::scalar::Interval;
 use crate::files::base::Base;
 use crate::files::decimals::Decimals;
 use crate::files::field::{Field, Joints};
-use crate::files::quantity::{self, Quantity};
 use crate::files::table::Table;
+use closed_form::{ClosedForm, LineBody, ReadClosedForm, closed_forms};
 
-/// What the links are, as data with numbers of type `C`.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Links<C = f64> {
-    /// Two links in a horizontal plane, in closed form; gravity does not act on them.
-    PlanarTwoLink {
-        /// Masses \[kg\].
-        mass: [C; 2],
-        /// Lengths \[m\]; the second plays no part in the dynamics.
-        length: [C; 2],
-        /// Distances of the centres of mass from the joints \[m\].
-        com: [C; 2],
-        /// Rotational inertias about the centres of mass [kg m²].
-        inertia: [C; 2],
-    },
-    /// One link on a horizontal axis; q = 0 hangs along gravity.
-    Pendulum {
-        /// Mass \[kg\].
-        mass: C,
-        /// Distance of the centre of mass from the joint \[m\].
-        com: C,
-        /// Rotational inertia about the centre of mass [kg m²]; about the joint it is `inertia` + `mass` `com`².
-        inertia: C,
-    },
-    /// A tree of moving joints, parents before children; fixed joints are already merged into the bodies.
-    Tree(Vec<Body<C>>),
+pub use pendulum::Pendulum;
+pub use planar_two_link::PlanarTwoLink;
+
+// One line a robot in closed form.
+closed_forms! {
+    planar_two_link::PlanarTwoLink,
+    pendulum::Pendulum,
 }
 
-impl<C: Copy> Links<C> {
-    /// Number of moving joints.
-    pub fn joints(&self) -> usize {
-        match self {
-            Self::PlanarTwoLink { .. } => 2,
-            Self::Pendulum { .. } => 1,
-            Self::Tree(bodies) => bodies.len(),
-        }
-    }
-
-    /// The same links with every number through `f`.
-    fn map<D>(&self, f: impl Fn(C) -> D) -> Links<D> {
-        match self {
-            Self::PlanarTwoLink { mass, length, com, inertia } => Links::PlanarTwoLink {
-                mass: mass.map(&f),
-                length: length.map(&f),
-                com: com.map(&f),
-                inertia: inertia.map(&f),
-            },
-            Self::Pendulum { mass, com, inertia } => {
-                Links::Pendulum { mass: f(*mass), com: f(*com), inertia: f(*inertia) }
-            }
-            Self::Tree(bodies) => Links::Tree(bodies.iter().map(|body| body.map(&f)).collect()),
-        }
-    }
+/// The bodies of links, to be changed.
+enum Bodies<'a, C> {
+    /// Of a closed form.
+    Line(Vec<LineBody<'a, C>>),
+    /// Of a tree.
+    Tree(&'a mut Vec<Body<C>>),
 }
 
 /// A moving joint by name, and what the file of the links says of its drive.
@@ -129,56 +95,31 @@ impl Assembled {
     }
 }
 
-/// A kind of links: its keys and its reader, which is told what paths are relative to. One line adds one.
-type Reader = (&'static [&'static str], fn(&Table<'_>, &Base) -> Option<Assembled>);
+/// A kind of links in files.
+#[derive(Clone, Copy)]
+struct Kind {
+    /// Its keys beside `kind`.
+    keys: &'static [&'static str],
+    /// Its reader, which is told what paths are relative to.
+    read: fn(&Table<'_>, &Base) -> Option<Assembled>,
+    /// The number of moving joints, if it is always the same.
+    joints: Option<usize>,
+}
 
-const KINDS: &[(&str, Reader)] = &[
-    ("planar-two-link", (&["kind", "mass", "length", "com", "inertia"], planar_two_link)),
-    ("pendulum", (&["kind", "mass", "com", "inertia"], pendulum)),
-    ("tree", (&["kind", "joint"], tree::read)),
-    ("urdf", (&["kind", "file", "locked"], urdf::read)),
+/// Kinds whose joints stand in the file.
+const TREES: &[(&str, Kind)] = &[
+    ("tree", Kind { keys: &["joint"], read: tree::read, joints: None }),
+    ("urdf", Kind { keys: &["file", "locked"], read: urdf::read, joints: None }),
 ];
 
 /// Reads `[links]`; the number of moving joints also if only the numbers in it are bad.
 pub(crate) fn read(field: &Field<'_>, base: &Base) -> (Option<Assembled>, Option<usize>) {
     let Some(table) = field.any_table() else { return (None, None) };
-    let Some((known, reader)) = table.choice("kind", KINDS) else { return (None, None) };
-    table.refuse_unknown(known);
-    let links = reader(&table, base);
-    let count =
-        links.as_ref().map(|found| found.joints.len()).or_else(|| match table.get("kind")?.text()? {
-            "planar-two-link" => Some(2),
-            "pendulum" => Some(1),
-            _ => None,
-        });
+    let Some(kind) = table.choice("kind", &[CLOSED_FORMS, TREES].concat()) else { return (None, None) };
+    table.refuse_unknown(&[&["kind"], kind.keys].concat());
+    let links = (kind.read)(&table, base);
+    let count = links.as_ref().map(|found| found.joints.len()).or(kind.joints);
     (links, count)
-}
-
-fn planar_two_link(table: &Table<'_>, _: &Base) -> Option<Assembled> {
-    let read = |key, quantity: &Quantity| table.array(key, quantity, "one per link");
-    let (mass, length) = (read("mass", &quantity::MASS), read("length", &quantity::LENGTH));
-    let (com, inertia) = (read("com", &quantity::POSITION), read("inertia", &quantity::INERTIA));
-    let links = Links::PlanarTwoLink { mass: mass?, length: length?, com: com?, inertia: inertia? };
-    Some(Assembled::closed_form(links, table.decimals()))
-}
-
-fn pendulum(table: &Table<'_>, _: &Base) -> Option<Assembled> {
-    let (mass, com) = (table.number("mass", &quantity::MASS), table.number("com", &quantity::POSITION));
-    let inertia = table.number("inertia", &quantity::INERTIA);
-    let links = Links::Pendulum { mass: mass?, com: com?, inertia: inertia? };
-    Some(Assembled::closed_form(links, table.decimals()))
-}
-
-/// Notes an error if gravity has a part that the closed form leaves out.
-pub(crate) fn check_gravity(links: &Links, gravity: &[f64; 3], field: Option<Field<'_>>) {
-    if let (Links::PlanarTwoLink { .. }, [x, y, _], Some(field)) = (links, gravity, field)
-        && (*x != 0.0 || *y != 0.0)
-    {
-        let message = format!(
-            "gravity has a horizontal part ({x}, {y}) m/s^2, must be (0, 0): planar-two-link moves in the horizontal plane"
-        );
-        field.error("gravity", message, "for an arm in a vertical plane write the links as kind = \"tree\"");
-    }
 }
 
 /// The joints that per-joint arrays are about.

@@ -5,6 +5,7 @@ use flexure::core::linalg::Vector;
 use flexure::core::model::{Fjr, Links, Motion};
 use flexure::core::reference::Reference;
 use flexure::core::robots::{Pendulum, PlanarTwoLink};
+use flexure::feasible;
 use flexure::laws::{Law, command, law};
 use flexure::references::AnyReference;
 use flexure::robot;
@@ -28,18 +29,22 @@ fn floats<L, const N: usize>(scenario: &Scenario, links: L) -> Floats<L, N> {
         link_damping: drive(&data.link_damping),
         motor_damping: drive(&data.motor_damping),
     };
-    Floats { robot, law: law(scenario.vcbc().unwrap()), reference: AnyReference::new(scenario).unwrap() }
+    Floats { robot, law: law(scenario.vcbc().unwrap()), reference: feasible::reference(scenario).unwrap() }
 }
 
 pub fn arm(scenario: &Scenario) -> Floats<PlanarTwoLink<f64>, 2> {
-    let robot::Links::PlanarTwoLink { mass, length, com, inertia } = scenario.robot.links else {
+    let robot::Links::PlanarTwoLink(flexure::robot::PlanarTwoLink { mass, length, com, inertia }) =
+        scenario.robot.links
+    else {
         panic!("two links")
     };
     floats(scenario, PlanarTwoLink::new(mass, length[0], com, inertia))
 }
 
 pub fn pendulum(scenario: &Scenario) -> Floats<Pendulum<f64>, 1> {
-    let robot::Links::Pendulum { mass, com, inertia } = scenario.robot.links else { panic!("pendulum") };
+    let robot::Links::Pendulum(flexure::robot::Pendulum { mass, com, inertia }) = scenario.robot.links else {
+        panic!("pendulum")
+    };
     let gravity = scenario.robot.gravity.iter().map(|x| x * x).sum::<f64>().sqrt();
     floats(scenario, Pendulum { inertia: inertia + mass * com * com, weight_moment: mass * com * gravity })
 }

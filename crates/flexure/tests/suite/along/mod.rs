@@ -14,7 +14,7 @@ use flexure::prove::along::{Along, along, start_level};
 use flexure::prove::engine::number::Number;
 use flexure::prove::engine::structural::certify;
 use flexure::prove::question::{Question, Region, problem};
-use flexure::references::{Profile, Reference};
+use flexure::references::{PointToPoint, Profile, Reference};
 use flexure::scenario::Scenario;
 use flexure::scenario::load_scenario;
 use floats::Floats;
@@ -98,13 +98,13 @@ fn bounds_hold_and_are_tight() {
 fn torques_that_jump_are_bounded() {
     let mut scenario = load_scenario("two-link-coupled-tanh-smooth").unwrap();
     (scenario.smooth_start, scenario.duration) = (None, 2.0);
-    scenario.reference = Reference::PointToPoint {
+    scenario.reference = Reference::PointToPoint(PointToPoint {
         profile: Profile::Septic,
         from: vec![0.0, 0.0],
         to: vec![1.0, -0.5],
         start: 0.3,
         duration: 0.9,
-    };
+    });
     let found = along(&scenario, &level(&scenario, 1e-6), 2000).unwrap();
     let system = floats::arm(&scenario);
     let mut largest = [0.0_f64; 2];
@@ -120,13 +120,13 @@ fn torques_that_jump_are_bounded() {
     assert!(largest.iter().zip(&found.torque.bound).all(|(u, bound)| u <= bound));
     assert!(ratios.iter().all(|&ratio| ratio < 1.5), "{ratios:?}");
 
-    scenario.reference = Reference::PointToPoint {
+    scenario.reference = Reference::PointToPoint(PointToPoint {
         profile: Profile::Quintic,
         from: vec![0.0, 0.0],
         to: vec![1.0, -0.5],
         start: 0.3,
         duration: 0.9,
-    };
+    });
     let problems = along(&scenario, &Number::decimal(1e-6), 10).unwrap_err();
     assert!(problems.to_string().contains("quintic jumps"), "{problems}");
 }

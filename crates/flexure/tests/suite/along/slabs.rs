@@ -4,11 +4,12 @@ use flexure::core::linalg::Vector;
 use flexure::core::model::{Fjr, Links as _};
 use flexure::core::robots::PlanarTwoLink;
 use flexure::core::scalar::Interval;
+use flexure::feasible;
 use flexure::laws::{AnyShaping, law_over};
 use flexure::prove::engine::envelope::closed_loop::Enclosed;
 use flexure::prove::engine::envelope::slab::Slab;
 use flexure::prove::engine::envelope::tube::ErrorTube;
-use flexure::references::{AnyReference, Profile, Reference};
+use flexure::references::{AnyReference, PointToPoint, Profile, Reference};
 use flexure::robot::Links;
 use flexure::scenario::{Scenario, load_scenario};
 
@@ -26,7 +27,10 @@ type Arm = Enclosed<
 /// The two-link arm, without the visitor, which would compile the law ten times.
 fn enclosed(scenario: &Scenario) -> Arm {
     let data = &scenario.robot;
-    let Links::PlanarTwoLink { mass, length, com, inertia } = data.enclosed else { panic!("two links") };
+    let Links::PlanarTwoLink(flexure::robot::PlanarTwoLink { mass, length, com, inertia }) = data.enclosed
+    else {
+        panic!("two links")
+    };
     let drive = |values: &[f64]| Vector([values[0], values[1]].map(|x| data.bounds(x)));
     let robot = Fjr {
         links: PlanarTwoLink::new(mass, length[0], com, inertia),
@@ -35,7 +39,7 @@ fn enclosed(scenario: &Scenario) -> Arm {
         link_damping: drive(&data.link_damping),
         motor_damping: drive(&data.motor_damping),
     };
-    let reference = AnyReference::enclosed(scenario).unwrap();
+    let reference = feasible::enclosed_reference(scenario).unwrap();
     let [breaks, kinks] = [reference.breaks(), reference.kinks()];
     Enclosed {
         robot,
@@ -86,8 +90,13 @@ fn slabs_with_jumps_contain_both_sides() {
     let mut scenario = load_scenario("two-link-tanh-smooth").unwrap();
     (scenario.smooth_start, scenario.duration) = (None, 1.0);
     let (from, to) = (vec![0.0, 0.0], vec![1.0, -0.5]);
-    scenario.reference =
-        Reference::PointToPoint { profile: Profile::Septic, from, to, start: 0.3, duration: 0.4 };
+    scenario.reference = Reference::PointToPoint(PointToPoint {
+        profile: Profile::Septic,
+        from,
+        to,
+        start: 0.3,
+        duration: 0.4,
+    });
     contained(&scenario, &[0.2, 0.02]);
     // However short: Taylor's theorem does not lead across.
     let (system, floats) = (enclosed(&scenario), floats::arm(&scenario));

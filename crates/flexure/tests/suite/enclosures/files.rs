@@ -33,7 +33,9 @@ fn ends(x: Interval) -> (f64, f64) {
 fn numbers_are_their_decimals() {
     let robot = pendulum("", "");
     assert_eq!(ends(robot.bounds(0.1)), (0.1_f64.next_down(), 0.1));
-    let Links::Pendulum { mass, com, inertia } = robot.enclosed else { panic!("a pendulum") };
+    let Links::Pendulum(flexure::robot::Pendulum { mass, com, inertia }) = robot.enclosed else {
+        panic!("a pendulum")
+    };
     assert_eq!(
         (ends(mass), ends(com), ends(inertia)),
         ((0.1_f64.next_down(), 0.1), (0.25, 0.25), (16.0, 16.0))

@@ -2,9 +2,12 @@
 
 use flexure::core::reference::Reference as _;
 use flexure::core::scalar::{Interval, Jet};
+use flexure::feasible;
 use flexure::files::SCENARIOS;
-use flexure::references::AnyReference;
-use flexure::references::{Profile, Reference, SmoothStart, Speed, Term, TimeScaling};
+use flexure::references::{AnyPath, AnyReference};
+use flexure::references::{
+    PointToPoint, Profile, Reference, Sampled, Sines, SmoothStart, Speed, Term, TimeScaling,
+};
 use flexure::scenario::Scenario;
 use flexure::scenario::load_scenario;
 
@@ -17,8 +20,8 @@ const TIMES: [f64; 6] = [0.0, 0.3, 1.0, 1.9, 2.5, 7.3];
 /// its first accelerations are those of springs of 14000 N m/rad on 0.0065 kg m², where an ulp of a position is 1e-10 rad/s².
 fn check<const N: usize>(scenario: &Scenario) {
     let name = &scenario.name;
-    let floats = AnyReference::<f64, N>::new(scenario).expect("a path");
-    let enclosed = AnyReference::<Interval, N>::enclosed(scenario).expect("a path");
+    let floats = feasible::reference::<N>(scenario).expect("a path");
+    let enclosed = feasible::enclosed_reference::<N>(scenario).expect("a path");
     for t in TIMES {
         let (jets, bounds) = (floats.at::<5>(t), enclosed.at::<5>(Interval::point(t)));
         for (jet, bounds) in jets.iter().zip(bounds.iter()) {
@@ -55,8 +58,13 @@ fn motions_from_rest_to_rest_are_enclosed() {
     for profile in [Profile::Quintic, Profile::Septic, Profile::Nonic] {
         let mut scenario = load_scenario("pendulum-tanh").expect("built in");
         scenario.smooth_start = None;
-        scenario.reference =
-            Reference::PointToPoint { profile, from: vec![0.1], to: vec![1.1], start: 0.7, duration: 2.3 };
+        scenario.reference = Reference::PointToPoint(PointToPoint {
+            profile,
+            from: vec![0.1],
+            to: vec![1.1],
+            start: 0.7,
+            duration: 2.3,
+        });
         check::<1>(&scenario);
     }
 }
@@ -83,16 +91,14 @@ fn every_number_of_a_reference_is_its_decimal() {
     (scenario.smooth_start, scenario.initial.q_l) = (Some(SmoothStart::within(0.1)), tenth());
     let mut numbers = Vec::new();
     for terms in [vec![term()], vec![term(), term()]] {
-        scenario.reference = Reference::Sines { offset: tenth(), terms };
-        let Ok(AnyReference::<Interval, 1>::SmoothStart(start)) = AnyReference::enclosed(&scenario) else {
+        scenario.reference = Reference::Sines(Sines { offset: tenth(), terms });
+        let Ok(AnyReference::<Interval, 1>::SmoothStart(start)) = feasible::enclosed_reference(&scenario)
+        else {
             panic!()
         };
         numbers.extend([start.from.from[0].coefficient(0), start.from.duration, start.duration]);
         match start.then {
-            AnyReference::Sine(sine) => {
-                numbers.extend([sine.offset, sine.amplitude, sine.frequency, sine.phase].map(|x| x[0]));
-            }
-            AnyReference::Multisine(sines) => {
+            AnyReference::Path(AnyPath::Sines(sines)) => {
                 let terms = sines.terms.iter().flat_map(|term| [term.amplitude, term.frequency, term.phase]);
                 numbers.extend(terms.chain([sines.offset]).map(|x| x[0]));
             }
@@ -100,9 +106,12 @@ fn every_number_of_a_reference_is_its_decimal() {
         }
     }
     let (from, to, profile) = (tenth(), tenth(), Profile::Nonic);
-    scenario.reference = Reference::PointToPoint { profile, from, to, start: 0.1, duration: 0.1 };
+    scenario.reference =
+        Reference::PointToPoint(PointToPoint { profile, from, to, start: 0.1, duration: 0.1 });
     scenario.smooth_start = None;
-    let Ok(AnyReference::<Interval, 1>::PointToPoint(motion)) = AnyReference::enclosed(&scenario) else {
+    let Ok(AnyReference::<Interval, 1>::Path(AnyPath::PointToPoint(motion))) =
+        feasible::enclosed_reference(&scenario)
+    else {
         panic!()
     };
     numbers.extend([motion.from[0], motion.to[0], motion.start, motion.duration]);
@@ -118,7 +127,7 @@ fn sampled() -> Scenario {
     scenario.smooth_start = None;
     let t: Vec<f64> = (0..10).map(|i| 0.4 * f64::from(i)).collect();
     let q = t.iter().map(|t| vec![0.1 + (1.3 * t).sin()]).collect();
-    scenario.reference = Reference::Samples { t, q };
+    scenario.reference = Reference::Sampled(Sampled { t, q });
     scenario
 }
 
@@ -126,8 +135,8 @@ fn sampled() -> Scenario {
 #[test]
 fn a_sampled_path_is_enclosed_at_instants_and_on_knots() {
     let scenario = sampled();
-    let floats = AnyReference::<f64, 1>::new(&scenario).expect("a path");
-    let enclosed = AnyReference::<Interval, 1>::enclosed(&scenario).expect("a path");
+    let floats = feasible::reference::<1>(&scenario).expect("a path");
+    let enclosed = feasible::enclosed_reference::<1>(&scenario).expect("a path");
     for i in -2..24_i32 {
         let t = 0.2 * f64::from(i);
         let ([jet], [bounds]) = (floats.at::<5>(t).0, enclosed.at::<5>(Interval::point(t)).0);
@@ -141,8 +150,8 @@ fn a_sampled_path_is_enclosed_at_instants_and_on_knots() {
 #[test]
 fn a_sampled_path_is_enclosed_over_spans() {
     let scenario = sampled();
-    let floats = AnyReference::<f64, 1>::new(&scenario).expect("a path");
-    let enclosed = AnyReference::<Interval, 1>::enclosed(&scenario).expect("a path");
+    let floats = feasible::reference::<1>(&scenario).expect("a path");
+    let enclosed = feasible::enclosed_reference::<1>(&scenario).expect("a path");
     for (from, to) in [(-0.5, 0.1), (0.35, 0.45), (0.4, 0.8), (0.3, 1.3), (3.5, 4.5), (5.0, 6.0), (-1.0, 9.0)]
     {
         let span = Interval::new(from, to).expect("ordered");

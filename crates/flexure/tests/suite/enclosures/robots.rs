@@ -7,9 +7,9 @@ use flexure::core::reference::Reference as _;
 use flexure::core::robots::PlanarTwoLink;
 use flexure::core::scalar::{Interval, Scalar};
 use flexure::eval::evaluate_law;
+use flexure::feasible;
 use flexure::files::{ROBOTS, SCENARIOS, StateFile, StateRow};
 use flexure::laws::{Law, law_over};
-use flexure::references::AnyReference;
 use flexure::robot::Arm;
 use flexure::robot::load_robot;
 use flexure::robot::{Links, Robot};
@@ -21,8 +21,10 @@ use crate::common::Random;
 /// Every number of the links.
 fn numbers<C: Copy>(links: &Links<C>) -> Vec<C> {
     match links {
-        Links::PlanarTwoLink { mass, length, com, inertia } => [*mass, *length, *com, *inertia].concat(),
-        Links::Pendulum { mass, com, inertia } => vec![*mass, *com, *inertia],
+        Links::PlanarTwoLink(flexure::robot::PlanarTwoLink { mass, length, com, inertia }) => {
+            [*mass, *length, *com, *inertia].concat()
+        }
+        Links::Pendulum(flexure::robot::Pendulum { mass, com, inertia }) => vec![*mass, *com, *inertia],
         Links::Tree(bodies) => bodies
             .iter()
             .flat_map(|body| {
@@ -83,7 +85,7 @@ fn laws_are_enclosed() {
     for (name, _) in SCENARIOS.iter().filter(|(name, _)| name.starts_with("two-link")) {
         let scenario = load_scenario(name).expect("built in");
         let law: Law<Interval, 2> = law_over(scenario.vcbc().unwrap(), |x| scenario.bounds(x));
-        let reference = AnyReference::<Interval, 2>::enclosed(&scenario).expect("a path");
+        let reference = feasible::enclosed_reference::<2>(&scenario).expect("a path");
         let robot = two_links(&scenario.robot);
         for _ in 0..5 {
             let [q_l, q_m, dq_l, dq_m] =
@@ -105,7 +107,10 @@ fn laws_are_enclosed() {
 
 /// The two-link arm, without the visitor, which would compile the law ten times.
 fn two_links(robot: &Robot) -> Fjr<Interval, PlanarTwoLink<Interval>, 2> {
-    let Links::PlanarTwoLink { mass, length, com, inertia } = robot.enclosed else { panic!("two links") };
+    let Links::PlanarTwoLink(flexure::robot::PlanarTwoLink { mass, length, com, inertia }) = robot.enclosed
+    else {
+        panic!("two links")
+    };
     let drive = |values: &[f64]| Vector([values[0], values[1]].map(|x| robot.bounds(x)));
     Fjr {
         links: PlanarTwoLink::new(mass, length[0], com, inertia),

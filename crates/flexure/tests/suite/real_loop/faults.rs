@@ -104,14 +104,14 @@ fn loop_with(fault: &Fault, seed: u64) -> Scenario {
     let parts = with("two-link-tanh-smooth", 1.0, &format!("{}{GUARD}", fault.text));
     let mut scenario = super::ideal(2.5);
     scenario.control_period = PERIOD;
-    scenario.reference = flexure::references::Reference::Sines {
+    scenario.reference = flexure::references::Reference::Sines(flexure::references::Sines {
         offset: vec![0.0; 2],
         terms: vec![flexure::references::Term {
             amplitude: vec![0.4; 2],
             frequency: vec![0.6; 2],
             phase: vec![0.0; 2],
         }],
-    };
+    });
     (scenario.guard, scenario.seed) = (parts.guard, seed);
     with_these(scenario, parts.imperfections)
 }

@@ -1,35 +1,8 @@
-//! Shaping functions φ: how a position error turns into a velocity towards the reference.
+//! The shaping function that couples the joints.
 
-use crate::linalg::{Matrix, Vector};
-use crate::scalar::{Dual, Over, Scalar};
-
-/// A shaping function φ with φ(0) = 0 whose slope contracts in the metric Π: eq. controllaw-positionmetricinquality.
-pub trait Shaping<C: Scalar, const N: usize> {
-    /// φ(q̃) [rad/s] at the position error q̃ in rad.
-    fn eval<T: Over<C>>(&self, error: &Vector<T, N>) -> Vector<T, N>;
-
-    /// Slope ∂φ/∂q̃ [1/s].
-    #[inline]
-    fn slope<T: Over<C>>(&self, error: &Vector<T, N>) -> Matrix<T, N, N> {
-        let variables = Vector::from_fn(|j| Dual::<T, N>::variable(error[j], j));
-        Matrix(self.eval(&variables).map(|phi| phi.gradient).0)
-    }
-}
-
-/// φ_2 = Λ q̃: the linear law. Keeps the pH-like structure when Π = Λ.
-#[derive(Clone, Copy, Debug)]
-pub struct Linear<C, const N: usize> {
-    /// Diagonal of Λ [1/s].
-    pub gain: Vector<C, N>,
-}
-
-/// φ_1 = Λ tanh q̃, entry by entry: bounded, so that far errors do not ask for high speeds. Keeps the variational
-/// structure; its contraction rate tends to 0 far from the reference. Paper, corollary controller-tanh.
-#[derive(Clone, Copy, Debug)]
-pub struct Tanh<C, const N: usize> {
-    /// Diagonal of Λ [rad/s].
-    pub gain: Vector<C, N>,
-}
+use super::Shaping;
+use crate::linalg::Vector;
+use crate::scalar::{Over, Scalar};
 
 /// φ_3,i = (1 + κ_i) q̃_i + Σ_{j≠i} (θ_j/θ_i) tanh(q̃_j) / (n − 1): contracting in the matrix measure μ_1 at the rate
 /// min κ whatever Λ is. Paper, eq. matrixmeasure1-phi-flexible, which is the case n = 2.
@@ -62,20 +35,6 @@ impl<C: Scalar, const N: usize> CoupledTanh<C, N> {
             weight: Vector::from_fn(|i| coupled(i, theta[i])),
             share: Vector::from_fn(|i| coupled(i, C::from_ratio(1, divisor) / theta[i])),
         }
-    }
-}
-
-impl<C: Scalar, const N: usize> Shaping<C, N> for Linear<C, N> {
-    #[inline]
-    fn eval<T: Over<C>>(&self, error: &Vector<T, N>) -> Vector<T, N> {
-        self.gain.diag_mul(error)
-    }
-}
-
-impl<C: Scalar, const N: usize> Shaping<C, N> for Tanh<C, N> {
-    #[inline]
-    fn eval<T: Over<C>>(&self, error: &Vector<T, N>) -> Vector<T, N> {
-        self.gain.diag_mul(&error.map(T::tanh))
     }
 }
 

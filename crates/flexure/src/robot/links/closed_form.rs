@@ -1,0 +1,134 @@
+//! What a file of a robot in closed form holds, and what becomes of a line in the list of links.
+
+use crate::files::field::Field;
+use crate::files::table::Table;
+
+/// Links in closed form as data, with numbers of type `C`: all that a `kind` in `[links]` stands for but its reader. The
+/// first joint stands on the base, each of the others on the link before it, and all of them turn.
+pub trait ClosedForm<C> {
+    /// The name in files.
+    const NAME: &'static str;
+
+    /// What it is, with an article.
+    const WHAT: &'static str;
+
+    /// Number of joints.
+    const JOINTS: usize;
+
+    /// The same links with numbers of another type.
+    type With<D>: ClosedForm<D>;
+
+    /// The same links with every number through `f`.
+    fn map<D>(&self, f: impl Fn(C) -> D) -> Self::With<D>
+    where
+        C: Copy;
+
+    /// The bodies, in the order of the joints.
+    fn bodies(&mut self) -> Vec<LineBody<'_, C>>;
+}
+
+/// A body whose centre of mass lies on the line of its link.
+#[derive(Debug)]
+pub struct LineBody<'a, C> {
+    /// Mass \[kg\].
+    pub mass: &'a mut C,
+    /// Distance of the centre of mass from the joint \[m\].
+    pub com: &'a mut C,
+    /// Rotational inertia about the centre of mass [kg m²].
+    pub inertia: &'a mut C,
+}
+
+/// Links in closed form that can be read.
+pub(crate) trait ReadClosedForm: ClosedForm<f64> + Sized {
+    /// The keys of `[links]` beside `kind`.
+    const KEYS: &'static [&'static str];
+
+    /// Reads them from `[links]`.
+    fn read(table: &Table<'_>) -> Option<Self>;
+
+    /// Notes an error at `field` if gravity \[m/s²\] has a part that the closed form leaves out.
+    fn check_gravity(gravity: &[f64; 3], field: &Field<'_>);
+}
+
+/// Registers closed forms, each by the path of its [`ClosedForm`]; trees are there anyway.
+macro_rules! closed_forms {
+    ($($file:ident::$kind:ident),+ $(,)?) => {
+        /// What the links are, as data with numbers of type `C`.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum Links<C = f64> {
+            $(
+                #[doc = concat!("[`", stringify!($kind), "`].")]
+                $kind($kind<C>),
+            )+
+            /// A tree of moving joints, parents before children; fixed joints are already merged into the bodies.
+            Tree(Vec<Body<C>>),
+        }
+
+        impl<C> Links<C> {
+            /// Number of moving joints.
+            pub fn joints(&self) -> usize {
+                match self {
+                    $(Self::$kind(_) => <$kind<C> as ClosedForm<C>>::JOINTS,)+
+                    Self::Tree(bodies) => bodies.len(),
+                }
+            }
+
+            /// What they are, with an article.
+            pub(crate) fn what(&self) -> &'static str {
+                match self {
+                    $(Self::$kind(_) => <$kind<C> as ClosedForm<C>>::WHAT,)+
+                    Self::Tree(_) => "a tree",
+                }
+            }
+
+            /// The bodies of a tree; none of a closed form.
+            pub(crate) fn tree(&self) -> &[Body<C>] {
+                match self {
+                    $(Self::$kind(_) => &[],)+
+                    Self::Tree(bodies) => bodies,
+                }
+            }
+
+            /// The bodies of a closed form or of a tree, to be changed.
+            fn bodies(&mut self) -> Bodies<'_, C> {
+                match self {
+                    $(Self::$kind(data) => Bodies::Line(data.bodies()),)+
+                    Self::Tree(bodies) => Bodies::Tree(bodies),
+                }
+            }
+        }
+
+        impl<C: Copy> Links<C> {
+            /// The same links with every number through `f`.
+            fn map<D>(&self, f: impl Fn(C) -> D) -> Links<D> {
+                match self {
+                    $(Self::$kind(data) => Links::$kind(data.map(f)),)+
+                    Self::Tree(bodies) => Links::Tree(bodies.iter().map(|body| body.map(&f)).collect()),
+                }
+            }
+        }
+
+        /// Every closed form: its name, keys, reader and number of joints.
+        const CLOSED_FORMS: &[(&str, Kind)] = &[$((
+            <$kind as ClosedForm<f64>>::NAME,
+            Kind {
+                keys: <$kind as ReadClosedForm>::KEYS,
+                read: |table, _| {
+                    let links = <$kind as ReadClosedForm>::read(table)?;
+                    Some(Assembled::closed_form(Links::$kind(links), table.decimals()))
+                },
+                joints: Some(<$kind as ClosedForm<f64>>::JOINTS),
+            },
+        )),+];
+
+        /// Notes an error if gravity has a part that the closed form leaves out.
+        pub(crate) fn check_gravity(links: &Links, gravity: &[f64; 3], field: Option<Field<'_>>) {
+            let Some(field) = field else { return };
+            match links {
+                $(Links::$kind(_) => <$kind as ReadClosedForm>::check_gravity(gravity, &field),)+
+                Links::Tree(_) => {}
+            }
+        }
+    };
+}
+pub(super) use closed_forms;
