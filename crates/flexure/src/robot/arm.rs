@@ -6,7 +6,8 @@ use flexure_core::scalar::{Interval, Jet, Over, Scalar};
 
 use crate::files::Problems;
 use crate::robot::Robot;
-use crate::robot::sized::{FromFile, OF_THE_KIND, fjr, sized};
+use crate::robot::links::FromFile;
+use crate::robot::sized::{OF_THE_KIND, fjr, sized};
 use crate::robot::slices::{Mismatch, check, read, read_motion, read_rows, write, write_rows};
 
 /// What can be asked of a flexible-joint robot, over numbers of type `C`: `f64`, or [`Interval`] for enclosures of every robot

@@ -4,107 +4,69 @@
 //! robot's own are phantoms ([`Tree`]): unit inertia, stiffness and motor inertia, at rest.
 
 use flexure_core::linalg::Vector;
-use flexure_core::model::{Fjr, Links};
-use flexure_core::robots::{Pendulum, PlanarTwoLink, Tree};
+use flexure_core::model::Fjr;
 use flexure_core::scalar::Scalar;
 
 use crate::files::{Problem, Problems};
 use crate::robot;
+use crate::robot::links::FromFile;
 
-/// Largest joint count of a tree. To raise it, add a capacity to [`Size`] and to the list below and build again.
+/// Largest joint count of a tree. To raise it, add a capacity to the list below and build again.
 pub const MAX_JOINTS: usize = 16;
-
-/// A type of links, as chosen by [`size`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Size {
-    Pendulum,
-    PlanarTwoLink,
-    Tree4,
-    Tree8,
-    Tree16,
-}
 
 /// Evaluates `$then` with `$L<C>` the links of the robot file `$data` over constants of type `C`, and `$N` their capacity.
 /// Returns with the problem from the function that it stands in if the robot has more than [`MAX_JOINTS`] joints.
 macro_rules! sized {
     ($data:expr, $L:ident, $N:ident => $then:expr) => {
-        match $crate::robot::sized::size($data)? {
-            $crate::robot::sized::Size::Pendulum => sized!(@ $L = Pendulum<C>, $N = 1, $then),
-            $crate::robot::sized::Size::PlanarTwoLink => sized!(@ $L = PlanarTwoLink<C>, $N = 2, $then),
-            $crate::robot::sized::Size::Tree4 => sized!(@ $L = Tree<C, 4>, $N = 4, $then),
-            $crate::robot::sized::Size::Tree8 => sized!(@ $L = Tree<C, 8>, $N = 8, $then),
-            $crate::robot::sized::Size::Tree16 => sized!(@ $L = Tree<C, 16>, $N = 16, $then),
-        }
+        $crate::robot::links::with_closed_forms!(($data) $L $N $then)
     };
-    (@ $L:ident = $links:ident<C $(, $capacity:literal)?>, $N:ident = $size:literal, $then:expr) => {{
-        #[allow(dead_code, reason = "some callers need the type, some the size")]
-        type $L<C> = flexure_core::robots::$links<C $(, $capacity)?>;
-        const $N: usize = $size;
-        $then
-    }};
 }
 pub(crate) use sized;
 
-/// Which type of links the robot in `data` gets.
-///
-/// # Errors
-/// For a tree with more than [`MAX_JOINTS`] moving joints.
-pub(crate) fn size(data: &robot::Robot) -> Result<Size, Problems> {
-    match &data.links {
-        robot::Links::Pendulum(_) => Ok(Size::Pendulum),
-        robot::Links::PlanarTwoLink(_) => Ok(Size::PlanarTwoLink),
-        robot::Links::Tree(bodies) => match bodies.len() {
-            0..=4 => Ok(Size::Tree4),
-            5..=8 => Ok(Size::Tree8),
-            9..=MAX_JOINTS => Ok(Size::Tree16),
-            joints => Err(too_many(data, joints)),
-        },
-    }
+/// [`sized`] with the names of the closed forms, whose sizes are their own, before its arguments.
+macro_rules! of_size {
+    ([$($form:ident),+] ($data:expr) $L:ident $N:ident $then:expr) => {
+        match &$data.links {
+            $(
+                $crate::robot::Links::$form(_) => {
+                    #[allow(dead_code, reason = "some callers need the type, some the size")]
+                    type $L<C> = flexure_core::robots::$form<C>;
+                    const $N: usize = <$crate::robot::$form as $crate::robot::links::ClosedForm<f64>>::JOINTS;
+                    $then
+                }
+            )+
+            $crate::robot::Links::Tree(bodies) => match bodies.len() {
+                0..=4 => $crate::robot::sized::of_size!(@ 4 $L $N $then),
+                5..=8 => $crate::robot::sized::of_size!(@ 8 $L $N $then),
+                9..=16 => $crate::robot::sized::of_size!(@ 16 $L $N $then),
+                joints => return Err($crate::robot::sized::too_many($data, joints)),
+            },
+        }
+    };
+    (@ $capacity:literal $L:ident $N:ident $then:expr) => {{
+        #[allow(dead_code, reason = "some callers need the type, some the size")]
+        type $L<C> = flexure_core::robots::Tree<C, $capacity>;
+        const $N: usize = $capacity;
+        $then
+    }};
 }
+pub(crate) use of_size;
 
 /// Whether this program is built for the robot's joint count.
 ///
 /// # Errors
 /// For a robot with more than [`MAX_JOINTS`] moving joints.
 pub fn supported(data: &robot::Robot) -> Result<(), Problems> {
-    size(data).map(drop)
+    if data.joint_count() > MAX_JOINTS { Err(too_many(data, data.joint_count())) } else { Ok(()) }
 }
 
-fn too_many(data: &robot::Robot, joints: usize) -> Problems {
+pub(crate) fn too_many(data: &robot::Robot, joints: usize) -> Problems {
     let message = format!(
         "robot {} has {joints} moving joints; this program is built for at most {MAX_JOINTS}",
         data.name
     );
     let help = "lock joints, or add a capacity to the list in robot/sized.rs and build again";
     data.places.problem("links", "joints", message, help).into()
-}
-
-/// Links of a type that is known when the program is built, made from those of a robot file.
-pub(crate) trait FromFile<C: Scalar, const N: usize>: Links<C, N> + Sized {
-    /// None if `links` are of another kind, or do not fit. `gravity` is that of the base frame [m/s²]; `approximate` gives a
-    /// float near a constant.
-    fn from_file(links: &robot::Links<C>, gravity: [C; 3], approximate: &dyn Fn(C) -> f64) -> Option<Self>;
-}
-
-impl<C: Scalar, const N: usize> FromFile<C, N> for Tree<C, N> {
-    fn from_file(links: &robot::Links<C>, gravity: [C; 3], approximate: &dyn Fn(C) -> f64) -> Option<Self> {
-        let robot::Links::Tree(bodies) = links else { return None };
-        Self::from_bodies(bodies, gravity, approximate)
-    }
-}
-
-impl<C: Scalar> FromFile<C, 2> for PlanarTwoLink<C> {
-    fn from_file(links: &robot::Links<C>, gravity: [C; 3], _: &dyn Fn(C) -> f64) -> Option<Self> {
-        let robot::Links::PlanarTwoLink(form) = links else { return None };
-        Some(form.core(gravity))
-    }
-}
-
-impl<C: Scalar> FromFile<C, 1> for Pendulum<C> {
-    fn from_file(links: &robot::Links<C>, gravity: [C; 3], _: &dyn Fn(C) -> f64) -> Option<Self> {
-        let robot::Links::Pendulum(form) = links else { return None };
-        Some(form.core(gravity))
-    }
 }
 
 /// Why links are of the type that [`sized`] chose.

@@ -50,9 +50,27 @@ pub(crate) trait ReadClosedForm: ClosedForm<f64> + Sized {
     fn check_gravity(gravity: &[f64; 3], field: &Field<'_>);
 }
 
-/// Registers closed forms, each by the path of its [`ClosedForm`]; trees are there anyway.
+/// Registers closed forms, each by the path of its [`ClosedForm`]; trees are there anyway. The core's links have the name of the
+/// file's. `$d` is a dollar sign, for the macro that this one makes for [`sized`](crate::robot::sized::sized).
 macro_rules! closed_forms {
-    ($($file:ident::$kind:ident),+ $(,)?) => {
+    (($d:tt) $($file:ident::$kind:ident),+ $(,)?) => {
+        /// [`of_size`](crate::robot::sized::of_size) with the names of the closed forms before its arguments.
+        macro_rules! with_closed_forms {
+            ($d($d arguments:tt)*) => { $crate::robot::sized::of_size!([$($kind),+] $d($d arguments)*) };
+        }
+        pub(crate) use with_closed_forms;
+
+        $(
+            impl<C: Scalar> FromFile<C, { <$kind as ClosedForm<f64>>::JOINTS }> for robots::$kind<C> {
+                fn from_file(links: &Links<C>, gravity: [C; 3], _: &dyn Fn(C) -> f64) -> Option<Self> {
+                    match links {
+                        Links::$kind(form) => Some(form.core(gravity)),
+                        _ => None,
+                    }
+                }
+            }
+        )+
+
         /// What the links are, as data with numbers of type `C`.
         #[derive(Clone, Debug, PartialEq)]
         pub enum Links<C = f64> {

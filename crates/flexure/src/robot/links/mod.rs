@@ -14,21 +14,41 @@ pub(crate) mod written;
 
 pub use flexure_core::robots::{Body, JointKind};
 
-use flexure_core::scalar::Interval;
+use flexure_core::model;
+use flexure_core::robots::{self, Tree};
+use flexure_core::scalar::{Interval, Scalar};
 
 use crate::files::base::Base;
 use crate::files::decimals::Decimals;
 use crate::files::field::{Field, Joints};
 use crate::files::table::Table;
-use closed_form::{ClosedForm, LineBody, ReadClosedForm, closed_forms};
+pub(crate) use closed_form::ClosedForm;
+use closed_form::{LineBody, ReadClosedForm, closed_forms};
 
 pub use pendulum::Pendulum;
 pub use planar_two_link::PlanarTwoLink;
 
 // One line a robot in closed form.
 closed_forms! {
+    ($)
     planar_two_link::PlanarTwoLink,
     pendulum::Pendulum,
+}
+
+/// Links of a type that is known when the program is built, made from those of a robot file.
+pub(crate) trait FromFile<C: Scalar, const N: usize>: model::Links<C, N> + Sized {
+    /// None if `links` are of another kind, or do not fit. `gravity` is that of the base frame [m/s²]; `approximate` gives a
+    /// float near a constant.
+    fn from_file(links: &Links<C>, gravity: [C; 3], approximate: &dyn Fn(C) -> f64) -> Option<Self>;
+}
+
+impl<C: Scalar, const N: usize> FromFile<C, N> for Tree<C, N> {
+    fn from_file(links: &Links<C>, gravity: [C; 3], approximate: &dyn Fn(C) -> f64) -> Option<Self> {
+        match links {
+            Links::Tree(bodies) => Self::from_bodies(bodies, gravity, approximate),
+            _ => None,
+        }
+    }
 }
 
 /// The bodies of links, to be changed.
