@@ -30,7 +30,7 @@ pub(crate) fn at_speed<const N: usize>(
 /// is the float that was found.
 ///
 /// # Errors
-/// As for [`reference`].
+/// As for [`reference()`].
 pub fn enclosed_reference<const N: usize>(
     scenario: &Scenario,
 ) -> Result<AnyReference<Interval, N>, Problems> {

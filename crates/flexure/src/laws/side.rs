@@ -72,13 +72,16 @@ pub(super) fn read(field: &Field<'_>, phi: Option<Phi>, joints: &Joints) -> Opti
     let hardening = table.optional(METRIC_HARDENING, |field| field.per_joint(joints, &HARDENING));
     let extra = phi.map_or(Some(Vec::new()), |phi| {
         let foreign = extra_keys().into_iter().filter(|key| phi.extra().iter().all(|own| own.key != *key));
-        let unused = foreign.filter_map(|key| Some(refuse(&table.get(key)?, key, phi))).count();
+        let unused: Vec<_> = foreign.filter_map(|key| Some((key, table.get(key)?))).collect();
+        for (key, field) in &unused {
+            refuse(field, key, phi);
+        }
         let own: Vec<_> = phi
             .extra()
             .iter()
             .map(|extra| Some((extra.key, table.per_joint(extra.key, joints, &extra.quantity)?)))
             .collect();
-        own.into_iter().collect::<Option<Vec<_>>>().filter(|_| unused == 0)
+        own.into_iter().collect::<Option<Vec<_>>>().filter(|_| unused.is_empty())
     });
     let metric = metric?;
     Some(SideGains {

@@ -324,7 +324,7 @@ fn joints_that_are_not_there_change_no_law() {
         let u = any_law::<f64, 3>(&controller, |x| x).torque(&robot, &x, &q_ld);
         let more = any_law::<f64, 5>(&controller, |x| x).torque(&padded, &far, &q_far);
         assert_eq!(head(&more).0.map(f64::to_bits), u.0.map(f64::to_bits), "{name}");
-        assert_eq!([more[3].abs(), more[4].abs()], [0.0; 2], "{name}");
+        assert_eq!([more[3], more[4]].map(|u| u.abs().to_bits()), [0; 2], "{name}");
     }
 }
 
