@@ -42,7 +42,10 @@ fn imperfections_of_no_strength_are_none() {
 #[test]
 fn every_registered_kind_does_something() {
     let link = |imperfections| {
-        simulate(&with_these(ideal(1.0), imperfections)).trace.column("q_l2").unwrap().to_vec()
+        let mut scenario = with_these(ideal(1.0), imperfections);
+        // Half a radian away: torques are at every limit.
+        (scenario.initial.q_l, scenario.initial.q_m) = (vec![0.5; 2], vec![0.5; 2]);
+        simulate(&scenario).trace.column("q_l2").unwrap().to_vec()
     };
     let perfect = link(Vec::new());
     for &(kind, Strengths { little, much, .. }) in STRENGTHS {
