@@ -157,7 +157,9 @@ impl Sensing for Silence {
             }
             held.give(readings, side);
             if self.dropout.mode == DropoutMode::Nan {
-                readings.of[side].iter_mut().for_each(|reading| reading.fill(f64::NAN));
+                for reading in &mut readings.of[side] {
+                    reading.fill(f64::NAN);
+                }
             }
         }
     }

@@ -9,6 +9,12 @@ use crate::imperfections::{IMPERFECTIONS, Imperfection, Push};
 use crate::plant::{self, Departures, Plant};
 use crate::robot::Robot;
 
+/// Gives joints what the model of the robot leaves out.
+pub(crate) type JointChange<'a> = Box<dyn Fn(&mut Departures<'_>) + 'a>;
+
+/// From the robot that the law knows to the one that is simulated.
+pub(crate) type RobotChange<'a> = Box<dyn Fn(&Robot) -> Robot + 'a>;
+
 /// What an imperfection does to a loop, and where.
 pub(crate) enum Effect<'a> {
     /// A stage between motion and readings.
@@ -20,9 +26,9 @@ pub(crate) enum Effect<'a> {
     /// Velocities are differences of measured positions through this filter.
     Velocities(LowPass<f64>),
     /// The joints of the simulated robot have what its model leaves out.
-    Joints(Box<dyn Fn(&mut Departures<'_>) + 'a>),
+    Joints(JointChange<'a>),
     /// Another robot is simulated than the law knows.
-    Robot(Box<dyn Fn(&Robot) -> Robot + 'a>),
+    Robot(RobotChange<'a>),
     /// Torque from outside on the links.
     Push(&'a Push),
 }
@@ -37,8 +43,8 @@ pub struct Effects<'a> {
     pub actuator: Actuator,
     /// Of differences of measured positions, where velocities are those.
     pub velocities: Option<LowPass<f64>>,
-    joints: Vec<Box<dyn Fn(&mut Departures<'_>) + 'a>>,
-    robots: Vec<Box<dyn Fn(&Robot) -> Robot + 'a>>,
+    joints: Vec<JointChange<'a>>,
+    robots: Vec<RobotChange<'a>>,
     pushes: Vec<&'a Push>,
 }
 

@@ -81,7 +81,9 @@ impl Sensors {
         measured.placed = self.missing.map(|missing| !missing);
         let mut readings = measured.readings(self.joints);
         for (of, _) in readings.of.iter_mut().zip(self.missing).filter(|(_, missing)| *missing) {
-            of.iter_mut().for_each(|reading| reading.fill(f64::NAN));
+            for reading in of {
+                reading.fill(f64::NAN);
+            }
         }
         for (_, stage) in &mut self.stages {
             stage.sense(instant, &mut readings);

@@ -1,6 +1,8 @@
 //! Laws of all imperfections: nothing at zero strength, the same under the same seed, worse when stronger, and each with
 //! random numbers of its own.
 
+use std::slice;
+
 use flexure::core::linalg::Vector;
 use flexure::core::memory::{Memory, Port};
 use flexure::core::model::Motion;
@@ -161,7 +163,7 @@ fn stronger_is_worse() {
     for Graded { name, at } in all() {
         let of = |measure: &dyn Fn(&[Imperfection]) -> f64| {
             let [none, little, much] =
-                at.each_ref().map(|at| at.as_ref().map_or(0.0, |at| measure(&[at.clone()])));
+                at.each_ref().map(|at| at.as_ref().map_or(0.0, |at| measure(slice::from_ref(at))));
             assert!(
                 none == 0.0 && ((little, much) == (0.0, 0.0) || little > 0.0 && much > 2.0 * little),
                 "{name}"

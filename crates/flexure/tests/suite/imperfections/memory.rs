@@ -1,5 +1,7 @@
 //! What stages remember, saved and restored; and robots with fewer joints than there is room for.
 
+use std::slice;
+
 use flexure::core::estimate::Estimator;
 use flexure::core::linalg::Vector;
 use flexure::core::memory::{Memory, length, restore, save};
@@ -90,7 +92,7 @@ fn survives(imperfections: &[Imperfection]) {
 fn every_kind_can_be_saved_and_restored() {
     let mut remembering = 0;
     for (_, strengths) in registered() {
-        strengths.iter().flatten().for_each(|imperfection| survives(&[imperfection.clone()]));
+        strengths.iter().flatten().for_each(|imperfection| survives(slice::from_ref(imperfection)));
         let [.., much] = strengths;
         remembering +=
             usize::from(Devices::new(&[much.unwrap()], 7).save().iter().any(|part| !part.is_empty()));
@@ -128,7 +130,9 @@ fn joints_that_are_none_are_left_alone() {
                 let pairs = a.iter().zip(b.iter());
                 assert!(a.iter().count() == b.iter().count());
                 assert!(
-                    pairs.into_iter().all(|((s, a), (t, b))| s == t && exactly(a) == narrow(b)),
+                    pairs
+                        .into_iter()
+                        .all(|((s, a), (t, b))| s.to_bits() == t.to_bits() && exactly(a) == narrow(b)),
                     "{kind}"
                 );
             }
