@@ -24,6 +24,11 @@ pub mod tune;
 pub mod units;
 pub mod verify;
 
+pub use files::Problems;
+pub use robot::{Arm, Robot};
+pub use scenario::Scenario;
+pub use simulate::Loop;
+
 /// The program of the README, compiled and run with the tests of the documentation.
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]

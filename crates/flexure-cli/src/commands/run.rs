@@ -7,7 +7,7 @@ use flexure::files::{Problem, prepare};
 use flexure::report::summary_table;
 use flexure::reproduce::{Experiment, write_experiment};
 use flexure::scenario::load_scenario;
-use flexure::simulate::{Cause, Divergence, Summary, exceeded, preload};
+use flexure::simulate::{Cause, Summary, exceeded, preload};
 use serde::Serialize;
 
 use super::print;
@@ -80,31 +80,23 @@ fn summary_line(summary: &Summary) -> Option<String> {
 pub fn diverged(experiment: &Experiment) -> Option<Problem> {
     let Experiment { scenario, run, .. } = experiment;
     run.divergence.map(|divergence| {
-        let Divergence { time, magnitude, cause } = divergence;
-        let (code, what, hint) = match cause {
+        let (code, hint) = match divergence.cause {
             Cause::Unbounded => (
                 "diverged",
-                "the loop diverged",
                 "shorten control_period, lower the gains, or join the reference smoothly with \
                  [reference.smooth_start]; outputs end where the loop does",
             ),
             Cause::Torque => (
                 "no-torque",
-                "the torque is no number",
                 "a sensor that drops out reads NaN: add [guard]; or gains are too high; outputs end where the loop does",
             ),
             Cause::Unsolvable => (
                 "unsolvable",
-                "the motion diverged or became too wild to integrate",
                 "shorten control_period, lower the gains, and check that the reference has four continuous \
                  derivatives; outputs end there",
             ),
         };
-        let message = format!(
-            "{}: {what} at t = {time:.4} s; the last control instant has positions or speeds up to {magnitude:.3e} rad \
-             or rad/s",
-            scenario.name
-        );
+        let message = format!("{}: {divergence}", scenario.name);
         scenario.places.problem("control_period", code, message, hint)
     })
 }

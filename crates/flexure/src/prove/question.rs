@@ -199,6 +199,16 @@ fn chosen(metric: &[Interval], start: Option<f64>) -> (RequestedRegion, String) 
     }
 }
 
+impl Scenario {
+    /// Proves how fast the closed loop contracts, and where: [`prove`].
+    ///
+    /// # Errors
+    /// Where no certificate can speak of it: with the place and the reason.
+    pub fn certify(&self, question: &Question) -> Result<Proof, Problems> {
+        prove(self, question)
+    }
+}
+
 /// Proves what `question` asks of `scenario`.
 ///
 /// # Errors

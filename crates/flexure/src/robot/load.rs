@@ -15,6 +15,16 @@ pub fn load_robot(path_or_name: &str) -> Result<Robot, Problems> {
     robot(path_or_name, &Base::Folder("".into()))
 }
 
+impl Robot {
+    /// Loads the robot file at a path, or the built-in robot of that name, as [`load_robot`] does.
+    ///
+    /// # Errors
+    /// With everything that is wrong.
+    pub fn load(path_or_name: &str) -> Result<Self, Problems> {
+        load_robot(path_or_name)
+    }
+}
+
 /// The robot at `path_or_name`, relative to `base`.
 pub(crate) fn robot(path_or_name: &str, base: &Base) -> Result<Robot, Problems> {
     if builtin::is_name(path_or_name) {

@@ -23,6 +23,16 @@ pub fn load_scenario(path_or_name: &str) -> Result<Scenario, Problems> {
     document::read(&source::read(path, source::LIMIT)?, &Base::of(path))
 }
 
+impl Scenario {
+    /// Loads the scenario file at a path, or the built-in scenario of that name, as [`load_scenario`] does.
+    ///
+    /// # Errors
+    /// With everything that is wrong, in the robot's file as well.
+    pub fn load(path_or_name: &str) -> Result<Self, Problems> {
+        load_scenario(path_or_name)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::{SCENARIOS, TASKS, load_scenario};

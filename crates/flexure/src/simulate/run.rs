@@ -24,6 +24,16 @@ pub struct Run {
     pub divergence: Option<Divergence>,
 }
 
+impl Scenario {
+    /// Simulates it from beginning to end: [`run`] that nobody watches.
+    ///
+    /// # Errors
+    /// As [`Scenario::open`].
+    pub fn simulate(&self) -> Result<Run, Problems> {
+        run(self, &unwatched)
+    }
+}
+
 /// Simulates a scenario. `progress` is told the fraction done at every control instant.
 ///
 /// # Errors

@@ -52,7 +52,11 @@ pub struct Instant<'a, const N: usize> {
 }
 
 /// A loop that left the finite numbers, or any sensible range.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "{} at t = {time:.4} s; the last control instant has positions or speeds up to {magnitude:.3e} rad or rad/s",
+    cause.words()
+)]
 pub struct Divergence {
     /// Time at which the run had to stop, in s.
     pub time: f64,
@@ -76,6 +80,14 @@ pub enum Cause {
 impl Cause {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Unbounded, Self::Torque, Self::Unsolvable];
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::Unbounded => "the loop diverged",
+            Self::Torque => "the torque is no number",
+            Self::Unsolvable => "the motion diverged or became too wild to integrate",
+        }
+    }
 }
 
 /// A position in rad or speed [rad/s] beyond this is a diverged loop, not a robot.

@@ -15,6 +15,7 @@ mod direct;
 mod docs;
 mod enclosures;
 mod errata;
+mod examples;
 mod experiments;
 mod feasible;
 mod feed_forward;
