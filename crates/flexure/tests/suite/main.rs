@@ -21,6 +21,7 @@ mod feasible;
 mod feed_forward;
 mod golden_panda;
 mod golden_two_link;
+mod held;
 mod imperfection_files;
 mod imperfections;
 mod integrator;
