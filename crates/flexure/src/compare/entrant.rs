@@ -35,7 +35,7 @@ impl Entrant {
         Err(Problem::new("unknown-name", message, suggest::hint(name, known)))
     }
 
-    /// Its name.
+    /// Name as in `flexure list controllers`, with the shaping function of v-CBC: `vcbc:tanh`.
     pub fn name(self) -> String {
         let variant = VCBC.iter().find(|(_, phi)| self.phi == Some(*phi));
         variant.map_or(self.kind, |(name, _)| name).to_owned()

@@ -41,9 +41,9 @@ pub struct TaskScores {
 /// A task on which a law that is no v-CBC was better than every v-CBC that took part.
 #[derive(Clone, Copy, Debug)]
 pub struct Loss<'a> {
-    /// The task.
+    /// The task that was lost.
     pub task: &'a TaskScores,
-    /// The best law.
+    /// Score of the best law on it.
     pub winner: &'a Score,
     /// The best v-CBC; none if no v-CBC finished.
     pub vcbc: Option<&'a Score>,
@@ -86,7 +86,7 @@ impl TaskScores {
         Self::ranked(Self { task: name, scenario, conditions, needed_torque: task.needed_torque, scores })
     }
 
-    /// The same with the ranks filled in.
+    /// With the rank of each law filled in, 1 for the smallest penalised error.
     pub fn ranked(mut self) -> Self {
         let errors: Vec<f64> = self.scores.iter().map(|score| score.penalised_error).collect();
         self.scores.iter_mut().zip(ranks(&errors)).for_each(|(score, rank)| score.rank = rank);

@@ -16,11 +16,11 @@ use crate::robot::links::{self, Assembled, Links, MovingJoint};
 /// A flexible-joint robot as data: links, and per moving joint (in the order of the links) motor and spring.
 #[derive(Clone, Debug)]
 pub struct Robot {
-    /// Name.
+    /// Name of the robot, as in its file.
     pub name: String,
     /// Acceleration of gravity in the base frame [m/s²].
     pub gravity: [f64; 3],
-    /// The links.
+    /// The rigid links, as in the file or its URDF.
     pub links: Links,
     /// The links that the decimals of the files make exactly, enclosed: 0.1 is a tenth, and what follows from it by sines
     /// and roots is bounded. Whoever changes `links` changes this too.
@@ -43,7 +43,7 @@ pub struct Robot {
     pub assumed: Vec<Assumption>,
     /// What is suspicious in the file.
     pub warnings: Vec<Problem>,
-    /// Where the keys stand in the file.
+    /// Line and column of each key of the file, for messages.
     pub places: Places,
     pub(crate) decimals: Decimals,
 }

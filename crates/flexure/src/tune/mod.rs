@@ -18,9 +18,9 @@ use crate::simulate::{Run, measure};
 pub struct Tuned {
     /// The law with the best gains.
     pub controller: Controller,
-    /// Their [`cost`].
+    /// [`cost`] of a run with them.
     pub cost: f64,
-    /// What the search began with.
+    /// [`cost`] of a run with the gains of the scenario.
     pub start_cost: f64,
     /// Runs that were simulated.
     pub evaluations: usize,
