@@ -10,6 +10,19 @@ use crate::compare::task::Task;
 const VCBC: &str = "vcbc";
 
 /// Laws on tasks: the contract of `compare --json`.
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use flexure::compare::{Task, compare, entrants};
+///
+/// let mut scenario = flexure::Scenario::load("pendulum-tanh")?;
+/// scenario.duration = 0.5; // s
+/// let laws = entrants(&["vcbc:tanh", "pd"].map(str::to_owned))?;
+/// // Two runs for each law, seed 0, nobody watches.
+/// let board = compare(&[Task::new(&scenario)?], &laws, 2, 0, &|_, _| ControlFlow::Continue(()))?;
+/// assert_eq!(board.ranking[0].law, "vcbc:tanh");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, Serialize)]
 pub struct Leaderboard {
     /// Runs that each law might simulate on each task.

@@ -23,6 +23,17 @@ use crate::scenario::{self, Scenario};
 use crate::{laws, robot};
 
 /// What to prove of a scenario.
+///
+/// ```
+/// use flexure::prove::question::{Question, Region};
+///
+/// // A pendulum: errors of its link and of its motor up to 0.2 rad.
+/// let question = Question { region: Region::Errors(vec![0.2, 0.2]), ..Question::default() };
+/// let proof = flexure::Scenario::load("pendulum-tanh")?.certify(&question)?;
+/// let certificate = proof.verdict.proved().expect("proved");
+/// assert!(certificate.contraction_rate.approximate() > 1.0); // 1/s
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Question {
     /// Errors for which it shall be proved.

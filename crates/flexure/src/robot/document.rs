@@ -14,6 +14,14 @@ use crate::robot::joints::{self, Drives, Limits};
 use crate::robot::links::{self, Assembled, Links, MovingJoint};
 
 /// A flexible-joint robot as data: links, and per moving joint (in the order of the links) motor and spring.
+///
+/// ```
+/// let robot = flexure::Robot::load("panda")?;
+/// assert_eq!(robot.joint_count(), 7);
+/// assert_eq!(robot.joints[0].name, "panda_joint1");
+/// assert!(robot.stiffness.iter().all(|&k| k >= 4000.0)); // N m/rad
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Robot {
     /// Name of the robot, as in its file.

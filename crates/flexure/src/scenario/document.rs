@@ -33,6 +33,14 @@ const MOST_PERIODS: f64 = 5e6;
 const UNEVEN: f64 = 1e-6;
 
 /// One closed loop, as data.
+///
+/// ```
+/// let mut scenario = flexure::Scenario::load("pendulum-tanh")?;
+/// scenario.duration = 0.1; // s
+/// let run = scenario.simulate()?;
+/// assert_eq!(run.trace.len(), 101); // one instant a millisecond, both ends included
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Scenario {
     /// The file's name without folder and ending.
