@@ -23,17 +23,17 @@ impl<C: Scalar, const N: usize> ControlLaw<C, N> for WindUp<C, N> {
         let spring = robot.links.torque_along::<T, 3, 5>(q_ld) + robot.link_damping.diag_mul(&speed);
         let theta_d = q_ld.map(|q| q.truncate()) + robot.stiffness.map(C::recip).diag_mul(&spring);
         let [position, rate, _] = theta_d.derivatives();
-        self.0.feedback(&(x.q_m - position), &(x.v_m - rate)) + spring.map(|u| u.coefficient(0))
+        let needed = spring.map(|u| u.coefficient(0)) + robot.motor_damping.diag_mul(&rate);
+        needed + self.0.feedback(&(x.q_m - position), &(x.v_m - rate))
     }
 }
 
 /// Largest error of the links in rad on a move of 1 rad in 1 s, at 1 kHz.
 fn worst_error(robot: Fjr<f64, PlanarTwoLink<f64>, 2>, law: impl Feedback<PlanarTwoLink<f64>, 2>) -> f64 {
-    let [from, to] = [Vector([0.0, 0.0]), Vector([1.0, -1.0])];
-    let path = PointToPoint { from, to, start: 0.0, duration: 1.0, step: Smoothstep::Nonic };
+    let (x, to) = (Motion::at_rest(Vector([0.0, 0.0])), Vector([1.0, -1.0]));
+    let path = PointToPoint { from: x.q_l, to, start: 0.0, duration: 1.0, step: Smoothstep::Nonic };
     let timing = Timing { period: 1e-3, hold: Hold::ZeroOrder, tolerance: TOLERANCE, longest_step: 1e-3 };
-    let controller = Controller::ideal(robot, path, law);
-    let mut held = Simulation::new(timing, robot.into(), Motion::at_rest(from), vec![], controller);
+    let mut held = Simulation::new(timing, robot.into(), x, vec![], Controller::ideal(robot, path, law));
     let error = |_| {
         held.step().expect("the loop is stable");
         let now = held.instant().expect("after a step");

@@ -10,7 +10,7 @@ pub type Progress<'a> = &'a (dyn Fn(f64) -> ControlFlow<()> + Sync);
 /// The same for a job of several parts side by side: the number of the part, and the fraction of it that is done.
 pub type PartProgress<'a> = &'a (dyn Fn(usize, f64) -> ControlFlow<()> + Sync);
 
-/// Watches nothing.
+/// Progress that nobody watches: never breaks a job off.
 pub fn unwatched(_: f64) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }

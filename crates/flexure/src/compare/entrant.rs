@@ -39,7 +39,7 @@ impl Entrant {
         Err(Problem::new("unknown-name", message, suggest::hint(name, known)))
     }
 
-    /// Its name.
+    /// Name as in `flexure list controllers`, with the shaping function of v-CBC: `vcbc:tanh`.
     pub fn name(self) -> String {
         self.phi.map_or_else(|| self.kind.to_owned(), vcbc)
     }

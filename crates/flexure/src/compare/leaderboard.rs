@@ -10,6 +10,19 @@ use crate::compare::task::Task;
 const VCBC: &str = "vcbc";
 
 /// Laws on tasks: the contract of `compare --json`.
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use flexure::compare::{Task, compare, entrants};
+///
+/// let mut scenario = flexure::Scenario::load("pendulum-tanh")?;
+/// scenario.duration = 0.5; // s
+/// let laws = entrants(&["vcbc:tanh", "pd"].map(str::to_owned))?;
+/// // Two runs for each law, seed 0, nobody watches.
+/// let board = compare(&[Task::new(&scenario)?], &laws, 2, 0, &|_, _| ControlFlow::Continue(()))?;
+/// assert_eq!(board.ranking[0].law, "vcbc:tanh");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, Serialize)]
 pub struct Leaderboard {
     /// Runs that each law might simulate on each task.
@@ -41,9 +54,9 @@ pub struct TaskScores {
 /// A task on which a law that is no v-CBC was better than every v-CBC that took part.
 #[derive(Clone, Copy, Debug)]
 pub struct Loss<'a> {
-    /// The task.
+    /// The task that was lost.
     pub task: &'a TaskScores,
-    /// The best law.
+    /// Score of the best law on it.
     pub winner: &'a Score,
     /// The best v-CBC; none if no v-CBC finished.
     pub vcbc: Option<&'a Score>,
@@ -86,7 +99,7 @@ impl TaskScores {
         Self::ranked(Self { task: name, scenario, conditions, needed_torque: task.needed_torque, scores })
     }
 
-    /// The same with the ranks filled in.
+    /// With the rank of each law filled in, 1 for the smallest penalised error.
     pub fn ranked(mut self) -> Self {
         let errors: Vec<f64> = self.scores.iter().map(|score| score.penalised_error).collect();
         self.scores.iter_mut().zip(ranks(&errors)).for_each(|(score, rank)| score.rank = rank);

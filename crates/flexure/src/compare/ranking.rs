@@ -8,7 +8,7 @@ use crate::compare::score::Score;
 /// Errors within this factor of the best of a group are a tie.
 pub const TIE: f64 = 1.01;
 
-/// Where a law stands over all tasks.
+/// Ranks of a law over all tasks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Standing {
     /// Name of the law.

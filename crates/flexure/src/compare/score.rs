@@ -19,7 +19,7 @@ pub struct Score {
     pub rank: f64,
     /// What ranks: root mean square error times √(1 + (chatter / 0.05)²), in rad: what the search made small.
     pub penalised_error: f64,
-    /// The same with the starting gains.
+    /// Penalised error with the starting gains, in rad.
     pub penalised_error_at_start: f64,
     /// Root mean square over time of |q_l − q_ld|, the largest over the joints, in rad.
     pub rms_error: f64,
@@ -44,7 +44,7 @@ pub struct Score {
 /// A gain, one number per joint.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TunedGain {
-    /// Its key below `[controller]`.
+    /// Key below `[controller]` in scenario files.
     pub key: String,
     /// Its values, in the unit that the key has in scenario files.
     pub values: Vec<f64>,

@@ -28,7 +28,7 @@ impl Task {
         Ok(Self { scenario, needed_torque })
     }
 
-    /// Its name in tables and figures.
+    /// Name in tables and figures: that of the scenario without `task-`.
     pub fn name(&self) -> &str {
         self.scenario.name.strip_prefix(PREFIX).unwrap_or(&self.scenario.name)
     }

@@ -5,12 +5,12 @@ use crate::feasible::peaks::Peak;
 use crate::robot::{JointKind, Robot};
 use crate::units::{self, Unit};
 
-/// What is limited.
+/// A quantity that robot files limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitKind {
     /// Motor torque.
     Torque,
-    /// Its rate.
+    /// Rate of the motor torque.
     TorqueRate,
     /// Link velocity.
     Velocity,
@@ -23,11 +23,11 @@ pub enum LimitKind {
 /// A limit that a joint has.
 #[derive(Clone, Copy, Debug)]
 pub struct Bound {
-    /// Index of the joint.
+    /// Index of the joint, from 0.
     pub joint: usize,
-    /// Of what.
+    /// The quantity that it bounds.
     pub quantity: LimitKind,
-    /// Its key in robot files.
+    /// Key in robot files.
     key: &'static str,
     limit: f64,
     /// Middle and half width of the range; of a range with one end, that end and zero.
@@ -57,7 +57,7 @@ impl Bound {
         if self.quantity == LimitKind::Position { 1.0 } else { margin }
     }
 
-    /// With what comes closest.
+    /// What the reference uses of this bound where it comes closest to it, at `peak`.
     pub fn usage(&self, peak: &Peak) -> Usage {
         Usage {
             joint: self.joint,

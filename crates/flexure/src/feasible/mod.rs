@@ -31,18 +31,18 @@ pub use crate::feasible::search::speed;
 /// The largest share of a limit that is used along the reference.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Usage {
-    /// Index of the joint.
+    /// Index of the joint, from 0.
     pub joint: usize,
     /// The limit's key in robot files.
     pub key: &'static str,
-    /// The limit.
+    /// The limit from the robot file, in the unit of the quantity.
     pub limit: f64,
     /// What comes closest to it, or is farthest beyond: N m, N m/s, rad or rad/s.
     pub value: f64,
     /// Part of the limit that this is: above 1 the limit is exceeded. Of a position, the distance from the middle of its
     /// range over half of that; where the range is open on one side, 0 inside and infinite outside.
     pub share: f64,
-    /// When, in s.
+    /// Time of the largest value in s.
     pub time: f64,
 }
 

@@ -25,9 +25,9 @@ impl<'a> PacedReference<'a> {
 /// What comes closest to a limit.
 #[derive(Clone, Copy, Debug)]
 pub struct Peak {
-    /// The number.
+    /// Largest absolute value, in the unit of the quantity.
     pub value: f64,
-    /// When, in s.
+    /// Time at which it is reached in s.
     pub time: f64,
 }
 

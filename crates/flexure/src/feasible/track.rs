@@ -29,7 +29,7 @@ pub struct Demand {
 }
 
 impl Demand {
-    /// What `bound` is about.
+    /// Value of the quantity that `bound` limits, in its unit.
     pub fn of(&self, bound: &Bound) -> f64 {
         let values = match bound.quantity {
             LimitKind::Torque => &self.torque,

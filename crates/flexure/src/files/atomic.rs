@@ -14,22 +14,22 @@ pub enum WriteError {
     /// No file can be created beside the target.
     #[error("cannot create files in {}: {cause}", folder.display())]
     Folder {
-        /// The folder.
+        /// Folder that could not be made.
         folder: PathBuf,
-        /// What the system said.
+        /// Reason that the operating system gave.
         #[source]
         cause: io::Error,
     },
     /// The target is a folder or a device.
     #[error("{} is not a regular file", path.display())]
     NotAFile {
-        /// The target.
+        /// File that was to be written.
         path: PathBuf,
     },
     /// Writing failed on the way.
     #[error("cannot write {}: {cause}", path.display())]
     Content {
-        /// The target.
+        /// File that was to be written.
         path: PathBuf,
         /// What the system or the writer said.
         #[source]

@@ -5,6 +5,6 @@
 pub struct Entry {
     /// The name in files and on the command line.
     pub name: &'static str,
-    /// One line about it.
+    /// What it is, in one line, for `flexure list`.
     pub summary: &'static str,
 }

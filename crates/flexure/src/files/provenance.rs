@@ -14,9 +14,9 @@ pub struct Assumption {
     pub key: String,
     /// The value as it stands there, `[9.0, 4.0]`.
     pub value: String,
-    /// Why it is assumed.
+    /// Reason after `assumed:` in the file.
     pub note: String,
-    /// The file.
+    /// Name of the file that the number stands in.
     pub file: String,
 }
 

@@ -22,9 +22,9 @@ enum Sign {
 /// A kind of number in a file.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Quantity {
-    /// In words, for hints.
+    /// Name of the quantity in hints.
     pub what: &'static str,
-    /// Its unit.
+    /// Unit in messages.
     unit: Unit,
     sign: Sign,
     /// Magnitudes of nonzero numbers that raise no doubt, and the doubt.

@@ -120,7 +120,7 @@ impl<R: BufRead> Iterator for States<R> {
 pub struct StateFile {
     /// Stands for the file in messages.
     pub name: String,
-    /// At least one.
+    /// A state each, at least one.
     pub rows: Vec<StateRow>,
 }
 

@@ -3,7 +3,7 @@
 use crate::imperfections::{Delay, Factors, Imperfection, ModelError, Noise, TorqueGain};
 use crate::scenario::Scenario;
 
-/// What is changed.
+/// A change of a scenario, with how large it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Change {
     /// Delay from command to torque, added, in s.

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::files::Problems;
 
-/// How far something may be changed.
+/// The largest change under which a loop still holds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "edge")]
 pub enum Edge {
@@ -15,7 +15,7 @@ pub enum Edge {
         /// The nearest one at which it does not.
         fails: f64,
     },
-    /// Farther than was looked.
+    /// It holds as far as was looked.
     Beyond {
         /// The farthest change that was tried: the loop holds there.
         holds: f64,

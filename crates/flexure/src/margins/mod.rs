@@ -18,6 +18,17 @@ pub use change::Change;
 pub use edge::Edge;
 
 /// What a loop bears beyond its scenario.
+///
+/// ```
+/// use flexure::margins::margins;
+/// use flexure::progress::unwatched;
+///
+/// let mut scenario = flexure::Scenario::load("pendulum-tanh")?;
+/// scenario.duration = 0.5; // s
+/// let margins = margins(&scenario, &unwatched)?;
+/// assert!(margins.delay.holds() > Some(0.0)); // s
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, Serialize)]
 pub struct Margins {
     /// Scenario name.

@@ -20,7 +20,7 @@ pub struct Push<const N: usize> {
 /// How a push comes and goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
-    /// At once.
+    /// The whole torque from the first instant to the last.
     Rectangle,
     /// As the first half of a sine.
     HalfSine,

@@ -27,7 +27,7 @@ pub use exceeding::Exceeding;
 /// What a robot may do along its reference inside a tube: upper bounds, one per joint.
 #[derive(Clone, Debug, Serialize)]
 pub struct Along {
-    /// c in J.
+    /// Level c of W that the run never leaves, in J.
     pub level: f64,
     /// Link position errors |q̃_l| in rad.
     pub error: Vec<f64>,
@@ -57,11 +57,11 @@ pub struct Peaks {
 /// A limit in the robot's file.
 #[derive(Clone, Debug, Serialize)]
 pub struct Limit {
-    /// Index of the joint.
+    /// Index of the joint, from 0.
     pub joint: usize,
     /// Its key in robot files: `velocity_limit`, `deflection_limit` or `torque_limit`.
     pub key: &'static str,
-    /// The limit.
+    /// The limit from the robot file, in the unit of the quantity.
     pub limit: f64,
     /// Proved: never exceeded in the tube, with the bound. Refuted: a state in the tube that exceeds it.
     pub verdict: Verdict<f64, Exceeding>,

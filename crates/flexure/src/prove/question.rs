@@ -23,9 +23,20 @@ use crate::scenario::{self, Scenario};
 use crate::{laws, robot};
 
 /// What to prove of a scenario.
+///
+/// ```
+/// use flexure::prove::question::{Question, Region};
+///
+/// // A pendulum: errors of its link and of its motor up to 0.2 rad.
+/// let question = Question { region: Region::Errors(vec![0.2, 0.2]), ..Question::default() };
+/// let proof = flexure::Scenario::load("pendulum-tanh")?.certify(&question)?;
+/// let certificate = proof.verdict.proved().expect("proved");
+/// assert!(certificate.contraction_rate.approximate() > 1.0); // 1/s
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Question {
-    /// Where.
+    /// Errors for which it shall be proved.
     pub region: Region,
     /// The contraction rate to prove [1/s]; the largest if none is given.
     pub rate: Option<f64>,
@@ -47,7 +58,7 @@ pub struct Direct {
 /// Smallest error that a region can be made of \[rad\]: with smaller ones the slopes of tanh are 1 to rounding.
 pub const SMALLEST_ERROR: f64 = 1e-6;
 
-/// Where a claim shall hold.
+/// Errors for which a claim shall hold.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Region {
     /// Everywhere if φ allows it; else errors of up to 1 rad, as an assumption.
@@ -68,10 +79,10 @@ fn slabs(joints: usize) -> usize {
 /// Largest error where none is named and φ has no rate everywhere \[rad\].
 const ASSUMED_ERROR: f64 = 1.0;
 
-/// What came of it.
+/// The answer to a [`Question`]: verdict and certificate, and what to compare them with.
 #[derive(Clone, Debug)]
 pub struct Proof {
-    /// The verdict.
+    /// Proved, with the certificate; refuted, with a witness; or undecided, with the reason.
     pub verdict: Verdict<Certificate, RateWitness>,
     /// The rate by the paper's formula [1/s].
     pub paper_rate: f64,

@@ -18,9 +18,9 @@ const SHRINK: f64 = 0.8;
 pub struct Sampled {
     /// Smallest eigenvalue of diag(d) relative to M_l(q) [1/s]: an upper bound of the true rate.
     pub rate: f64,
-    /// Where, in rad (m for prismatic joints).
+    /// Joint positions of the smallest sampled rate, in rad (m for prismatic joints).
     pub configuration: Vec<f64>,
-    /// M_l there [kg m²].
+    /// M_l at that configuration [kg m²].
     #[serde(skip)]
     pub mass_matrix: Symmetric<f64>,
     /// Largest eigenvalue of M_l at the configuration where that is largest [kg m²].

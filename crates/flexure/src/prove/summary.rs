@@ -17,7 +17,7 @@ use crate::scenario::Scenario;
 /// What was proved, as numbers.
 #[derive(Clone, Debug, Serialize)]
 pub struct ProofSummary {
-    /// The scenario.
+    /// Name of the scenario.
     pub name: String,
     /// `proved`, `refuted` or `undecided`: on everything that was asked. Rates stand where they were proved.
     pub verdict: &'static str,
@@ -31,7 +31,7 @@ pub struct ProofSummary {
     pub blocks: Option<BlockSummary>,
     /// Convergence rate of each block [1/s].
     pub convergence_blocks: Option<BlockSummary>,
-    /// Where it holds.
+    /// Errors for which it holds; none if nothing was proved.
     pub region: Option<RegionSummary>,
     /// Upper bounds of the matrix measures of −Θ ∂φ Θ⁻¹ [1/s].
     pub measures: Vec<MeasureSummary>,
@@ -51,30 +51,30 @@ pub struct ProofSummary {
     pub direct: Option<DirectSummary>,
     /// Error tube under a disturbance.
     pub tube: Option<TubeSummary>,
-    /// Where a claim fails.
+    /// A state at which what was asked fails, if it was refuted.
     pub witness: Option<WitnessSummary>,
-    /// Why nothing was decided.
+    /// Why nothing was decided, if so.
     pub undecided: Option<UndecidedSummary>,
     /// What was assumed.
     pub assumptions: Vec<String>,
-    /// Time in s.
+    /// Wall-clock time of the proof in s.
     pub wall_seconds: f64,
 }
 
 /// A rate of each block [1/s].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BlockSummary {
-    /// Link positions.
+    /// Rate of the link positions [1/s].
     pub phi_l: f64,
-    /// Motor positions.
+    /// Rate of the motor positions [1/s].
     pub phi_m: f64,
-    /// Link momenta.
+    /// Rate of the link momenta [1/s].
     pub sigma_l: f64,
-    /// Motor momenta.
+    /// Rate of the motor momenta [1/s].
     pub sigma_m: f64,
 }
 
-/// Where a proof holds.
+/// Errors for which a proof holds.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RegionSummary {
     /// Largest |q̃_i| in rad, links then motors; none for every error.
@@ -90,16 +90,16 @@ pub struct RegionSummary {
 pub struct MeasureSummary {
     /// Links or motors.
     pub side: LoopSide,
-    /// The norm.
+    /// Norm that the measure belongs to.
     pub norm: Norm,
-    /// Its bound [1/s].
+    /// Upper bound of the measure [1/s].
     pub bound: f64,
 }
 
 /// A structural claim.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StructureSummary {
-    /// Which.
+    /// The structure.
     pub name: StructureName,
     /// Whether it is kept.
     pub holds: bool,
@@ -123,7 +123,7 @@ pub struct DirectSummary {
     pub rate: Option<f64>,
     /// Boxes looked at; none if it found a state that speaks against it.
     pub boxes: Option<usize>,
-    /// Where it got stuck.
+    /// The state or box that it could not decide, in words.
     pub at: Option<String>,
 }
 
@@ -138,10 +138,10 @@ pub struct TubeSummary {
     pub error: Vec<f64>,
 }
 
-/// Where a claim fails.
+/// A state and a direction in which a claim fails.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WitnessSummary {
-    /// The block.
+    /// Block that is slower than was asked.
     pub block: BlockName,
     /// Position errors of the block's side in rad.
     pub error: Option<Vec<f64>>,
@@ -149,7 +149,7 @@ pub struct WitnessSummary {
     pub configuration: Option<Vec<f64>>,
     /// Direction of the variation.
     pub direction: Vec<f64>,
-    /// The rate there [1/s].
+    /// Rate of that block at that state [1/s].
     pub rate: f64,
 }
 
@@ -158,7 +158,7 @@ pub struct WitnessSummary {
 pub struct UndecidedSummary {
     /// The place, or the reason.
     pub at: String,
-    /// Boxes looked at.
+    /// Boxes looked at before it stopped.
     pub spent: usize,
 }
 

@@ -28,13 +28,13 @@ use crate::references::septic::{Segment, interpolate};
 /// ```
 /// use flexure::core::linalg::Vector;
 /// use flexure::core::reference::Reference;
-/// use flexure::reference::Samples;
+/// use flexure::references::Samples;
 ///
 /// let path = [(0.0, Vector([0.0])), (0.5, Vector([0.8])), (1.5, Vector([0.2])), (2.0, Vector([0.0]))];
 /// let q_d = Samples::new(&path)?;
 /// let [jet] = q_d.at::<5>(0.5).0;
 /// assert!((jet.derivative(0) - 0.8).abs() < 1e-15);
-/// # Ok::<(), flexure::reference::SamplesError>(())
+/// # Ok::<(), flexure::references::SamplesError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Samples<C, const N: usize> {

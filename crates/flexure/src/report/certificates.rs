@@ -9,7 +9,7 @@ use crate::prove::summary::ProofSummary;
 /// A proof as the report shows it.
 #[derive(Clone, Debug)]
 pub struct CertificateReport {
-    /// What was proved.
+    /// Rates, region, structures and limits that were proved.
     pub summary: ProofSummary,
     /// Shaping function.
     pub phi: String,

@@ -19,7 +19,7 @@ pub struct RunsReport {
     pub runs: Vec<RunReport>,
     /// Figure with all runs in one axis as SVG, from [`comparison`](super::comparison()).
     pub comparison_svg: Option<String>,
-    /// What was proved.
+    /// Summaries of the proofs, a table each.
     pub certificates: Vec<CertificateReport>,
     /// Numbers that no source gives.
     pub assumptions: Vec<AssumedNumber>,
@@ -30,7 +30,7 @@ pub struct RunsReport {
 /// One run of a [`RunsReport`].
 #[derive(Clone, Debug)]
 pub struct RunReport {
-    /// Its figures of merit.
+    /// Errors, torques and rates of the run.
     pub summary: Summary,
     /// Its figure as SVG, from [`four_panel`](super::four_panel()).
     pub figure_svg: String,
@@ -43,11 +43,11 @@ pub struct RunReport {
 pub struct AssumedNumber {
     /// File in which it stands.
     pub file: String,
-    /// Where in the file.
+    /// Key in the file.
     pub key: String,
     /// The number, with its unit.
     pub value: String,
-    /// Why this number.
+    /// Reason after `assumed:` in the file.
     pub note: String,
 }
 

@@ -30,9 +30,9 @@ pub const REPRODUCED: [&str; 6] = [
 /// A scenario that was run.
 #[derive(Clone, Debug)]
 pub struct Experiment {
-    /// What was run.
+    /// The scenario that was run.
     pub scenario: Scenario,
-    /// What came of it.
+    /// Its trace and summary.
     pub run: Run,
     /// The four-panel figure.
     pub figure: Scene,

@@ -22,7 +22,7 @@ use crate::robot::slices::{Mismatch, check, read, read_motion, read_rows, write,
 /// is written.
 ///
 /// ```
-/// let arm = flexure::robot::load_robot("pendulum-1dof")?.arm()?;
+/// let arm = flexure::Robot::load("pendulum-1dof")?.arm()?;
 /// let (mut mass, mut torque) = ([0.0], [0.0]);
 /// arm.mass_matrix(&[0.3], &mut mass)?;
 /// // At rest, an acceleration of 1 rad/s² takes the inertia on top of what holds the weight.

@@ -14,13 +14,21 @@ use crate::robot::joints::{self, Drives, Limits};
 use crate::robot::links::{self, Assembled, Links, MovingJoint};
 
 /// A flexible-joint robot as data: links, and per moving joint (in the order of the links) motor and spring.
+///
+/// ```
+/// let robot = flexure::Robot::load("panda")?;
+/// assert_eq!(robot.joint_count(), 7);
+/// assert_eq!(robot.joints[0].name, "panda_joint1");
+/// assert!(robot.stiffness.iter().all(|&k| k >= 4000.0)); // N m/rad
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Robot {
-    /// Name.
+    /// Name of the robot, as in its file.
     pub name: String,
     /// Acceleration of gravity in the base frame [m/s²].
     pub gravity: [f64; 3],
-    /// The links.
+    /// The rigid links, as in the file or its URDF.
     pub links: Links,
     /// The links that the decimals of the files make exactly, enclosed: 0.1 is a tenth, and what follows from it by sines
     /// and roots is bounded. Whoever changes `links` changes this too.
@@ -43,7 +51,7 @@ pub struct Robot {
     pub assumed: Vec<Assumption>,
     /// What is suspicious in the file.
     pub warnings: Vec<Problem>,
-    /// Where the keys stand in the file.
+    /// Line and column of each key of the file, for messages.
     pub places: Places,
     pub(crate) decimals: Decimals,
 }

@@ -10,7 +10,7 @@ use crate::robot::{self, JointKind, Robot};
 /// A moving joint of a robot. For a prismatic one read m for rad, N for N m and kg for kg m².
 #[derive(Clone, Debug, Serialize)]
 pub struct JointRow {
-    /// Name.
+    /// Name of the joint.
     pub name: String,
     /// `revolute` or `prismatic`.
     pub kind: &'static str,
@@ -28,7 +28,7 @@ pub struct JointRow {
     pub link_damping: f64,
     /// Motor damping D_m [N m s/rad].
     pub motor_damping: f64,
-    /// Gear ratio.
+    /// Motor turns per joint turn (per metre for a prismatic joint), if the file says so.
     pub gear_ratio: Option<f64>,
     /// Largest motor torque [N m].
     pub torque_limit: Option<f64>,

@@ -8,13 +8,13 @@ use flexure_core::scalar::{Jet, Scalar};
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{name} has {found} numbers, must have {expected} ({rule})")]
 pub struct Mismatch {
-    /// The argument.
+    /// Name of the argument.
     pub name: &'static str,
-    /// Its length.
+    /// Numbers that it has.
     pub found: usize,
-    /// What it must be.
+    /// Numbers that it must have.
     pub expected: usize,
-    /// The same in terms of the joint count n.
+    /// How many that is in terms of the joint count n.
     pub rule: &'static str,
 }
 

@@ -33,11 +33,19 @@ const MOST_PERIODS: f64 = 5e6;
 const UNEVEN: f64 = 1e-6;
 
 /// One closed loop, as data.
+///
+/// ```
+/// let mut scenario = flexure::Scenario::load("pendulum-tanh")?;
+/// scenario.duration = 0.1; // s
+/// let run = scenario.simulate()?;
+/// assert_eq!(run.trace.len(), 101); // one instant a millisecond, both ends included
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Scenario {
     /// The file's name without folder and ending.
     pub name: String,
-    /// The robot.
+    /// The robot as the law knows it.
     pub robot: Robot,
     /// Length of the run \[s\].
     pub duration: f64,
@@ -47,7 +55,7 @@ pub struct Scenario {
     pub hold: Hold,
     /// State at t = 0.
     pub initial: Initial,
-    /// Where the links shall be.
+    /// Positions of the links over time that the law shall follow [rad].
     pub reference: Reference,
     /// Another clock for the reference, if it has one.
     pub time_scaling: Option<TimeScaling>,
@@ -55,7 +63,7 @@ pub struct Scenario {
     pub smooth_start: Option<SmoothStart>,
     /// What the simulated robot has that the law does not know.
     pub plant: Plant,
-    /// The law.
+    /// The law with its gains.
     pub controller: Controller,
     /// What sensors, actuators and mechanics do that the ideal loop does not, in the order of the file.
     pub imperfections: Vec<Imperfection>,
@@ -65,13 +73,13 @@ pub struct Scenario {
     pub disturbance_observer: Option<DisturbanceObserver>,
     /// What the controller refuses to do.
     pub guard: Option<GuardSettings>,
-    /// Of all random numbers.
+    /// Seed of all random numbers: the same seed gives the same run, bit for bit.
     pub seed: u64,
     /// Numbers that no source vouches for: the robot's, then those of the scenario.
     pub assumptions: Vec<Assumption>,
     /// What is suspicious in the robot's file and in this one.
     pub warnings: Vec<Problem>,
-    /// Where the keys stand in the file.
+    /// Line and column of each key of the file, for messages.
     pub places: Places,
     decimals: Decimals,
 }

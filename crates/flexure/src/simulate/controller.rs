@@ -16,9 +16,9 @@ use crate::laws::{self, AnyLaw};
 pub struct Controller<L, R, F, E, const N: usize> {
     /// The robot as the controller knows it.
     pub robot: Fjr<f64, L, N>,
-    /// Where the links shall be.
+    /// Positions of the links over time that the law shall follow, in rad.
     pub reference: R,
-    /// The law.
+    /// From motion and reference to motor torque.
     pub law: F,
     /// From motion to readings.
     pub sensors: Sensors,

@@ -15,7 +15,7 @@ use crate::simulate::simulation::Divergence;
 /// the motors gives the torque that acts until the next one. Control steps allocate nothing.
 ///
 /// ```
-/// let mut held = flexure::scenario::load_scenario("pendulum-tanh")?.open()?;
+/// let mut held = flexure::Scenario::load("pendulum-tanh")?.open()?;
 /// held.step()?; // the instant at t = 0
 /// let saved = held.state();
 /// held.step()?;

@@ -16,7 +16,7 @@ use crate::simulate::trace::Trace;
 /// A finished run.
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// What it is judged by.
+    /// Errors, torques and rates that the run is judged by.
     pub summary: Summary,
     /// Every control instant; empty if only the figures were asked for.
     pub trace: Trace,

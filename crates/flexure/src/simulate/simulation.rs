@@ -26,7 +26,7 @@ pub enum Hold {
 pub struct Timing {
     /// Control period in s; also the interval at which the run is observed.
     pub period: f64,
-    /// Torque between control instants.
+    /// What the torque does between control instants.
     pub hold: Hold,
     /// Tolerated local error of the integrator of smooth plants, relative to the joint speeds.
     pub tolerance: f64,
@@ -47,7 +47,7 @@ pub struct Instant<'a, const N: usize> {
     pub energy: f64,
     /// H(t) − H(0) − supplied + dissipated in J: zero up to integration errors.
     pub residual: f64,
-    /// Work so far.
+    /// Energy supplied and dissipated so far.
     pub ledger: &'a Ledger,
 }
 
@@ -78,7 +78,7 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// All of them.
+    /// Every cause, in the order of their numbers in saved states.
     pub const ALL: [Self; 3] = [Self::Unbounded, Self::Torque, Self::Unsolvable];
 
     fn words(self) -> &'static str {

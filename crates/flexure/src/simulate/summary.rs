@@ -3,6 +3,15 @@
 use serde::Serialize;
 
 /// The figures of one closed-loop run: the contract of `run --json` and `reproduce --json`.
+///
+/// ```
+/// let mut scenario = flexure::Scenario::load("pendulum-tanh")?;
+/// scenario.duration = 0.5; // s
+/// let summary = scenario.simulate()?.summary;
+/// assert!(summary.rms_e_l <= summary.max_abs_e_l); // rad
+/// assert!(summary.energy_drift < 1e-9); // the integrator neither makes nor loses energy
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
     /// Scenario name.

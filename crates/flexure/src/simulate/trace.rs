@@ -12,6 +12,15 @@ pub struct Column {
 }
 
 /// Columns of equal length.
+///
+/// ```
+/// use flexure::simulate::Trace;
+/// let mut trace = Trace::new([("t", "s"), ("q_l1", "rad"), ("q_l2", "rad")].map(|(name, unit)| (name.to_owned(), unit)));
+/// trace.push(&[0.0, 0.1, 0.2]);
+/// trace.push(&[0.001, 0.3, 0.4]);
+/// assert_eq!(trace.column("q_l1"), Some(&[0.1, 0.3][..]));
+/// assert_eq!(trace.joints("q_l"), [[0.1, 0.3], [0.2, 0.4]]);
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
     columns: Vec<Column>,

@@ -10,7 +10,7 @@ use rand_xoshiro::rand_core::SeedableRng;
 pub struct BestPoint {
     /// Where the cost is smallest of all points that were tried.
     pub at: Vec<f64>,
-    /// The cost there.
+    /// Cost at the best point.
     pub cost: f64,
     /// Points that were tried.
     pub evaluations: usize,

@@ -7,9 +7,9 @@ use serde::Serialize;
 /// A claim that was checked.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Claim {
-    /// Where in the file it stands.
+    /// Path in the certificate, like `blocks.phi_l`.
     pub name: String,
-    /// What is claimed.
+    /// The claimed value, as the file writes it.
     pub value: String,
 }
 
@@ -39,7 +39,7 @@ pub struct CheckReport {
 pub enum Rejected {
     /// The text is no certificate.
     Malformed {
-        /// Where: a path like `robot.stiffness[1]`.
+        /// Path in the certificate, like `robot.stiffness[1]`.
         place: String,
         /// What is wrong there.
         reason: String,

@@ -26,7 +26,7 @@ pub struct Exceeding {
     pub dq_l: Vec<f64>,
     /// Motor velocities [rad/s].
     pub dq_m: Vec<f64>,
-    /// W there in J.
+    /// W at that state, in J.
     pub level: f64,
     /// The absolute value that exceeds the limit.
     pub value: f64,

@@ -17,9 +17,9 @@ pub struct Certificate {
     pub format: String,
     /// Version of the format.
     pub version: u32,
-    /// The scenario.
+    /// Name of the scenario.
     pub name: String,
-    /// The program.
+    /// Program and version that wrote it.
     pub made_by: String,
     /// What no source vouches for, and options that were not given.
     pub assumptions: Vec<String>,
@@ -27,7 +27,7 @@ pub struct Certificate {
     pub robot: DecimalRobot,
     /// The law with its gains.
     pub controller: DecimalLaw,
-    /// Where the claims hold.
+    /// Errors for which the claims hold.
     pub region: CertifiedRegion,
     /// The variational closed loop in words.
     pub closed_loop: ClosedLoopWords,
@@ -159,7 +159,7 @@ pub enum CertifiedPhi {
     Tanh,
     /// φ_2 = Λ q̃.
     Linear,
-    /// φ_3.
+    /// φ_3 = (1 + κ) q̃ with tanh of the errors of the other joints.
     CoupledTanh,
 }
 
@@ -177,7 +177,7 @@ pub struct DecimalGains {
     pub kappa: Option<Vec<Number>>,
 }
 
-/// Where the claims hold.
+/// Errors for which the claims hold, and a level set of W inside.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema), schemars(rename = "Region", deny_unknown_fields))]
 pub struct CertifiedRegion {
@@ -201,7 +201,7 @@ pub struct ClosedLoopWords {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct Block {
-    /// Which.
+    /// Block of the closed loop.
     pub block: BlockName,
     /// Rate with the slopes of φ [1/s].
     pub contraction: Number,
@@ -262,9 +262,9 @@ pub struct MassMatrix {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct Measure {
-    /// Whose φ.
+    /// Side whose φ it is about: links or motors.
     pub side: LoopSide,
-    /// The norm.
+    /// Norm that the measure belongs to.
     pub norm: Norm,
     /// The bound [1/s].
     pub bound: Number,
@@ -301,11 +301,11 @@ pub enum Norm {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema), schemars(rename = "Structure", deny_unknown_fields))]
 pub struct StructureClaim {
-    /// Which.
+    /// The structure.
     pub name: StructureName,
-    /// Whether it does.
+    /// Whether the closed loop keeps it.
     pub holds: bool,
-    /// Where it does not.
+    /// An error at which it is lost; none if it is kept.
     pub witness: Option<Witness>,
 }
 
@@ -328,7 +328,7 @@ pub enum StructureName {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct Witness {
-    /// Whose φ.
+    /// Side whose φ it is about: links or motors.
     pub side: LoopSide,
     /// q̃ of that side in rad.
     pub error: Vec<Number>,

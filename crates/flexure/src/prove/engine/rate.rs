@@ -8,9 +8,9 @@ use crate::prove::engine::number::Number;
 /// A − β W has to be positive definite.
 #[derive(Clone, Debug)]
 pub struct Inequality {
-    /// What dissipates.
+    /// A: what the block dissipates.
     pub form: Symmetric<Interval>,
-    /// What the rate is relative to.
+    /// W: the metric that the rate is relative to.
     pub weight: Symmetric<Interval>,
 }
 
@@ -24,7 +24,7 @@ impl Inequality {
 /// A rate that is proved, with the margin that each inequality keeps at it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClaimedRate {
-    /// The rate [1/s].
+    /// The largest rate β that was proved [1/s].
     pub rate: Number,
     /// Smallest pivots, one an inequality, positive.
     pub margins: Vec<f64>,

@@ -23,7 +23,7 @@ const RESERVE: f64 = 1e-13;
 /// What is to be proved of a closed loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proposition {
-    /// The scenario.
+    /// Name of the scenario.
     pub name: String,
     /// What no source vouches for.
     pub assumptions: Vec<String>,
@@ -31,7 +31,7 @@ pub struct Proposition {
     pub robot: DecimalRobot,
     /// The law.
     pub controller: DecimalLaw,
-    /// Where.
+    /// Errors for which it shall be proved.
     pub region: RequestedRegion,
     /// Largest disturbance torque of each motor [N m], if tubes are asked for.
     pub disturbance: Option<Vec<Number>>,

@@ -21,7 +21,7 @@ pub enum Verdict<P, W> {
 pub struct Undecided {
     /// The place that could not be decided, or the reason, in words with numbers.
     pub at: String,
-    /// Boxes looked at.
+    /// Boxes looked at before it stopped.
     pub spent: usize,
 }
 

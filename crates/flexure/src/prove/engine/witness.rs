@@ -11,7 +11,7 @@ use crate::prove::engine::rate::Inequality;
 pub struct RateWitness {
     /// The block of the closed loop.
     pub block: BlockName,
-    /// The state.
+    /// The state at which the block is slower than was asked.
     pub state: WitnessState,
     /// A variation δz of the block there.
     pub direction: Vec<f64>,

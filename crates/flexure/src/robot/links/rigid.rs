@@ -80,7 +80,7 @@ impl<S: Scalar> Rigid<S> {
         Self { weight, inertia: pose.rotation * self.inertia * pose.rotation.transpose() }
     }
 
-    /// Both bodies, held together.
+    /// The body that both are when they are held together.
     pub fn joined(&self, other: &Self) -> Self {
         match (self.weight, other.weight) {
             (None, weight) | (weight, None) => Self { weight, inertia: self.inertia + other.inertia },

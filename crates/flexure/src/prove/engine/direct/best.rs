@@ -13,7 +13,7 @@ pub struct BestRate {
     pub rate: f64,
     /// An upper bound of the rate at the weakest state that was seen [1/s], by intervals: the true rate is at most this.
     pub upper: f64,
-    /// That state.
+    /// The state that has this upper bound.
     pub at: NamedState,
     /// Boxes looked at, attempts that failed included.
     pub boxes: usize,

@@ -10,7 +10,7 @@ use crate::prove::engine::direct::closed_loop::VcbcLoop;
 /// √W decays at least at the rate β where `dissipation − β weight` and `weight` are positive definite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Balance<T> {
-    /// What is lost.
+    /// Q of Ẇ = −δzᵀ Q δz, symmetric.
     pub dissipation: Symmetric<T>,
     /// The metric P.
     pub weight: Symmetric<T>,
@@ -19,9 +19,9 @@ pub struct Balance<T> {
 /// One coordinate of a region.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coordinate {
-    /// Its name, for messages.
+    /// Name in messages.
     pub name: String,
-    /// Its unit.
+    /// SI unit as plain text.
     pub unit: &'static str,
     /// Its range; an infinite end means no bound.
     pub range: Interval,

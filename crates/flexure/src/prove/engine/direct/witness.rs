@@ -28,9 +28,9 @@ impl std::fmt::Display for NamedState {
 /// that the flow encloses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DirectWitness {
-    /// The state.
+    /// The state at which the rate is not reached.
     pub at: NamedState,
-    /// δz.
+    /// Direction δz in which it is not reached.
     pub direction: Vec<f64>,
     /// An upper bound of δzᵀ (dissipation − β weight) δz, where δzᵀ weight δz is about 1: negative.
     pub value: f64,

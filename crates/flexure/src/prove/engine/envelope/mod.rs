@@ -15,10 +15,10 @@ use flexure_core::scalar::Interval;
 use rayon::prelude::*;
 use slab::Slab;
 
-/// What to bound.
+/// What to bound along a reference, and how many pieces of it may be looked at.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlongRequest {
-    /// c in J.
+    /// Level c of the tube {W ≤ c} around the reference, in J.
     pub level: f64,
     /// End of the reference in s; it begins at 0.
     pub duration: f64,
