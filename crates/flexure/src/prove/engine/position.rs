@@ -42,6 +42,14 @@ impl Position {
         self.metric.len()
     }
 
+    /// How many cases cover every error; their number doubles with each joint that φ couples.
+    pub fn case_count(&self) -> usize {
+        match self.phi {
+            CertifiedPhi::CoupledTanh if self.joints() > 1 => 1 << self.joints(),
+            CertifiedPhi::CoupledTanh | CertifiedPhi::Linear | CertifiedPhi::Tanh => 1,
+        }
+    }
+
     /// The cases that cover every error: all of them for a φ that couples joints, the slowest slopes where each joint
     /// is for itself, one where slopes are constant.
     pub fn cases(&self) -> Vec<Ends> {
@@ -51,7 +59,7 @@ impl Position {
             CertifiedPhi::CoupledTanh if n == 1 => vec![Vec::new()],
             CertifiedPhi::Tanh => vec![vec![false; n]],
             CertifiedPhi::CoupledTanh => {
-                (0..1_usize << n).map(|word| (0..n).map(|j| word >> j & 1 == 1).collect()).collect()
+                (0..self.case_count()).map(|word| (0..n).map(|j| word >> j & 1 == 1).collect()).collect()
             }
         }
     }
