@@ -111,14 +111,14 @@ fn sixteen_joints_are_shown_and_simulated() {
     let summary = place.run(&["run", "arms.toml", "--json"]).done().json();
     assert!(summary["max_abs_e_l"].as_f64().unwrap() < 1e-5, "{summary}");
     assert!(summary["rate_certified"].as_f64().unwrap() > 0.1, "{summary}");
-    has_joints(&place.read("out/arms.csv"), 16, 12);
+    has_joints(&place.read("out/arms.csv"), 16, 11);
     let picture = place.read("out/arms.svg");
     assert!(picture.contains("joint 16") && !picture.contains("joint 17"));
     let arms = altered(&place.read("arms.toml"), &[("[sources]", &format!("{DEVICES}\n[sources]"))]);
     place.write("devices.toml", arms);
     let summary = place.run(&["run", "devices.toml", "--json"]).done().json();
     assert!(summary["rms_e_l"].as_f64().unwrap() < 5e-3, "{summary}");
-    has_joints(&place.read("out/devices.csv"), 16, 18);
+    has_joints(&place.read("out/devices.csv"), 16, 17);
 }
 
 #[test]
@@ -220,7 +220,7 @@ fn any_number_of_joints_fits() {
         let rows = place.run(&["check", "part.toml", "--json"]).done().json();
         assert_eq!(length(&rows[0]["robot"]), n);
         place.run(&["run", "moves.toml"]).done();
-        has_joints(&place.read("out/moves.csv"), n, 12);
+        has_joints(&place.read("out/moves.csv"), n, 11);
         let model = first_line(&place.fed(&["model", "part.toml", "--states", "-"], states(n)).done());
         assert_eq!((length(&model["M_l"]), length(&model["dx"])), (n, 4 * n));
         place.run(&["certify", "moves.toml", "--error-box", "0.1", "--out", "c.json"]).done();
@@ -236,11 +236,16 @@ fn seventeen_joints_are_refused() {
                 <axis xyz=\"0 0 1\"/></joint><link name=\"head_link\"><inertial><mass value=\"2\"/>\
                 <inertia ixx=\"0.01\" ixy=\"0\" ixz=\"0\" iyy=\"0.01\" iyz=\"0\" izz=\"0.01\"/></inertial></link></robot>";
     place.write("two-arms.urdf", altered(URDF, &[("</robot>", head)]));
-    let draft = place.run(&["import", "two-arms.urdf"]).done().stdout;
-    place.write("robot.toml", draft.replace("= nan", "= 2.0"));
+    place.run(&["import", "two-arms.urdf"]).refused(&[
+        "17 joints of two-arms.urdf move",
+        "at most 16",
+        "--lock JOINT=POSITION",
+    ]);
+    let robot = "name = 'arms'\n[links]\nkind = 'urdf'\nfile = 'two-arms.urdf'\n\
+                 [joints]\nstiffness = 2.0\nmotor_inertia = 2.0\nlink_damping = 2.0\nmotor_damping = 2.0\n";
+    place.write("robot.toml", robot);
     let states = ["model", "robot.toml", "--states", "-"];
-    let refused = [place.run(&["check", "robot.toml"]), place.fed(&states, self::states(17))];
-    for outcome in refused {
-        outcome.refused(&["two-arms has 17 moving joints", "at most 16", "lock joints"]);
+    for outcome in [place.run(&["check", "robot.toml"]), place.fed(&states, self::states(17))] {
+        outcome.refused(&["arms has 17 moving joints", "at most 16", "lock joints"]);
     }
 }
