@@ -13,5 +13,6 @@ mod pinocchio;
 mod pipes;
 mod reproduce;
 mod run;
+mod sixteen;
 mod urdf;
 mod verify;

@@ -1,4 +1,4 @@
-//! Every small robot of a public collection against Pinocchio: see `pinocchio/compare.py`.
+//! Every robot of at most 16 joints of a public collection, and of our own test data, against Pinocchio: see `pinocchio/compare.py`.
 //!
 //! Pinocchio and the robots come from PyPI into a virtual environment of the test's own, about 900 MB under the target
 //! folder. Set `FLEXURE_OFFLINE=1` to leave the test out where PyPI is out of reach.
@@ -58,7 +58,12 @@ fn agrees_with_pinocchio_and_notices_one_inertia() {
     let (code, text) = compare(&[]);
     println!("{text}");
     assert_eq!(code, Some(0), "{text}");
-    assert!(text.matches("ok     ").count() >= 20 && text.contains("panda.urdf"), "{text}");
+    assert!(text.matches("ok     ").count() >= 40, "{text}");
+    for robot in ["panda.urdf", "two-arms.urdf", "baxter.urdf", "allegro_left_hand.urdf"] {
+        let line =
+            text.lines().find(|line| line.ends_with(robot)).unwrap_or_else(|| panic!("{robot}: {text}"));
+        assert!(line.starts_with("ok     "), "{line}");
+    }
     let (code, text) = compare(&["--perturb"]);
     assert_eq!(code, Some(1), "one inertia is wrong by a millionth: {text}");
     assert!(text.contains("FAILED 7 serial"), "{text}");

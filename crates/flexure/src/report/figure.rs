@@ -105,8 +105,7 @@ fn divergence(t: &[f64], panels: &[Panel]) -> Option<f64> {
 
 /// Hue names the joint, line style the side: one legend serves all panels.
 fn legend(joints: usize) -> Vec<(String, Stroke)> {
-    let joint =
-        |joint| (format!("joint {}", joint + 1), Stroke { width: 4.0, ..Stroke::link(joint, joints) });
+    let joint = |joint| (format!("joint {}", joint + 1), Stroke::swatch(joint, joints));
     let side = |name: &str, stroke: Stroke| (name.to_owned(), Stroke { color: INK, ..stroke });
     let sides = [
         side("link side", Stroke::link(0, 1)),

@@ -64,6 +64,12 @@ impl Stroke {
         Self { color, width, dash: &[] }
     }
 
+    /// A joint in a legend: thick, and as thin as its curves where its colour comes round again.
+    pub(super) fn swatch(joint: usize, joints: usize) -> Self {
+        let line = Self::link(joint, joints);
+        if joint < HUES.len() { Self { width: 4.0, ..line } } else { line }
+    }
+
     /// Link side: solid. Later joints are thinner, so that curves that lie on each other all show.
     pub(super) fn link(joint: usize, joints: usize) -> Self {
         Self::solid(hue(joint), 2.4 - thinning(joint, joints))
@@ -87,7 +93,12 @@ impl Stroke {
     }
 }
 
-/// From 0 at the first joint to 1.2 px at the last.
+/// From 0 at the first joint to 1.2 px at the last; with more joints than colours, joints whose colour comes round again are
+/// all thinner than the others.
 fn thinning(joint: usize, joints: usize) -> f64 {
-    1.2 * joint as f64 / (joints.max(2) - 1) as f64
+    match (joint / HUES.len(), joints > HUES.len()) {
+        (0, false) => 1.2 * joint as f64 / (joints.max(2) - 1) as f64,
+        (0, true) => 0.4 * joint as f64 / HUES.len() as f64,
+        _ => 1.2 + 0.2 * (joint - HUES.len()) as f64 / HUES.len() as f64,
+    }
 }

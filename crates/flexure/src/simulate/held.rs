@@ -38,6 +38,9 @@ impl Scenario {
     }
 }
 
+#[cfg(test)]
+mod tests;
+
 /// A loop whose size is known to the compiler.
 struct Held<L, const N: usize> {
     simulation: Simulation<L, AnyReference<f64, N>, AnyLaw<f64, N>, AnyEstimator<N>, N>,

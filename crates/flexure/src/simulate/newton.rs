@@ -3,7 +3,8 @@
 //! Unknown are the accelerations of links and motors at the stages; residuals are torques. The iteration matrix keeps
 //! what can be stiff, namely the mass matrix and the slopes of the springs at the start of the step, and dampers. It
 //! leaves out velocity products and gravity, whose part vanishes with the step. Motors do not couple to each other and
-//! are eliminated; what remains are N × N blocks of one small matrix over the stages.
+//! are eliminated; what remains are n × n blocks of one small matrix over the stages, n the robot's own joints: those that only
+//! fill a capacity stay as they are.
 //!
 //! The elimination by blocks is here and not in [`linalg`](crate::linalg) because it is the kernel of the simulation, run every
 //! step on the stack: its entries are 4 × 4 matrices that do not commute, so that no factorisation over numbers does it.
@@ -25,6 +26,8 @@ const STALL: f64 = 1e4;
 
 /// The factorised iteration matrix of one step.
 pub(crate) struct StageSolver<const N: usize> {
+    /// Number of joints, at most N; nothing is kept of others.
+    joints: usize,
     /// (M_m + h D_m A + h² K A²)⁻¹ per joint.
     motor: [Block; N],
     /// h² K A² per joint: how an acceleration of one side loads the other through the spring.
@@ -43,48 +46,51 @@ impl<const N: usize> StageSolver<N> {
         h: f64,
     ) -> Self {
         let robot = &plant.robot;
+        let joints = robot.links.joints();
         let stiffness = plant.tangent_stiffness(x);
-        let spring: [Block; N] = std::array::from_fn(|k| scheme.twice.scaled(h * h * stiffness[k]));
-        let motor: [Block; N] = std::array::from_fn(|k| {
+        let spring: [Block; N] =
+            per_joint(joints, Block::ZERO, |k| scheme.twice.scaled(h * h * stiffness[k]));
+        let motor: [Block; N] = per_joint(joints, Block::ZERO, |k| {
             let inertia = Matrix::identity().scaled(robot.motor_inertia[k]);
             inverse(&(inertia + scheme.once.scaled(h * robot.motor_damping[k]) + spring[k]))
         });
         let mass = robot.links.mass_matrix(&x.q_l);
-        let mut link: [[Block; N]; N] = std::array::from_fn(|k| {
-            std::array::from_fn(|l| {
+        let mut link = [[Block::ZERO; N]; N];
+        for (k, row) in link[..joints].iter_mut().enumerate() {
+            for (l, block) in row[..joints].iter_mut().enumerate() {
                 let inertia = Matrix::identity().scaled(mass[(k, l)]);
-                if k == l {
+                *block = if k == l {
                     let own = scheme.once.scaled(h * robot.link_damping[k]) + spring[k];
                     inertia + own - spring[k] * motor[k] * spring[k]
                 } else {
                     inertia
-                }
-            })
-        });
+                };
+            }
+        }
         let coupling = plant.coupling_matrix(&x.q_l);
         if let Some(S) = &coupling {
             // What the motors' elimination adds to the springs' −h² K A² beside S.
-            for (k, row) in link.iter_mut().enumerate() {
-                for (l, block) in row.iter_mut().enumerate() {
+            for (k, row) in link[..joints].iter_mut().enumerate() {
+                for (l, block) in row[..joints].iter_mut().enumerate() {
                     let mut added =
                         (motor[l] * spring[l]).scaled(S[(k, l)]) + (motor[k] * spring[k]).scaled(S[(l, k)]);
-                    for (j, motor) in motor.iter().enumerate() {
+                    for (j, motor) in motor[..joints].iter().enumerate() {
                         added = added - motor.scaled(S[(k, j)] * S[(l, j)]);
                     }
                     *block = *block + added;
                 }
             }
         }
-        for j in 0..N {
+        for j in 0..joints {
             link[j][j] = inverse(&link[j][j]);
-            for i in j + 1..N {
+            for i in j + 1..joints {
                 link[i][j] = link[i][j] * link[j][j];
-                for k in j + 1..N {
+                for k in j + 1..joints {
                     link[i][k] = link[i][k] - link[i][j] * link[j][k];
                 }
             }
         }
-        Self { motor, spring, coupling, link }
+        Self { joints, motor, spring, coupling, link }
     }
 
     /// Iterates until corrections are below `floor` [rad/s²], or stop shrinking close to it. None if they do not.
@@ -123,16 +129,18 @@ impl<const N: usize> StageSolver<N> {
         for i in 0..STAGES {
             let (x, u) = stage(i, solution);
             let [missing_l, missing_m] = plant.unbalanced(&x, &u, [solution.link[i], solution.motor[i]]);
-            for k in 0..N {
+            for k in 0..self.joints {
                 link[k][i] = missing_l[k];
                 motor[k][i] = missing_m[k];
             }
         }
         // Motors out, links solved, motors back.
-        let free: [Stages; N] = std::array::from_fn(|k| self.motor[k] * motor[k]);
-        let link = self.solve_links(std::array::from_fn(|k| link[k] + self.load(k, &free, |S, j| S[(k, j)])));
+        let free: [Stages; N] = per_joint(self.joints, Stages::ZERO, |k| self.motor[k] * motor[k]);
+        let link = self.solve_links(per_joint(self.joints, Stages::ZERO, |k| {
+            link[k] + self.load(k, &free, |S, j| S[(k, j)])
+        }));
         let mut worst = 0.0_f64;
-        for k in 0..N {
+        for k in 0..self.joints {
             let motor = free[k] + self.motor[k] * self.load(k, &link, |S, j| S[(j, k)]);
             for i in 0..STAGES {
                 solution.link[i][k] += link[k][i];
@@ -157,7 +165,7 @@ impl<const N: usize> StageSolver<N> {
     ) -> Stages {
         let mut load = self.spring[k] * accelerations[k];
         if let Some(S) = &self.coupling {
-            for (j, acceleration) in accelerations.iter().enumerate() {
+            for (j, acceleration) in accelerations[..self.joints].iter().enumerate() {
                 load -= acceleration.scaled(share(S, j));
             }
         }
@@ -165,14 +173,14 @@ impl<const N: usize> StageSolver<N> {
     }
 
     fn solve_links(&self, mut b: [Stages; N]) -> [Stages; N] {
-        for i in 0..N {
+        for i in 0..self.joints {
             for j in 0..i {
                 let known = self.link[i][j] * b[j];
                 b[i] -= known;
             }
         }
-        for i in (0..N).rev() {
-            for j in i + 1..N {
+        for i in (0..self.joints).rev() {
+            for j in i + 1..self.joints {
                 let known = self.link[i][j] * b[j];
                 b[i] -= known;
             }
@@ -180,6 +188,11 @@ impl<const N: usize> StageSolver<N> {
         }
         b
     }
+}
+
+/// `entry(k)` for each of the first `joints` joints, `other` for those that only fill the capacity.
+fn per_joint<T: Copy, const N: usize>(joints: usize, other: T, entry: impl Fn(usize) -> T) -> [T; N] {
+    std::array::from_fn(|k| if k < joints { entry(k) } else { other })
 }
 
 /// Inverse by Gauss–Jordan elimination with row pivoting.

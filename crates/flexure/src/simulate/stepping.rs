@@ -161,7 +161,8 @@ impl<const N: usize> Stepping<N> {
             sliding(&plant.link_friction, &x.v_l, &middle.v_l),
             sliding(&plant.motor_friction, &x.v_m, &middle.v_m),
         ];
-        Stiction { link, between, motor, load, friction, speed: [x.v_l, x.v_m], h }
+        let joints = robot.links.joints();
+        Stiction { link, between, motor, load, friction, speed: [x.v_l, x.v_m], h, joints }
     }
 
     /// Mean torque of springs and hysteresis over a step from `x`, linear about `middle`.

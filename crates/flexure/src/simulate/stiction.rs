@@ -34,6 +34,8 @@ pub(crate) struct Stiction<const N: usize> {
     pub speed: Sides<N>,
     /// Length of the step in s.
     pub h: f64,
+    /// Number of joints, at most N; others couple to none.
+    pub joints: usize,
 }
 
 /// Friction torque [N m] of each joint that slides; none where friction holds.
@@ -127,8 +129,8 @@ impl<const N: usize> Stiction<N> {
             Some(friction) => (self.load[1][j] - friction) / self.motor[j],
         });
         b -= self.between * known;
-        for j in (0..N).filter(|&j| slides[1][j].is_some()) {
-            for k in 0..N {
+        for j in (0..self.joints).filter(|&j| slides[1][j].is_some()) {
+            for k in 0..self.joints {
                 for l in 0..=k {
                     mass[(k, l)] -= self.between[(k, j)] * self.between[(l, j)] / self.motor[j];
                 }
@@ -232,7 +234,7 @@ mod tests {
         };
         let load = SIDES.map(|_| numbers.vector());
         let friction = some(numbers, 1.0).map(|side| side.map(f64::abs));
-        Stiction { link, between, motor, load, friction, speed: some(numbers, 1e-3), h: 1e-3 }
+        Stiction { link, between, motor, load, friction, speed: some(numbers, 1e-3), h: 1e-3, joints: N }
     }
 
     /// Newton's law, and friction within its bounds: at them against the motion where there is any.

@@ -32,6 +32,11 @@ impl Position {
         self.metric.len()
     }
 
+    /// How many cases cover every error; their number doubles with each joint that φ couples.
+    pub fn case_count(&self) -> usize {
+        self.phi.certified().case_count(self.joints())
+    }
+
     /// The cases that cover every error: all of them for a φ that couples joints, the slowest slopes where each joint
     /// is for itself, one where slopes are constant.
     pub fn cases(&self) -> Vec<Ends> {

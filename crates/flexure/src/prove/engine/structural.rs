@@ -20,6 +20,9 @@ use crate::prove::engine::witness::{RateWitness, WitnessState, against};
 /// By how much the bound of a measure stays above what was found, relative to it: others may round differently.
 const RESERVE: f64 = 1e-13;
 
+/// Most cases of a position block: those of ten joints. A certificate lists every one.
+const MOST_CASES: usize = 1024;
+
 /// What is to be proved of a closed loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proposition {
@@ -179,6 +182,14 @@ fn momentum_block(block: BlockName, inequalities: &[Inequality], cases: &[String
 }
 
 fn position_block(block: BlockName, position: &Position) -> Result<Block, Failure> {
+    if position.case_count() > MOST_CASES {
+        return Err(Failure::Reason(format!(
+            "{} has {} cases, one per corner of the slopes of {} joints that φ couples; at most {MOST_CASES} are looked at",
+            block.name(),
+            position.case_count(),
+            position.joints()
+        )));
+    }
     let cases = position.cases();
     let claimed = |a: &dyn Fn(&Ends) -> Vec<Interval>| -> Result<ClaimedRate, Failure> {
         let inequalities: Vec<Inequality> = cases.iter().map(|case| position.inequality(&a(case))).collect();

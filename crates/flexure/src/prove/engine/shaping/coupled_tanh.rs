@@ -17,7 +17,11 @@ impl Certified for CoupledTanh {
         if joints == 1 {
             return vec![Vec::new()];
         }
-        (0..1_usize << joints).map(|word| (0..joints).map(|j| word >> j & 1 == 1).collect()).collect()
+        (0..self.case_count(joints)).map(|word| (0..joints).map(|j| word >> j & 1 == 1).collect()).collect()
+    }
+
+    fn case_count(&self, joints: usize) -> usize {
+        if joints == 1 { 1 } else { 1 << joints }
     }
 
     fn slope(&self, numbers: &Numbers, a: &[Interval], i: usize, j: usize) -> Interval {

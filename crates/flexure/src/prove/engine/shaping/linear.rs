@@ -17,6 +17,10 @@ impl Certified for Linear {
         vec![Vec::new()]
     }
 
+    fn case_count(&self, _: usize) -> usize {
+        1
+    }
+
     fn slope(&self, numbers: &Numbers, _: &[Interval], i: usize, j: usize) -> Interval {
         if i == j { numbers.shaping[i] } else { Interval::ZERO }
     }

@@ -43,6 +43,9 @@ pub trait Certified: Sync {
     /// slopes where each joint is for itself, one without slopes where these are constant.
     fn cases(&self, joints: usize) -> Vec<Ends>;
 
+    /// How many they are.
+    fn case_count(&self, joints: usize) -> usize;
+
     /// ∂φ_ij [1/s] with the slopes (or chords) `a` of tanh; those that do not occur may be left out.
     fn slope(&self, numbers: &Numbers, a: &[Interval], i: usize, j: usize) -> Interval;
 

@@ -17,6 +17,10 @@ impl Certified for Tanh {
         vec![vec![false; joints]]
     }
 
+    fn case_count(&self, _: usize) -> usize {
+        1
+    }
+
     fn slope(&self, numbers: &Numbers, a: &[Interval], i: usize, j: usize) -> Interval {
         if i == j { numbers.shaping[i] * a[i] } else { Interval::ZERO }
     }
