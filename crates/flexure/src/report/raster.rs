@@ -122,7 +122,7 @@ fn pen<P: AsRef<[Point]>>(pieces: &[P]) -> PathBuilder {
     pen
 }
 
-/// Where outlines of glyphs go.
+/// Collects the outlines of glyphs as a path.
 struct Pen(PathBuilder);
 
 impl OutlineBuilder for Pen {
