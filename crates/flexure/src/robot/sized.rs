@@ -11,7 +11,7 @@ use flexure_core::scalar::Scalar;
 use crate::files::{Problem, Problems};
 use crate::robot;
 
-/// Largest joint count of a tree. To raise it, add a capacity to `Size` and to the list below and build again.
+/// Largest joint count of a tree. To raise it, add a capacity to [`Size`] and to the list below and build again.
 pub const MAX_JOINTS: usize = 16;
 
 /// A type of links, as chosen by [`size`].

@@ -114,7 +114,7 @@ fn dry<const N: usize>(friction: &imperfections::Friction) -> Friction<N> {
     }
 }
 
-/// Pushes on the links that the scenario has.
+/// What pushes the links.
 pub(crate) fn pushes<const N: usize>(scenario: &Scenario) -> Vec<Push<N>> {
     let push = |imperfection: &Imperfection| match imperfection {
         Imperfection::Push(push) => Some(Push {
