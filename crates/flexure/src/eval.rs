@@ -122,6 +122,9 @@ fn law_row(held: &dyn Loop, state: &StateRow) -> LawRow {
 ///
 /// # Errors
 /// If the robot has too many joints, or a number is not finite at one of the states.
+///
+/// # Panics
+/// If `states` were read for a robot with another joint count.
 pub fn evaluate_model(robot: &Robot, states: &StateFile) -> Result<Vec<ModelRow>, Problems> {
     let arm = robot.arm()?;
     let row = |state: &StateRow| -> Result<ModelRow, Problem> {

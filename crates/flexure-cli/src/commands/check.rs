@@ -31,12 +31,12 @@ struct Content {
     name: String,
     joints: usize,
     assumptions: usize,
-    /// What is assumed.
+    /// Numbers that no source vouches for.
     assumed: Vec<Assumed>,
-    /// Of a robot file.
+    /// The joints, for a robot file.
     #[serde(skip_serializing_if = "Option::is_none")]
     robot: Option<Vec<JointRow>>,
-    /// Of a scenario.
+    /// What the reference uses of the limits, for a scenario.
     #[serde(skip_serializing_if = "Option::is_none")]
     reference: Option<Along>,
 }

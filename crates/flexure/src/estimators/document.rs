@@ -9,7 +9,7 @@ use crate::files::table::Table;
 pub enum Estimator {
     /// A model of the robot, corrected by encoders: kind `observer`.
     Observer {
-        /// Which encoders correct it.
+        /// Encoders whose readings correct it.
         encoders: Encoders,
         /// How fast its errors decay > 0, per joint [rad/s].
         bandwidth: Vec<f64>,
@@ -19,9 +19,9 @@ pub enum Estimator {
 /// Encoders that an observer uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoders {
-    /// On links and motors.
+    /// Encoders on links and motors.
     Both,
-    /// On the motors; where the links are is estimated.
+    /// Encoders on the motors; link positions are estimated.
     Motor,
 }
 

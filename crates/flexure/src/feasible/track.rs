@@ -68,7 +68,7 @@ impl<const N: usize> Track for Pair<N> {
     }
 }
 
-/// By exact inverse dynamics.
+/// What a motion of the links takes at an instant, given by its Taylor coefficients: by exact inverse dynamics.
 fn demand(arm: &dyn Arm, q_l: &[[f64; 6]]) -> Demand {
     let (mut q_m, mut u_m) = (vec![[0.0; 4]; q_l.len()], vec![[0.0; 2]; q_l.len()]);
     arm.feed_forward(q_l, &mut q_m, &mut u_m).expect("a series a joint");

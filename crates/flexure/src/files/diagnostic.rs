@@ -56,7 +56,7 @@ impl Problem {
         source.line_column(span.start)
     }
 
-    /// What to do about it.
+    /// A hint: what to do about it.
     pub fn hint(&self) -> &str {
         &self.help
     }

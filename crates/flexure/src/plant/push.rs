@@ -9,11 +9,11 @@ use flexure_core::linalg::Vector;
 pub struct Push<const N: usize> {
     /// Largest torque on each link [N m].
     pub torque: Vector<f64, N>,
-    /// When it begins in s.
+    /// Time at which it begins in s.
     pub from: f64,
     /// How long it lasts in s.
     pub duration: f64,
-    /// How it comes and goes.
+    /// Torque over time between beginning and end.
     pub shape: Shape,
 }
 
@@ -27,7 +27,7 @@ pub enum Shape {
 }
 
 impl<const N: usize> Push<N> {
-    /// When it ends in s.
+    /// Time at which it ends in s.
     pub fn until(&self) -> f64 {
         self.from + self.duration
     }

@@ -24,6 +24,9 @@ pub type Confirmation = Verdict<Proved, DirectWitness>;
 ///
 /// # Errors
 /// If the robot has too many joints, or the law is not v-CBC.
+///
+/// # Panics
+/// Never: the links are of the type that was chosen by their kind.
 pub fn confirm(
     scenario: &Scenario,
     certificate: &Certificate,

@@ -18,7 +18,7 @@ pub(crate) fn gains(scenario: &Scenario, gains: &laws::SideGains) -> DecimalGain
     }
 }
 
-/// The robot.
+/// The robot of a file in decimals.
 pub(crate) fn robot(data: &robot::Robot) -> DecimalRobot {
     let numbers = |values: &[f64]| values.iter().map(|&x| Number::read(x, data.bounds(x))).collect();
     DecimalRobot {

@@ -32,6 +32,9 @@ pub struct Sampled {
 ///
 /// # Errors
 /// If the robot has too many joints.
+///
+/// # Panics
+/// If `damping` has fewer numbers than the robot has joints.
 pub fn sample(robot: &Robot, damping: &[f64]) -> Result<Sampled, Problems> {
     let (n, arm) = (robot.joint_count(), robot.arm()?);
     let root: Vec<f64> = damping.iter().map(|d| d.sqrt()).collect();

@@ -35,7 +35,7 @@ pub struct ProofSummary {
     pub region: Option<RegionSummary>,
     /// Upper bounds of the matrix measures of −Θ ∂φ Θ⁻¹ [1/s].
     pub measures: Vec<MeasureSummary>,
-    /// Which structures are kept.
+    /// Port-Hamiltonian structures, and whether the closed loop keeps them.
     pub structure: Vec<StructureSummary>,
     /// True where the mass matrix was proved to be positive definite at every configuration.
     pub mass_matrix_positive_definite: Option<bool>,
@@ -55,7 +55,7 @@ pub struct ProofSummary {
     pub witness: Option<WitnessSummary>,
     /// Why nothing was decided, if so.
     pub undecided: Option<UndecidedSummary>,
-    /// What was assumed.
+    /// Options that were not given, and numbers that no source vouches for.
     pub assumptions: Vec<String>,
     /// Wall-clock time of the proof in s.
     pub wall_seconds: f64,
@@ -101,7 +101,7 @@ pub struct MeasureSummary {
 pub struct StructureSummary {
     /// The structure.
     pub name: StructureName,
-    /// Whether it is kept.
+    /// Whether the closed loop keeps it.
     pub holds: bool,
 }
 
@@ -184,7 +184,7 @@ impl BlockSummary {
 }
 
 impl ProofSummary {
-    /// Of a proof of `scenario`.
+    /// The summary of a proof of `scenario`.
     pub fn new(scenario: &Scenario, proof: &Proof) -> Self {
         let certificate = proof.verdict.proved();
         let sigma_l = |c: &Certificate| BlockSummary::of(&c.blocks, |block| &block.contraction).sigma_l;

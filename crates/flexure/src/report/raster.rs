@@ -11,15 +11,15 @@ use super::scene::{Point, Scene, Shape};
 use super::style::{self, Stroke};
 use super::text;
 
-/// Width of every picture [px].
+/// Width of every picture \[px\].
 pub const WIDTH: u32 = 1600;
 
 /// Why a picture could not be made: the drawing has no area, or is more than ten times as high as wide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RasterError {
-    /// Width of the drawing [px].
+    /// Width of the drawing \[px\].
     pub width: f64,
-    /// Height of the drawing [px].
+    /// Height of the drawing \[px\].
     pub height: f64,
 }
 
@@ -122,7 +122,7 @@ fn pen<P: AsRef<[Point]>>(pieces: &[P]) -> PathBuilder {
     pen
 }
 
-/// Where outlines of glyphs go.
+/// Collects the outlines of glyphs as a path.
 struct Pen(PathBuilder);
 
 impl OutlineBuilder for Pen {

@@ -48,7 +48,7 @@ pub(super) enum Shape {
 /// A line of text.
 #[derive(Clone, Debug)]
 pub(super) struct Text {
-    /// On the base line.
+    /// Point on the base line at which the text is anchored.
     pub at: Point,
     pub content: String,
     pub lettering: Lettering,
@@ -61,7 +61,7 @@ pub(super) struct Text {
 /// How text looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Lettering {
-    /// Of the letters' square [px].
+    /// Size of the letters' square [px].
     pub size: f64,
     pub bold: bool,
     pub color: Color,

@@ -72,7 +72,7 @@ fn question(scenario: &Scenario) -> Question {
 pub struct Certified {
     /// The scenario.
     pub scenario: Scenario,
-    /// What was proved of it.
+    /// Rates, region and certificate.
     pub proof: Proof,
 }
 

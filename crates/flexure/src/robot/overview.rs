@@ -46,6 +46,9 @@ pub struct JointRow {
 ///
 /// # Errors
 /// If the robot has more joints than this program was built for.
+///
+/// # Panics
+/// Never: the arm is asked for the joints that it has.
 pub fn overview(robot: &Robot) -> Result<Vec<JointRow>, Problems> {
     let n = robot.joint_count();
     let mut mass = vec![0.0; n * n];

@@ -39,7 +39,7 @@ pub(crate) fn read<C: Scalar, const N: usize>(
     Ok(fill(values))
 }
 
-/// The same of series.
+/// Series, one array per joint; zero for joints that only fill the capacity.
 pub(crate) fn read_rows<C: Scalar, const K: usize, const N: usize>(
     name: &'static str,
     values: &[[C; K]],

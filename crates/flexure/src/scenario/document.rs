@@ -55,7 +55,7 @@ pub struct Scenario {
     pub hold: Hold,
     /// State at t = 0.
     pub initial: Initial,
-    /// Positions of the links over time that the law shall follow [rad].
+    /// Positions of the links over time that the law shall follow \[rad\].
     pub reference: Reference,
     /// Another clock for the reference, if it has one.
     pub time_scaling: Option<TimeScaling>,

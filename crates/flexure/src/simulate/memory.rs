@@ -38,7 +38,8 @@ impl<L, R, F, E: Memory<f64>, const N: usize> Memory<f64> for Simulation<L, R, F
         port.optional("there", divergence, none, |Divergence { time, magnitude, cause }, port| {
             port.number("time", "s", time);
             port.number("magnitude", "", magnitude);
-            let mut code = Cause::ALL.iter().position(|known| known == cause).map_or(0, |code| code as u32);
+            let mut code =
+                Cause::ALL.iter().zip(0..).find(|(known, _)| *known == cause).map_or(0, |(_, code)| code);
             port.word("cause", &mut code);
             *cause = Cause::ALL.get(code as usize).copied().unwrap_or(*cause);
         });

@@ -112,7 +112,7 @@ fn summary(
     wall_seconds: f64,
 ) -> Summary {
     // Errors of a run that diverged are beyond those that were recorded: no number stands for them.
-    let ended = |error: f64| if !diverged { error } else { f64::NAN };
+    let ended = |error: f64| if diverged { f64::NAN } else { error };
     let rate = figures.seen(figures.rate);
     Summary {
         name: scenario.name.clone(),

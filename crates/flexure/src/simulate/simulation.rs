@@ -232,7 +232,7 @@ where
         &self.world.plant
     }
 
-    /// What pushes the links.
+    /// Pushes on the links, past and to come.
     pub fn pushes(&self) -> &[Push<N>] {
         &self.world.pushes
     }

@@ -6,7 +6,7 @@ use crate::verify::number::Number;
 use crate::verify::robot::{self, Robot};
 use crate::verify::verdict::Rejected;
 
-/// A file.
+/// A certificate as its file says it.
 pub(super) struct Certificate {
     pub name: String,
     pub assumptions: Vec<String>,
@@ -57,7 +57,7 @@ pub(super) struct Gains {
     pub metric: Vec<Number>,
     pub shaping: Vec<Number>,
     pub damping: Vec<Number>,
-    /// Of the coupled law only.
+    /// κ of `coupled-tanh`; empty for other laws.
     pub kappa: Vec<Number>,
 }
 

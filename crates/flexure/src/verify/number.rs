@@ -55,7 +55,7 @@ impl Number {
         self.value.lo() >= 0.0
     }
 
-    /// The same rational, however written.
+    /// Whether both are the same rational, however written.
     pub(super) fn is(&self, other: &Self) -> bool {
         self.rational.is_some() && self.rational == other.rational
     }

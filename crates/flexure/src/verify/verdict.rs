@@ -41,7 +41,7 @@ pub enum Rejected {
     Malformed {
         /// Path in the certificate, like `robot.stiffness[1]`.
         place: String,
-        /// What is wrong there.
+        /// Reason why it is no certificate.
         reason: String,
         /// Line, from 1, where the text is no JSON.
         line: Option<usize>,

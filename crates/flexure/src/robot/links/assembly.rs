@@ -41,7 +41,7 @@ struct Placed<S> {
 
 /// A moving joint, and what fixed joints have added to its body.
 struct Moving<S> {
-    /// Its index among all joints.
+    /// Index of the joint among all joints of the file.
     joint: usize,
     kind: JointKind,
     parent: Option<usize>,

@@ -9,7 +9,7 @@ use crate::robot::links::rigid::{Pose, Rigid, Weight};
 /// A frame in another.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
-    /// Its origin \[m\].
+    /// Origin of the frame \[m\].
     pub xyz: [f64; 3],
     /// Roll, pitch and yaw [rad].
     pub rpy: [f64; 3],

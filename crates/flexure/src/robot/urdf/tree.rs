@@ -22,7 +22,7 @@ const LONGEST_MIMICRY: usize = 16;
 
 /// A robot as its URDF describes it.
 pub(crate) struct Urdf<'a> {
-    /// The whole.
+    /// The `<robot>` element, for messages about the whole file.
     pub site: Site<'a>,
     pub name: Option<&'a str>,
     /// Depth first, in the order of the file: parents before children.

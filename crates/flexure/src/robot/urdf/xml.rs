@@ -31,7 +31,7 @@ const KEPT: &[&str] = &[
 #[derive(Debug)]
 pub(crate) struct Element<'a> {
     pub name: &'a str,
-    /// Of the opening tag.
+    /// Bytes of the opening tag in the file.
     pub span: Range<usize>,
     pub attributes: Vec<Attribute<'a>>,
     pub children: Vec<Element<'a>>,

@@ -10,9 +10,9 @@ use crate::prove::engine::direct::closed_loop::VcbcLoop;
 /// √W decays at least at the rate β where `dissipation − β weight` and `weight` are positive definite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Balance<T> {
-    /// Q of Ẇ = −δzᵀ Q δz, symmetric.
+    /// Quadratic form of −Ẇ.
     pub dissipation: Symmetric<T>,
-    /// The metric P.
+    /// Twice the quadratic form of W: the metric.
     pub weight: Symmetric<T>,
 }
 
@@ -50,9 +50,9 @@ pub trait System<C> {
 /// The same system twice: with constants enclosed, for proofs, and with `f64` constants inside those, for samples.
 #[derive(Clone, Debug)]
 pub struct Twins<A, B> {
-    /// Over intervals.
+    /// The system with enclosed constants, over intervals: for proofs.
     pub bounds: A,
-    /// Over floats.
+    /// The system with `f64` constants: for samples.
     pub point: B,
     /// Coordinates of both.
     pub coordinates: Vec<Coordinate>,

@@ -31,7 +31,7 @@ pub struct AlongRequest {
 /// Slabs from 0 to the end, and how many were looked at.
 #[derive(Clone, Debug)]
 pub struct Course {
-    /// In the order of time.
+    /// The pieces of the tube, in the order of time.
     pub slabs: Vec<Slab>,
     /// Number of slabs looked at.
     pub spent: usize,

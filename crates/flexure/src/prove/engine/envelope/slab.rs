@@ -22,14 +22,14 @@ pub enum BoundedQuantity {
     Torque,
 }
 
-/// All of them.
+/// Every quantity, in the order of limits and ranges.
 pub const QUANTITIES: [BoundedQuantity; 3] =
     [BoundedQuantity::Velocity, BoundedQuantity::Deflection, BoundedQuantity::Torque];
 
 /// The tube over a slab of time.
 #[derive(Clone, Debug)]
 pub struct Slab {
-    /// Its times in s.
+    /// Times that the slab covers in s.
     pub time: Interval,
     /// The errors and the metric of W.
     pub tube: ErrorTube,
@@ -37,7 +37,7 @@ pub struct Slab {
     pub nominal: Vec<Interval>,
     /// Their derivatives by the errors q̃_l, q̃_m, s_l, s_m: a row per quantity, a column per error.
     pub gradients: Dense<Interval>,
-    /// The quantities.
+    /// Ranges of the quantities over slab and tube.
     pub ranges: Vec<Interval>,
 }
 
@@ -94,9 +94,9 @@ impl Slab {
 enum Smooth {
     /// The torque may jump.
     Not,
-    /// Its rate may.
+    /// The torque is continuous, its rate may jump.
     Once,
-    /// Neither.
+    /// Torque and rate are continuous.
     Twice,
 }
 
@@ -168,7 +168,7 @@ struct Way<'a> {
 struct Spread {
     middle: Vec<Slope>,
     track: Vec<Slope>,
-    /// Over slab and tube.
+    /// Their ranges over slab and tube.
     ranges: Vec<Interval>,
     /// Their derivatives by the errors: a row per number.
     gradients: Dense<Interval>,
