@@ -1,5 +1,10 @@
 //! Robots of many joints in every command: two arms of seven joints with a sliding finger each, and parts of them.
 
+#![allow(
+    clippy::float_cmp,
+    reason = "mirrored entries are the same number, and what is not coupled is exactly 0"
+)]
+
 use serde_json::Value;
 
 use crate::command::{Outcome, Place, altered};
