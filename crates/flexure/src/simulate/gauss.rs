@@ -84,7 +84,7 @@ impl Integrator {
         mut x: Motion<f64, N>,
         t: f64,
         interval: f64,
-        torque: &impl Fn(f64, &Motion<f64, N>) -> Vector<f64, N>,
+        torque: &dyn Fn(f64, &Motion<f64, N>) -> Vector<f64, N>,
         ledger: &mut Ledger,
     ) -> Result<Motion<f64, N>, StepFailure> {
         let mut done = 0.0;
@@ -122,7 +122,7 @@ impl Integrator {
         mut x: Motion<f64, N>,
         interval: f64,
         count: u32,
-        torque: &impl Fn(f64, &Motion<f64, N>) -> Vector<f64, N>,
+        torque: &dyn Fn(f64, &Motion<f64, N>) -> Vector<f64, N>,
     ) -> Result<Motion<f64, N>, StepFailure> {
         let h = interval / f64::from(count);
         for i in 0..count {
@@ -140,7 +140,7 @@ impl Integrator {
         x: &Motion<f64, N>,
         t: f64,
         h: f64,
-        torque: &impl Fn(f64, &Motion<f64, N>) -> Vector<f64, N>,
+        torque: &dyn Fn(f64, &Motion<f64, N>) -> Vector<f64, N>,
     ) -> Option<Step<N>> {
         let start = plant.accelerations(x, &torque(t, x));
         let at_stage = |i: usize, solution: &StepSolution<N>| {

@@ -290,7 +290,7 @@ impl<L: Links<f64, N>, const N: usize> World<L, N> {
         mut x: Motion<f64, N>,
         t: f64,
         interval: f64,
-        torque: &impl Fn(f64, &Motion<f64, N>) -> Vector<f64, N>,
+        torque: &dyn Fn(f64, &Motion<f64, N>) -> Vector<f64, N>,
     ) -> Result<Motion<f64, N>, StepFailure> {
         let mut done = 0.0;
         while done < interval {

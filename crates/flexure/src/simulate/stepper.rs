@@ -40,7 +40,7 @@ impl<const N: usize> Stepper<N> {
         x: Motion<f64, N>,
         t: f64,
         interval: f64,
-        torque: &impl Fn(f64, &Motion<f64, N>) -> Vector<f64, N>,
+        torque: &dyn Fn(f64, &Motion<f64, N>) -> Vector<f64, N>,
         ledger: &mut Ledger,
     ) -> Result<Motion<f64, N>, StepFailure> {
         if interval == 0.0 {
