@@ -184,7 +184,7 @@ fn seven_joints_with_gravity_off_by(factor: f64) -> f64 {
     let (plant, model) = (plant::Plant::from(robot(factor)), robot(1.0));
     let (law, reference) =
         (law::<7>(scenario.vcbc().expect("v-CBC")), feasible::reference::<7>(&scenario).expect("a path"));
-    let known = model.clone();
+    let known = model;
     let torque =
         move |_: f64, x: &Motion<f64, 7>, q_ld: &Vector<_, 7>| law.command(&known, x, q_ld, &Input::ZERO).u_m;
     let q = |values: &[f64]| Vector::from_fn(|i| values[i]);

@@ -236,5 +236,5 @@ fn long_jobs_can_be_broken_off() {
     let broken = compare(tasks, &laws, 1000, 0, &|_, fraction| watched(fraction)).expect_err("broken off");
     assert!(broken.is_interrupted(), "{broken}");
     assert!(reproduce(&|_, _| ControlFlow::Break(())).expect_err("broken off").is_interrupted());
-    assert!(!run(&scenario, &unwatched).is_err());
+    assert!(run(&scenario, &unwatched).is_ok());
 }

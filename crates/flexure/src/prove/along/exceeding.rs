@@ -48,13 +48,13 @@ pub(crate) fn confirm(
 fn exceeding(scenario: &Scenario, candidate: &Candidate, k: usize) -> Result<Option<Exceeding>, Problems> {
     let robot = &scenario.robot;
     Ok(
-        sized!(robot, L, N => at::<L<f64>, N>(scenario, fjr(robot, &robot.links, |x| x, &|x| x).expect(OF_THE_KIND), candidate, k)),
+        sized!(robot, L, N => at::<L<f64>, N>(scenario, &fjr(robot, &robot.links, |x| x, &|x| x).expect(OF_THE_KIND), candidate, k)),
     )
 }
 
 fn at<L: Links<f64, N>, const N: usize>(
     scenario: &Scenario,
-    robot: Fjr<f64, L, N>,
+    robot: &Fjr<f64, L, N>,
     candidate: &Candidate,
     k: usize,
 ) -> Option<Exceeding> {
@@ -66,7 +66,7 @@ fn at<L: Links<f64, N>, const N: usize>(
     let part = |i: usize| vector::<N>(&error[i * n..(i + 1) * n]);
     let [e_l, e_m, s_l, s_m] = [0, 1, 2, 3].map(part);
     let order = |k: usize| q_ld.map(|jet| jet.coefficient(k));
-    let command = |x: &Motion<f64, N>| laws::command(&law, &robot, x, &q_ld);
+    let command = |x: &Motion<f64, N>| laws::command(&law, robot, x, &q_ld);
     // What the law wants of the motors does not depend on where they are.
     let mut x = Motion {
         q_l: order(0) + e_l,
