@@ -128,7 +128,7 @@ impl Robot {
     /// If it has more than [`MAX_JOINTS`](crate::robot::MAX_JOINTS) joints.
     pub fn enclosed_arm(&self) -> Result<Box<dyn Arm<Interval>>, Problems> {
         let number = |x| self.bounds(x);
-        Ok(sized!(self, L, N => {
+        Ok(sized!(roomy self, L, N => {
             hold::<Interval, L<Interval>, N>(fjr(self, &self.enclosed, number, &Interval::midpoint))
         }))
     }
