@@ -128,11 +128,12 @@ fn named_files_exist() {
     let recipes = fs::read_to_string(root().join("CONTRIBUTING.md")).expect("CONTRIBUTING.md");
     let paths: Vec<_> = recipes
         .split('`')
-        .filter(|span| span.starts_with("tests/") && span.strip_suffix(".rs").is_some())
+        .filter(|span| span.contains("tests/") && span.strip_suffix(".rs").is_some())
         .collect();
-    assert!(paths.len() >= 3, "{paths:?}");
+    assert!(!paths.is_empty(), "no recipe names a test");
     for path in paths {
-        let exists = CRATES.iter().any(|krate| root().join("crates").join(krate).join(path).is_file());
+        let exists = CRATES.iter().any(|krate| root().join("crates").join(krate).join(path).is_file())
+            || root().join(path).is_file();
         assert!(exists, "CONTRIBUTING.md names {path}");
     }
 }
