@@ -114,8 +114,9 @@ where
 
     fn torque(&self, t: f64, motions: &[f64], u_m: &mut [f64]) -> Result<(), Mismatch> {
         let n = self.joints();
-        check("u_m", "n for each motion", u_m.len(), motions.len() / 4)?;
-        check("motions", "4n each", motions.len() % (4 * n), 0)?;
+        let whole = motions.len().next_multiple_of(4 * n);
+        check("motions", "4n for each motion", motions.len(), whole)?;
+        check("u_m", "n for each motion", u_m.len(), whole / 4)?;
         let (robot, reference) = (self.robot(), self.reference_at(t));
         for (motion, u_m) in motions.chunks_exact(4 * n).zip(u_m.chunks_exact_mut(n)) {
             let x = read_motion(motion, n)?;
@@ -197,15 +198,25 @@ where
         Ok(())
     }
 
-    fn observe(&self, observed: &mut Observed) {
-        let Some(instant) = self.simulation.instant() else { return };
+    fn observe(&self, observed: &mut Observed) -> Result<(), Mismatch> {
+        let n = self.joints();
+        check("motion", "4n", observed.motion.len(), 4 * n)?;
+        for (name, vector) in [
+            ("reference", &observed.reference),
+            ("command", &observed.command),
+            ("applied", &observed.applied),
+        ] {
+            check(name, "n", vector.len(), n)?;
+        }
+        let Some(instant) = self.simulation.instant() else { return Ok(()) };
         let action = instant.action;
         observed.t = instant.t;
-        write_motion(instant.motion, self.joints(), &mut observed.motion);
+        write_motion(instant.motion, n, &mut observed.motion);
         write(&action.reference.map(|jet| jet.coefficient(0)), &mut observed.reference);
         write(&action.u_m, &mut observed.command);
         write(&action.applied.last(), &mut observed.applied);
         (observed.certificate, observed.stopped) = (action.certificate, action.stopped);
+        Ok(())
     }
 
     fn steps(&self) -> u64 {

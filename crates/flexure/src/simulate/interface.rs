@@ -65,7 +65,8 @@ pub trait Loop: Send + Sync {
     /// For slices of a wrong length.
     fn derivative(&self, t: f64, motion: &[f64], u_m: &[f64], rate: &mut [f64]) -> Result<(), Mismatch>;
 
-    /// Moves on to the next control instant, the first at t = 0, and does what the controller does there.
+    /// Moves on to the next control instant, the first at t = 0, and does what the controller does there. There is no end: the
+    /// duration of the scenario is that of its runs.
     ///
     /// # Errors
     /// If the loop diverged, now or before; what can be read is then the last good instant.
@@ -80,9 +81,12 @@ pub trait Loop: Send + Sync {
     /// If `values` does not have one entry per signal.
     fn read(&self, values: &mut [f64]) -> Result<(), Mismatch>;
 
-    /// What runs are judged by at the last instant, into `instant`, whose vectors take n or 4n numbers: cheaper than
+    /// What runs are judged by at the last instant, into `instant`, made by [`Observed::new`] for as many joints: cheaper than
     /// [`read`](Self::read). Nothing is written before the first instant.
-    fn observe(&self, instant: &mut Observed);
+    ///
+    /// # Errors
+    /// If `instant` was made for another number of joints.
+    fn observe(&self, instant: &mut Observed) -> Result<(), Mismatch>;
 
     /// Integration steps so far.
     fn steps(&self) -> u64;

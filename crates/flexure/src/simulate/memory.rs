@@ -144,11 +144,17 @@ fn series<const K: usize, const N: usize>(
     x: &mut Vector<Jet<f64, K>, N>,
     port: &mut dyn Port<f64>,
 ) {
-    const ORDERS: [&str; 5] = ["order0_", "order1_", "order2_", "order3_", "order4_"];
+    const ORDERS: [(&str, &str); 5] = [
+        ("order0_", "rad"),
+        ("order1_", "rad/s"),
+        ("order2_", "rad/s^2"),
+        ("order3_", "rad/s^3"),
+        ("order4_", "rad/s^4"),
+    ];
     port.enter(name);
     let mut orders: [[f64; N]; K] = std::array::from_fn(|k| x.map(|jet| jet.coefficient(k)).0);
-    for (order, values) in ORDERS.into_iter().zip(&mut orders) {
-        port.joints(order, "", values);
+    for ((order, unit), values) in ORDERS.into_iter().zip(&mut orders) {
+        port.joints(order, unit, values);
     }
     *x = Vector::from_fn(|i| Jet::new(orders.map(|values| values[i])));
     port.leave();

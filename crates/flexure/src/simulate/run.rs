@@ -62,7 +62,7 @@ fn simulate(scenario: &Scenario, progress: Progress<'_>, traced: bool) -> Result
             divergence = Some(diverged);
             break;
         }
-        held.observe(&mut observed);
+        held.observe(&mut observed).expect("made for it");
         let rate = recorder.as_mut().map_or(f64::NAN, |recorder| recorder.record(&*held));
         figures.record(&observed, rate);
         tell(progress, observed.t / scenario.duration)?;

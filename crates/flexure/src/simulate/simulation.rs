@@ -157,7 +157,12 @@ where
         if let Some(divergence) = self.divergence {
             return Err(divergence);
         }
-        self.next().inspect_err(|divergence| self.divergence = Some(*divergence))
+        let (motion, ledger) = (self.motion, self.world.ledger);
+        self.next().inspect_err(|divergence| {
+            self.divergence = Some(*divergence);
+            // What is seen is still the last good instant.
+            (self.motion, self.world.ledger) = (motion, ledger);
+        })
     }
 
     fn next(&mut self) -> Result<(), Divergence> {

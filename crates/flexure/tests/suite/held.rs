@@ -11,7 +11,7 @@ use flexure::progress::unwatched;
 use flexure::reproduce::reproduce;
 use flexure::robot::{Arm, Mismatch, load_robot};
 use flexure::scenario::{Scenario, load_scenario};
-use flexure::simulate::{Loop, run};
+use flexure::simulate::{Loop, Observed, run};
 use flexure::tune::tune;
 
 use crate::common::Random;
@@ -90,6 +90,30 @@ fn seeds_decide_runs() {
     let first = rows(&mut *held, 40);
     held.reset(everything.seed + 1);
     assert_ne!(rows(&mut *held, 40), first);
+}
+
+/// A loop that diverges shows its last good instant, the last row of the trace of its run, and goes on saying that it did; `reset`
+/// begins anew.
+#[test]
+fn divergence_leaves_the_last_good_instant() {
+    for (name, period) in [("two-link-tanh", 0.05), ("panda-tanh-smooth", 0.02)] {
+        let mut scenario = scenario(name);
+        scenario.control_period = period;
+        let run = run(&scenario, &unwatched).expect("supported");
+        let diverged = run.divergence.expect("too slow for its gains");
+        let mut held = scenario.open().expect("supported");
+        let seen = std::iter::repeat_with(|| held.step()).take_while(Result::is_ok).count();
+        assert_eq!(seen, run.trace.len(), "{name}");
+        let mut values = vec![0.0; held.signals().len()];
+        held.read(&mut values).expect("a slot per signal");
+        for (column, value) in run.trace.columns().iter().zip(&values) {
+            let last = column.values.last().expect("some rows");
+            assert_eq!(last.to_bits(), value.to_bits(), "{name}: {}", column.name);
+        }
+        assert_eq!(held.step().expect_err("it stays so"), diverged);
+        held.reset(scenario.seed);
+        held.step().expect("the beginning is good");
+    }
 }
 
 /// The law of many states at once is that of one after the other, and that of `command`.
@@ -193,7 +217,9 @@ fn wrong_lengths_are_refused() {
     let held = scenario("panda-tanh-smooth").open().expect("supported");
     let (short, right, long) = ([0.0; 6], [0.0; 7], [0.0; 28]);
     let (mut seven, mut forty) = ([0.0; 7], [0.0; 49]);
-    let refused: [(&str, Result<(), Mismatch>); 11] = [
+    let mut observed = Observed::new(2);
+    let refused: [(&str, Result<(), Mismatch>); 12] = [
+        ("motion has 8", held.observe(&mut observed)),
         ("q_l has 6", arm.mass_matrix(&short, &mut forty)),
         ("mass has 7", arm.mass_matrix(&right, &mut seven)),
         ("b has 6", arm.solve_mass(&right, &short, &mut seven)),
@@ -202,7 +228,7 @@ fn wrong_lengths_are_refused() {
         ("acceleration has 7", arm.forward_dynamics(&long, &right, &mut seven)),
         ("q_l has 2", arm.torque_along(&[[0.0; 5]; 2], &mut [[0.0; 3]; 7])),
         ("u_m has 7", held.torque(0.0, &[&long[..], &long].concat(), &mut seven)),
-        ("u_m has 7", held.torque(0.0, &right, &mut seven)),
+        ("motions has 7 numbers, must have 28", held.torque(0.0, &right, &mut seven)),
         ("values has 7", held.read(&mut seven)),
         ("rate has 7", held.derivative(0.0, &long, &right, &mut seven)),
     ];

@@ -12,6 +12,7 @@ pub struct Linear;
 impl ShapingKind for Linear {
     const NAME: &'static str = "linear";
     const SUMMARY: &'static str = "φ_2 = Λ e: one rate everywhere, keeps the pH-like structure when Π = Λ";
+    const EXTRA: &'static [Extra] = &[];
 
     type Core<C: Scalar, const N: usize> = control::Linear<C, N>;
 

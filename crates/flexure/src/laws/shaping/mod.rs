@@ -31,7 +31,12 @@ mod tests {
         let gain = Vector([5.0, 2.0, 7.0]);
         for phi in Phi::ALL {
             let name = phi.name();
-            let phi = AnyShaping::new(*phi, 3, gain, &|extra| gain.map(extra.start));
+            // What a reader reads is what is listed: nothing else may be asked for.
+            let listed = phi.extra();
+            let phi = AnyShaping::new(*phi, 3, gain, &|extra| {
+                assert!(listed.iter().any(|known| known.key == extra.key), "{name} asks for {}", extra.key);
+                gain.map(extra.start)
+            });
             assert_eq!(phi.eval(&Vector([0.0; 3])), Vector([0.0; 3]), "{name}");
             for e in [[0.1, -0.2, 0.3], [2.0, 1.0, -3.0], [-0.5, 0.0, 0.0]] {
                 let e = Vector(e);

@@ -27,7 +27,7 @@ pub trait ShapingKind {
     const SUMMARY: &'static str;
 
     /// What it has beside Λ. Functions may share a key if it means the same.
-    const EXTRA: &'static [Extra] = &[];
+    const EXTRA: &'static [Extra];
 
     /// The function itself.
     type Core<C: Scalar, const N: usize>: Shaping<C, N> + Copy + Debug;

@@ -13,6 +13,7 @@ impl ShapingKind for Tanh {
     const NAME: &'static str = "tanh";
     const SUMMARY: &'static str =
         "φ_1 = Λ tanh(e): bounded speed, semi-global rate, keeps the variational structure";
+    const EXTRA: &'static [Extra] = &[];
 
     type Core<C: Scalar, const N: usize> = control::Tanh<C, N>;
 

@@ -184,7 +184,7 @@ fn momentum_block(block: BlockName, inequalities: &[Inequality], cases: &[String
 fn position_block(block: BlockName, position: &Position) -> Result<Block, Failure> {
     if position.case_count() > MOST_CASES {
         return Err(Failure::Reason(format!(
-            "{} has {} cases, one per corner of the slopes of {} joints that φ couples; at most {MOST_CASES} are looked at",
+            "{} has {} cases, one per corner of the slopes of {} joints that φ couples; at most {MOST_CASES} are looked at; linear and tanh have one",
             block.name(),
             position.case_count(),
             position.joints()
