@@ -58,4 +58,9 @@ impl Imperfection {
     pub(crate) fn of<K: Kind>(&self) -> Option<&K> {
         self.data().downcast_ref()
     }
+
+    /// The data to be changed, if this is of kind `K`.
+    pub(crate) fn of_mut<K: Kind>(&mut self) -> Option<&mut K> {
+        self.data_mut().downcast_mut()
+    }
 }

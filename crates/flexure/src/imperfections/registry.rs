@@ -66,6 +66,12 @@ macro_rules! imperfections {
                     $($(#[$attribute])* Self::$Kind(data) => data,)*
                 }
             }
+
+            fn data_mut(&mut self) -> &mut dyn Any {
+                match self {
+                    $($(#[$attribute])* Self::$Kind(data) => data,)*
+                }
+            }
         }
     };
 }

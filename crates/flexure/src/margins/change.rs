@@ -21,30 +21,31 @@ impl Change {
     pub fn of(self, scenario: &Scenario) -> Scenario {
         let mut changed = scenario.clone();
         let joints = scenario.robot.joint_count();
-        let is_there = changed.imperfections.iter_mut().any(|imperfection| self.enter(imperfection));
+        let is_there =
+            changed.imperfections.iter_mut().any(|imperfection| self.enter(imperfection).is_some());
         if !is_there {
             changed.imperfections.push(self.alone(joints));
         }
         changed
     }
 
-    /// Adds to `imperfection` if it is of this kind.
-    fn enter(self, imperfection: &mut Imperfection) -> bool {
+    /// Adds to `imperfection` if it is of this kind; none if not.
+    fn enter(self, imperfection: &mut Imperfection) -> Option<()> {
         let multiply = |values: &mut Vec<f64>, factor: f64| values.iter_mut().for_each(|x| *x *= factor);
-        match (self, imperfection) {
-            (Self::Delay(more), Imperfection::Delay(delay)) => delay.actuation += more,
-            (Self::TorqueGain(factor), Imperfection::TorqueGain(gain)) => multiply(&mut gain.factor, factor),
-            (Self::Stiffness(factor), Imperfection::ModelError(error)) => {
-                multiply(&mut error.factors.stiffness, factor);
+        match self {
+            Self::Delay(more) => imperfection.of_mut::<Delay>()?.actuation += more,
+            Self::TorqueGain(factor) => multiply(&mut imperfection.of_mut::<TorqueGain>()?.factor, factor),
+            Self::Stiffness(factor) => {
+                multiply(&mut imperfection.of_mut::<ModelError>()?.factors.stiffness, factor);
             }
-            (Self::Noise(more), Imperfection::Noise(noise)) => {
-                for deviation in noise.link.iter_mut().chain(&mut noise.motor) {
+            Self::Noise(more) => {
+                let Noise { link, motor, .. } = imperfection.of_mut()?;
+                for deviation in link.iter_mut().chain(motor) {
                     *deviation = deviation.hypot(more);
                 }
             }
-            _ => return false,
         }
-        true
+        Some(())
     }
 
     /// The imperfection that is this change and nothing else.
