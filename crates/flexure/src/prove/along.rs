@@ -9,17 +9,15 @@ mod exceeding;
 use flexure_core::scalar::{Interval, Scalar};
 use serde::Serialize;
 
-use crate::feasible;
 use crate::files::{Problem, Problems};
-use crate::laws::law_over;
-use crate::prove::engine::envelope::closed_loop::{Enclosed, Place, Slope, TrackingLoop};
+use crate::prove::closed_loop::along_reference;
+use crate::prove::engine::envelope::closed_loop::{Place, Slope, TrackingLoop};
 use crate::prove::engine::envelope::slab::QUANTITIES;
 use crate::prove::engine::envelope::tube::ErrorTube;
 use crate::prove::engine::envelope::witness::candidates;
 use crate::prove::engine::envelope::{AlongRequest, Course, course};
 use crate::prove::engine::number::Number;
 use crate::prove::engine::verdict::{Undecided, Verdict};
-use crate::robot::sized::{OF_THE_KIND, fjr, sized};
 use crate::scenario::Scenario;
 
 pub use exceeding::Exceeding;
@@ -86,17 +84,10 @@ pub fn start_level(scenario: &Scenario) -> Result<f64, Problems> {
     Ok(storage(scenario, &*enclosed(scenario)?))
 }
 
-/// The scenario's closed loop over intervals.
+/// The scenario's closed loop over intervals, if bounds can be found for it.
 fn enclosed(scenario: &Scenario) -> Result<Box<dyn TrackingLoop>, Problems> {
     suitable(scenario)?;
-    let robot = &scenario.robot;
-    Ok(sized!(robot, L, N => {
-        let links = fjr::<Interval, L<Interval>, N>(robot, &robot.enclosed, |x| robot.bounds(x), &Interval::midpoint);
-        let reference = feasible::enclosed_reference::<N>(scenario)?;
-        let law = law_over(scenario.vcbc()?, |x| scenario.bounds(x));
-        let [breaks, kinks] = [reference.breaks(), reference.kinks()];
-        Box::new(Enclosed { robot: links.expect(OF_THE_KIND), law, reference, breaks, kinks })
-    }))
+    along_reference(scenario)
 }
 
 /// Whether W is what the bounds take it to be, and continuous.
@@ -180,10 +171,8 @@ fn verdict(
     }
     let (seen, _) = course.seen(k);
     let found = (seen > exact.hi())
-        .then(|| candidates(system, level, course, k))
-        .into_iter()
-        .flatten()
-        .find_map(|candidate| exceeding::confirm(scenario, &candidate, level, k, exact.hi()));
+        .then(|| exceeding::first(scenario, &candidates(system, level, course, k), level, k, exact.hi()))
+        .flatten();
     found.map_or_else(
         || {
             let at = if bound.is_finite() {

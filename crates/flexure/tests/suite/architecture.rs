@@ -165,7 +165,7 @@ fn sizes_are_chosen_in_few_places() {
         .filter(|(file, text)| file != "robot/sized.rs" && text.contains("sized!("))
         .map(|(file, _)| file)
         .collect();
-    assert!(users.len() <= 7, "{users:?}");
+    assert!(users.len() <= 5, "{users:?}");
     assert!(
         users.iter().all(|file| ["robot", "feasible", "simulate", "prove"].contains(&room(file))),
         "{users:?}"

@@ -1,17 +1,11 @@
 //! States in the tube that exceed a limit, in plain `f64`.
 
-use flexure_core::control::{Metric, Shaping};
-use flexure_core::linalg::Vector;
-use flexure_core::model::{Fjr, Links, Motion};
-use flexure_core::reference::Reference;
 use serde::Serialize;
 
-use crate::feasible;
-use crate::files::Problems;
-use crate::laws::{self, Law, law};
+use crate::laws::VcbcGains;
 use crate::prove::engine::envelope::witness::Candidate;
-use crate::robot::sized::{OF_THE_KIND, fjr, sized, vector};
 use crate::scenario::Scenario;
+use crate::simulate::{Commanded, Errors, Loop};
 
 /// A state in the tube at which a limit is exceeded.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -32,59 +26,53 @@ pub struct Exceeding {
     pub value: f64,
 }
 
-/// The state at `candidate` if it is in the tube of level `level` in J and quantity `k` is above `limit` in absolute value.
-pub(crate) fn confirm(
+/// The first of `candidates` that is in the tube of level `level` in J and whose quantity `k` is above `limit` in absolute
+/// value.
+pub(crate) fn first(
     scenario: &Scenario,
-    candidate: &Candidate,
+    candidates: &[Candidate],
     level: f64,
     k: usize,
     limit: f64,
 ) -> Option<Exceeding> {
-    let found = exceeding(scenario, candidate, k).ok()??;
-    (found.level <= level && found.value > limit).then_some(found)
+    let (held, gains) = (scenario.open().ok()?, scenario.vcbc().ok()?);
+    let at = |candidate| exceeding(&*held, gains, candidate, k);
+    candidates.iter().filter_map(at).find(|found| found.level <= level && found.value > limit)
 }
 
 /// The law at a state given by its errors.
-fn exceeding(scenario: &Scenario, candidate: &Candidate, k: usize) -> Result<Option<Exceeding>, Problems> {
-    let robot = &scenario.robot;
-    Ok(
-        sized!(robot, L, N => at::<L<f64>, N>(scenario, &fjr(robot, &robot.links, |x| x, &|x| x).expect(OF_THE_KIND), candidate, k)),
-    )
-}
-
-fn at<L: Links<f64, N>, const N: usize>(
-    scenario: &Scenario,
-    robot: &Fjr<f64, L, N>,
-    candidate: &Candidate,
-    k: usize,
-) -> Option<Exceeding> {
-    let Candidate { time: t, error } = candidate;
-    let law: Law<f64, N> = law(scenario.vcbc().ok()?);
-    let reference = feasible::reference::<N>(scenario).ok()?;
-    let q_ld = reference.at(*t);
-    let n = robot.links.joints();
-    let part = |i: usize| vector::<N>(&error[i * n..(i + 1) * n]);
-    let [e_l, e_m, s_l, s_m] = [0, 1, 2, 3].map(part);
-    let order = |k: usize| q_ld.map(|jet| jet.coefficient(k));
-    let command = |x: &Motion<f64, N>| laws::command(&law, robot, x, &q_ld);
-    // What the law wants of the motors does not depend on where they are.
-    let mut x = Motion {
-        q_l: order(0) + e_l,
-        q_m: Vector::ZERO,
-        v_l: order(1) - law.link.shaping.eval(&e_l) + s_l,
-        v_m: Vector::ZERO,
+fn exceeding(held: &dyn Loop, gains: &VcbcGains, candidate: &Candidate, k: usize) -> Option<Exceeding> {
+    let (n, t) = (held.joints(), candidate.time);
+    let mut q_ld = vec![[0.0; 5]; n];
+    held.reference(t, &mut q_ld).ok()?;
+    let mut parts = candidate.error.chunks(n);
+    let mut part = || parts.next();
+    let (e_l, e_m, s_l, s_m) = (part()?, part()?, part()?, part()?);
+    let plus = |a: &[f64], b: &[f64]| -> Vec<f64> { a.iter().zip(b).map(|(a, b)| a + b).collect() };
+    let minus = |a: &[f64], b: &[f64]| -> Vec<f64> { a.iter().zip(b).map(|(a, b)| a - b).collect() };
+    let command = |x: &[&[f64]; 4]| -> Option<(Vec<f64>, Vec<f64>, Errors)> {
+        let Commanded { u_m, e_l, errors, .. } = held.command(t, &x.concat()).ok()?;
+        Some((u_m, e_l, errors?))
     };
-    x.q_m = command(&x).q_md + e_m;
-    x.v_m = s_m - command(&x).s_m;
-    let command = command(&x);
+    let rest = vec![0.0; n];
+    let q_l = plus(&q_ld.iter().map(|q| q[0]).collect::<Vec<_>>(), e_l);
+    // At rest the velocity error is that of the reference velocity alone, with the other sign.
+    let (.., errors) = command(&[&q_l, &rest, &rest, &rest])?;
+    let dq_l = minus(s_l, &errors.s_l);
+    // What the law wants of the motors does not depend on where they are.
+    let (.., errors) = command(&[&q_l, &rest, &dq_l, &rest])?;
+    let q_m = plus(&errors.q_md, e_m);
+    let (.., errors) = command(&[&q_l, &q_m, &dq_l, &rest])?;
+    let dq_m = minus(s_m, &errors.s_m);
+    let (u_m, e_l, errors) = command(&[&q_l, &q_m, &dq_l, &dq_m])?;
 
-    let (Metric::Constant(metric) | Metric::Hardening { base: metric, .. }) = law.link.metric;
-    let level = command.e_l.dot(&metric.diag_mul(&command.e_l))
-        + command.e_m.dot(&law.motor.metric.diag_mul(&command.e_m))
-        + command.s_l.dot(&robot.links.mass_mul(&x.q_l, &command.s_l))
-        + command.s_m.dot(&robot.motor_inertia.diag_mul(&command.s_m));
-    let quantities = [x.v_l, x.deflection(), command.u_m];
-    let [q_l, q_m, dq_l, dq_m] = [x.q_l, x.q_m, x.v_l, x.v_m].map(|v| v.iter().take(n).collect());
-    let value = quantities.get(k / n)?[k % n].abs();
-    Some(Exceeding { t: *t, q_l, q_m, dq_l, dq_m, level: 0.5 * level, value })
+    let form =
+        |metric: &[f64], e: &[f64]| -> f64 { e.iter().zip(metric).map(|(e, metric)| e * (metric * e)).sum() };
+    let product = |s: &[f64], sigma: &[f64]| -> f64 { s.iter().zip(sigma).map(|(s, sigma)| s * sigma).sum() };
+    let level = form(&gains.link.metric, &e_l)
+        + form(&gains.motor.metric, &errors.e_m)
+        + product(&errors.s_l, &errors.sigma_l)
+        + product(&errors.s_m, &errors.sigma_m);
+    let value = [&dq_l, &minus(&q_m, &q_l), &u_m].get(k / n)?[k % n].abs();
+    Some(Exceeding { t, q_l, q_m, dq_l, dq_m, level: 0.5 * level, value })
 }
