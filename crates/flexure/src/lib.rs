@@ -18,6 +18,7 @@ pub mod references;
 pub mod report;
 pub mod reproduce;
 pub mod robot;
+pub mod sampled;
 pub mod scenario;
 pub mod simulate;
 pub mod tune;

@@ -2,9 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use flexure::prove::question::{Direct, Proof, Question, Region, SMALLEST_ERROR, prove};
+use flexure::prove::question::{Direct, Question, Region, SMALLEST_ERROR, prove};
+use flexure::prove::standing::Standing;
 use flexure::prove::summary::ProofSummary;
 use flexure::report::{proof_table, write_certificate};
+use flexure::sampled::probe;
 use flexure::scenario::{Scenario, load_scenario};
 use serde::Serialize;
 
@@ -26,7 +28,8 @@ pub fn certify(options: &Certify, json: bool) -> Result<(), Failure> {
     say(&scenario.warnings);
     let question = question(options, &scenario)?;
     let proof = prove(&scenario, &question)?;
-    let summary = ProofSummary::new(&scenario, &proof);
+    let sampled = probe(&scenario)?;
+    let summary = ProofSummary::new(&scenario, &proof, sampled.clone());
     let file = match proof.verdict.proved() {
         None => None,
         Some(certificate) => {
@@ -39,7 +42,7 @@ pub fn certify(options: &Certify, json: bool) -> Result<(), Failure> {
             Some(path)
         }
     };
-    let ended = ending(&scenario, &proof);
+    let ended = ending(&scenario, Standing::of(&scenario, &proof, sampled.as_ref()), options.strict);
     if json {
         print::json(&Outcome { summary, file })?;
     } else {
@@ -150,11 +153,24 @@ fn empty(name: &str, value: &str) -> Failure {
     Failure::input("region", message, "name the largest error that shall be certified, > 0")
 }
 
-/// The exit code: 1 for what is refuted, 3 for what could not be decided.
-fn ending(scenario: &Scenario, proof: &Proof) -> Result<(), Failure> {
-    match proof.complaint(scenario) {
-        None => Ok(()),
-        Some((problem, true)) => Err(Failure::No(vec![problem.into()])),
-        Some((problem, false)) => Err(Failure::Undecided(vec![problem.into()])),
-    }
+/// The exit code: 1 for what is refuted or unstable, and if it is `strict` for what is proved of another loop than the one in the
+/// file; 3 for what could not be decided.
+fn ending(scenario: &Scenario, standing: Standing<'_>, strict: bool) -> Result<(), Failure> {
+    let problem = match standing {
+        Standing::Proved => return Ok(()),
+        Standing::Ideal(_) if !strict => return Ok(()),
+        Standing::Ideal(left_out) => {
+            let message =
+                format!("{}: the proof leaves out {}", scenario.name, left_out.join(", ").replace('_', " "));
+            let help = "it is about the ideal loop: the law on true states, its torque on the motors at once";
+            scenario.places.problem("controller", "ideal", message, help)
+        }
+        Standing::Unstable(sampled) => match sampled.problem(scenario) {
+            Some(problem) => problem,
+            None => return Ok(()),
+        },
+        Standing::Refuted(problem) => problem,
+        Standing::Undecided(problem) => return Err(Failure::Undecided(vec![problem.into()])),
+    };
+    Err(Failure::No(vec![problem.into()]))
 }

@@ -4,6 +4,7 @@ use flexure::feasible::{self, Usage};
 use flexure::files::{Assumption, Problem, Problems};
 use flexure::report::{joint_table, usage_table};
 use flexure::robot::{JointRow, overview, supported};
+use flexure::sampled::{Sampled, probe};
 use flexure::scenario::{self, Checked, Scenario};
 use serde::Serialize;
 
@@ -19,7 +20,7 @@ struct Verdict {
     content: Option<Content>,
     warnings: Vec<Complaint>,
     errors: Vec<Complaint>,
-    /// Limits that the reference of a good file exceeds.
+    /// Limits that the reference of a good file exceeds, and that its loop is unstable.
     #[serde(skip)]
     exceeded: Vec<Problem>,
 }
@@ -39,6 +40,9 @@ struct Content {
     /// What the reference uses of the limits, for a scenario.
     #[serde(skip_serializing_if = "Option::is_none")]
     reference: Option<Along>,
+    /// Whether the loop is stable that holds its torque for a control period, for a scenario.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sampled: Option<Sampled>,
 }
 
 /// What the reference of a scenario does.
@@ -98,7 +102,8 @@ pub fn check(files: &[String], json: bool) -> Result<(), Failure> {
 
 /// What is in a file, on the terminal.
 fn show(verdict: &Verdict) -> Result<(), Failure> {
-    let Some(Content { kind, name, joints, assumptions, assumed, robot, reference }) = &verdict.content
+    let Some(Content { kind, name, joints, assumptions, assumed, robot, reference, sampled }) =
+        &verdict.content
     else {
         return Ok(());
     };
@@ -122,6 +127,9 @@ fn show(verdict: &Verdict) -> Result<(), Failure> {
         if !usage.is_empty() {
             print::line(&usage_table(joints, usage))?;
         }
+    }
+    if let Some(sampled) = sampled {
+        print::line(&sampled.line())?;
     }
     Ok(())
 }
@@ -161,18 +169,21 @@ fn content(file: &str) -> Result<Found, Problems> {
             let rows = overview(&robot)?;
             let assumed = assumed(&robot.assumptions());
             let (joints, assumptions, name) = (rows.len(), assumed.len(), robot.name);
-            let (kind, robot_rows, reference) = ("robot", Some(rows), None);
-            let content = Content { kind, name, joints, assumptions, assumed, robot: robot_rows, reference };
+            let (kind, robot_rows, reference, sampled) = ("robot", Some(rows), None, None);
+            let content =
+                Content { kind, name, joints, assumptions, assumed, robot: robot_rows, reference, sampled };
             Ok(Found { content, warnings: robot.warnings, exceeded: Vec::new() })
         }
         Checked::Scenario(scenario) => {
             supported(&scenario.robot)?;
             let reference = along(&scenario)?;
-            let exceeded = feasible::exceeded(&scenario, &reference.usage);
+            let sampled = probe(&scenario)?;
+            let mut exceeded = feasible::exceeded(&scenario, &reference.usage);
+            exceeded.extend(sampled.as_ref().and_then(|sampled| sampled.problem(&scenario)));
             let assumed = assumed(&scenario.assumptions);
             let (joints, assumptions, name) = (scenario.robot.joint_count(), assumed.len(), scenario.name);
             let (kind, robot, reference) = ("scenario", None, Some(reference));
-            let content = Content { kind, name, joints, assumptions, assumed, robot, reference };
+            let content = Content { kind, name, joints, assumptions, assumed, robot, reference, sampled };
             Ok(Found { content, warnings: scenario.warnings, exceeded })
         }
     }

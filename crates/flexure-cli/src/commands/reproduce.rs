@@ -6,7 +6,8 @@ use flexure::files::prepare;
 use flexure::prove::summary::ProofSummary;
 use flexure::report::{certificate_table, summary_table};
 use flexure::reproduce::{
-    REPRODUCED, certificates, reproduce as experiments, write_certificates, write_experiment, write_report,
+    Certified, REPRODUCED, certificates, reproduce as experiments, write_certificates, write_experiment,
+    write_report,
 };
 use rayon::prelude::*;
 use serde::Serialize;
@@ -38,8 +39,7 @@ pub fn reproduce(out: &Path, json: bool) -> Result<(), Failure> {
     let certified = certificates()?;
     let certificate_files = write_certificates(out, &certified)?;
     let report = write_report(out, &experiments, &certified)?;
-    let certificates: Vec<_> =
-        certified.iter().map(|certified| ProofSummary::new(&certified.scenario, &certified.proof)).collect();
+    let certificates: Vec<_> = certified.iter().map(Certified::summary).collect();
     if json {
         let scenarios = experiments.iter().zip(files).map(|(e, files)| Outcome::new(e, files)).collect();
         print::json(&Reproduction { scenarios, certificates, certificate_files, report })?;

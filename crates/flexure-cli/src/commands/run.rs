@@ -6,6 +6,7 @@ use flexure::feasible;
 use flexure::files::{Problem, prepare};
 use flexure::report::summary_table;
 use flexure::reproduce::{Experiment, write_experiment};
+use flexure::sampled::Sampled;
 use flexure::scenario::load_scenario;
 use flexure::simulate::{Cause, Summary, exceeded, preload};
 use serde::Serialize;
@@ -21,13 +22,15 @@ pub struct Outcome<'a> {
     pub summary: &'a Summary,
     /// Time of divergence in s; none if the loop ran to the end.
     pub diverged_at: Option<f64>,
+    /// Whether the loop is stable that holds its torque for a control period; none for laws in continuous time.
+    pub sampled: Option<&'a Sampled>,
     pub files: Vec<PathBuf>,
 }
 
 impl<'a> Outcome<'a> {
     pub fn new(experiment: &'a Experiment, files: Vec<PathBuf>) -> Self {
         let diverged_at = experiment.run.divergence.map(|divergence| divergence.time);
-        Self { summary: &experiment.run.summary, diverged_at, files }
+        Self { summary: &experiment.run.summary, diverged_at, sampled: experiment.sampled.as_ref(), files }
     }
 }
 
@@ -51,6 +54,9 @@ pub fn run(scenario: &str, out: &Path, json: bool) -> Result<(), Failure> {
         print::line(&summary_table(std::slice::from_ref(&experiment.run.summary)))?;
         if let Some(line) = summary_line(&experiment.run.summary) {
             print::line(&line)?;
+        }
+        if let Some(sampled) = &experiment.sampled {
+            print::line(&sampled.line())?;
         }
         for file in &files {
             print::line(&format!("wrote {}", file.display()))?;
@@ -78,25 +84,34 @@ fn summary_line(summary: &Summary) -> Option<String> {
 
 /// What to say of a loop that diverged.
 pub fn diverged(experiment: &Experiment) -> Option<Problem> {
-    let Experiment { scenario, run, .. } = experiment;
+    let Experiment { scenario, run, sampled, .. } = experiment;
     run.divergence.map(|divergence| {
-        let (code, hint) = match divergence.cause {
-            Cause::Unbounded => (
-                "diverged",
-                "shorten control_period, lower the gains, or join the reference smoothly with \
-                 [reference.smooth_start]; outputs end where the loop does",
-            ),
-            Cause::Torque => (
-                "no-torque",
-                "a sensor that drops out reads NaN: add [guard]; or gains are too high; outputs end where the loop does",
-            ),
-            Cause::Unsolvable => (
-                "unsolvable",
-                "shorten control_period, lower the gains, and check that the reference has four continuous \
-                 derivatives; outputs end there",
-            ),
+        let code = match divergence.cause {
+            Cause::Unbounded => "diverged",
+            Cause::Torque => "no-torque",
+            Cause::Unsolvable => "unsolvable",
         };
-        let message = format!("{}: {divergence}", scenario.name);
-        scenario.places.problem("control_period", code, message, hint)
+        let unstable = sampled.as_ref().filter(|sampled| !sampled.stable);
+        let hint =
+            unstable.and_then(Sampled::help).unwrap_or_else(|| of_large_signals(divergence.cause).to_owned());
+        let message = match unstable {
+            Some(sampled) => format!("{}: {divergence}; {}", scenario.name, sampled.line()),
+            None => format!("{}: {divergence}", scenario.name),
+        };
+        scenario.places.problem("control_period", code, message, hint + "; outputs end where the loop does")
     })
+}
+
+/// What may be wrong where small errors shrink.
+fn of_large_signals(cause: Cause) -> &'static str {
+    match cause {
+        Cause::Unbounded => {
+            "small errors shrink in this loop: it is the large ones, or what stands between law and robot; join the reference \
+             smoothly with [reference.smooth_start], or look at limits, delays and noise"
+        }
+        Cause::Torque => "a sensor that drops out reads NaN: add [guard]",
+        Cause::Unsolvable => {
+            "join the reference smoothly with [reference.smooth_start], and check that it has four continuous derivatives"
+        }
+    }
 }

@@ -27,7 +27,7 @@ pub const SUMMARY: [&str; 16] = [
     "max_abs_u_m",
     "rms_u_m",
     "saturated_fraction",
-    "rate_measured",
+    "rate_pointwise",
     "rate_certified",
     "energy_drift",
     "steps",

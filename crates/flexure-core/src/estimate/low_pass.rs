@@ -1,7 +1,7 @@
 //! Difference quotients through a low pass, as one recursion.
 
 use super::positive;
-use crate::scalar::Float;
+use crate::scalar::{Float, Over};
 
 /// Differentiation and low pass in one filter: v_k = a₁ v_{k−1} + a₂ v_{k−2} + b₀ d_k + b₁ d_{k−1} with the increments
 /// d_k = q_k − q_{k−1} of the position.
@@ -35,6 +35,15 @@ impl<C: Float> LowPass<C> {
             forward: [two * tan * scale / period, C::ZERO],
             period,
         })
+    }
+
+    /// The same filter over another number.
+    pub fn over<T: Over<C>>(self) -> LowPass<T> {
+        LowPass {
+            feedback: self.feedback.map(T::constant),
+            forward: self.forward.map(T::constant),
+            period: T::constant(self.period),
+        }
     }
 
     /// G = ω_c² / (s² + 2 ζ ω_c s + ω_c²): `cutoff` is the natural frequency ω_c / 2π in Hz, where the gain is 1 / (2 ζ);

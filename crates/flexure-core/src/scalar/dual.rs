@@ -1,8 +1,11 @@
 //! Dual numbers: a value and its gradient with respect to `M` variables.
+//!
+//! [`Tangent`], a value with one derivative, is a [`Float`] too: estimators run on it as they are and say how what they
+//! remember and estimate moves with what they read.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::{Over, Piecewise, Scalar, assign_ops};
+use super::{Float, Over, Piecewise, Scalar, assign_ops, leaf};
 
 /// A value and its `M` partial derivatives: running code on it gives the exact Jacobian.
 ///
@@ -13,7 +16,9 @@ use super::{Over, Piecewise, Scalar, assign_ops};
 /// let z = x * x * y;
 /// assert_eq!((z.value, z.gradient), (18.0, [12.0, 9.0]));
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+///
+/// Ordered as numbers with infinitesimal parts: by value, equal values by gradient.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Dual<S, const M: usize> {
     /// The value of the function.
     pub value: S,
@@ -164,5 +169,17 @@ impl<S: Piecewise, const M: usize> Piecewise for Dual<S, M> {
     #[inline]
     fn select(self, then: Self, otherwise: Self) -> Self {
         then.zip(otherwise, self.value.select(then.value, otherwise.value), |a, b| self.value.select(a, b))
+    }
+}
+
+/// A value and its derivative in one direction.
+pub type Tangent = Dual<f64, 1>;
+
+leaf!([] Tangent);
+
+impl Float for Tangent {
+    #[inline]
+    fn is_finite(self) -> bool {
+        self.value.is_finite() && self.gradient[0].is_finite()
     }
 }

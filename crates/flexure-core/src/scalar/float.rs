@@ -2,7 +2,8 @@
 
 use super::{Over, Piecewise, Scalar, leaf};
 
-/// A plain number that code may decide on: what estimators and guards run on. `f64` and `f32`, nothing else.
+/// A plain number that code may decide on: what estimators and guards run on: `f64`, `f32` and
+/// [`Tangent`](super::Tangent), on which the value decides.
 pub trait Float: Piecewise + Over<Self> + PartialOrd {
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;

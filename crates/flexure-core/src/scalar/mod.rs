@@ -21,7 +21,7 @@ mod lanes;
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-pub use dual::Dual;
+pub use dual::{Dual, Tangent};
 pub use float::Float;
 #[cfg(feature = "interval")]
 pub use interval::Interval;

@@ -4,6 +4,7 @@ use flexure_core::estimate::{Estimator, FilteredDifference, LowPass, MotorObserv
 use flexure_core::linalg::Vector;
 use flexure_core::memory::{Memory, Port};
 use flexure_core::model::{Fjr, Links, Motion};
+use flexure_core::scalar::{Float, Over};
 
 use crate::estimators::{self, Encoders};
 use crate::files::Entry;
@@ -23,13 +24,13 @@ pub const ESTIMATORS: &[Entry] = &[
 
 /// Any registered estimator.
 #[derive(Clone, Debug)]
-pub enum AnyEstimator<const N: usize> {
+pub enum AnyEstimator<C, const N: usize> {
     /// `velocity-filter`.
-    FilteredDifference(FilteredDifference<f64, N>),
+    FilteredDifference(FilteredDifference<C, N>),
     /// `observer` with both encoders.
-    Observer(Observer<f64, N>),
+    Observer(Observer<C, N>),
     /// `observer` with the encoders of the motors.
-    MotorObserver(MotorObserver<f64, N>),
+    MotorObserver(MotorObserver<C, N>),
 }
 
 /// The estimator of a loop with control periods of `period` in s: the one that is asked for, else differences of positions through the
@@ -37,28 +38,30 @@ pub enum AnyEstimator<const N: usize> {
 ///
 /// # Panics
 /// For bandwidths that the reader of scenarios refuses.
-pub fn estimator<const N: usize>(
+pub fn estimator<C: Float + Over<f64>, const N: usize>(
     estimator: Option<&estimators::Estimator>,
     velocities: Option<LowPass<f64>>,
     period: f64,
-) -> Option<AnyEstimator<N>> {
+) -> Option<AnyEstimator<C, N>> {
     const CHECKED: &str = "the reader takes positive numbers only";
+    let period = C::constant(period);
     if let Some(estimator) = estimator {
         return Some(match estimator {
             estimators::Estimator::Observer { encoders: Encoders::Both, bandwidth } => {
-                AnyEstimator::Observer(Observer::new(&padded(bandwidth, 1.0), period).expect(CHECKED))
+                let bandwidth = padded(bandwidth, 1.0).map(C::constant);
+                AnyEstimator::Observer(Observer::new(&bandwidth, period).expect(CHECKED))
             }
             estimators::Estimator::Observer { encoders: Encoders::Motor, bandwidth } => {
-                let bandwidth = padded(bandwidth, 1.0);
+                let bandwidth = padded(bandwidth, 1.0).map(C::constant);
                 AnyEstimator::MotorObserver(MotorObserver::new(&bandwidth, period).expect(CHECKED))
             }
         });
     }
-    velocities.map(|filter| AnyEstimator::FilteredDifference(FilteredDifference::new(filter)))
+    velocities.map(|filter| AnyEstimator::FilteredDifference(FilteredDifference::new(filter.over())))
 }
 
-impl<const N: usize> Estimator<f64, N> for AnyEstimator<N> {
-    fn start(&mut self, x: &Motion<f64, N>) {
+impl<C: Float, const N: usize> Estimator<C, N> for AnyEstimator<C, N> {
+    fn start(&mut self, x: &Motion<C, N>) {
         match self {
             Self::FilteredDifference(estimator) => estimator.start(x),
             Self::Observer(estimator) => estimator.start(x),
@@ -66,13 +69,13 @@ impl<const N: usize> Estimator<f64, N> for AnyEstimator<N> {
         }
     }
 
-    fn update<L: Links<f64, N>>(
+    fn update<L: Links<C, N>>(
         &mut self,
-        robot: &Fjr<f64, L, N>,
-        q_l: &Vector<f64, N>,
-        q_m: &Vector<f64, N>,
-        u_m: &Vector<f64, N>,
-    ) -> Motion<f64, N> {
+        robot: &Fjr<C, L, N>,
+        q_l: &Vector<C, N>,
+        q_m: &Vector<C, N>,
+        u_m: &Vector<C, N>,
+    ) -> Motion<C, N> {
         match self {
             Self::FilteredDifference(estimator) => estimator.update(robot, q_l, q_m, u_m),
             Self::Observer(estimator) => estimator.update(robot, q_l, q_m, u_m),
@@ -82,8 +85,8 @@ impl<const N: usize> Estimator<f64, N> for AnyEstimator<N> {
 }
 
 /// What the estimator remembers.
-impl<const N: usize> Memory<f64> for AnyEstimator<N> {
-    fn memory(&mut self, port: &mut dyn Port<f64>) {
+impl<C: Float, const N: usize> Memory<C> for AnyEstimator<C, N> {
+    fn memory(&mut self, port: &mut dyn Port<C>) {
         match self {
             Self::FilteredDifference(estimator) => estimator.memory(port),
             Self::Observer(estimator) => estimator.memory(port),

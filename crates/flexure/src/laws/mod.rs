@@ -40,6 +40,7 @@ pub use gain::Gain;
 pub use rates::BlockRates;
 pub use shaping::{AnyShaping, Extra, Phi, SHAPING};
 pub use side::SideGains;
+pub(crate) use starting::drives;
 pub use vcbc::{Law, VcbcGains, command, law, law_over};
 
 // One line a law, in the order in which lists show them.

@@ -23,10 +23,20 @@ impl Controller {
         };
         Ok((maker.start)(&drives))
     }
+
+    /// The same law with gain number `gain`, of all joints, times `factor`; the order is that of [`gains`](Self::gains).
+    #[must_use]
+    pub fn with_gain(&self, gain: usize, factor: f64) -> Self {
+        let mut changed = self.clone();
+        for value in changed.slots().swap_remove(gain) {
+            *value *= factor;
+        }
+        changed
+    }
 }
 
 /// What each joint has to move.
-fn drives(robot: &Robot) -> Result<Vec<Drive>, Problems> {
+pub(crate) fn drives(robot: &Robot) -> Result<Vec<Drive>, Problems> {
     const SIZES: &str = "slices of n joints";
     let (n, arm) = (robot.joint_count(), robot.arm()?);
     let mut mass = vec![0.0; n * n];

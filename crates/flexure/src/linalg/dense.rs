@@ -1,6 +1,6 @@
 //! Matrices by rows.
 
-use std::ops::{Index, IndexMut};
+use std::ops::{Add, Index, IndexMut, Mul, Range};
 
 /// A matrix, stored row by row; entry (i, j) is `matrix[(i, j)]`.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,13 +36,70 @@ impl<T> Dense<T> {
     }
 
     /// The rows, from the first.
-    pub fn rows(&self) -> impl Iterator<Item = &[T]> {
+    pub fn rows(&self) -> impl ExactSizeIterator<Item = &[T]> {
         self.entries.chunks_exact(self.columns.max(1))
     }
 
     /// All entries, row by row.
     pub fn entries_mut(&mut self) -> &mut [T] {
         &mut self.entries
+    }
+}
+
+impl Dense<f64> {
+    /// All entries 0.
+    pub fn zeros(rows: usize, columns: usize) -> Self {
+        Self { columns, entries: vec![0.0; rows * columns] }
+    }
+
+    /// 1 on the diagonal, 0 elsewhere.
+    pub fn identity(n: usize) -> Self {
+        Self::from_fn(n, n, |i, j| if i == j { 1.0 } else { 0.0 })
+    }
+
+    /// Every entry times `factor`.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self { columns: self.columns, entries: self.entries.iter().map(|x| x * factor).collect() }
+    }
+
+    /// These rows, in order.
+    #[must_use]
+    pub fn slice(&self, rows: Range<usize>) -> Self {
+        let entries = self.entries[rows.start * self.columns..rows.end * self.columns].to_vec();
+        Self { columns: self.columns, entries }
+    }
+
+    /// The rows of all `parts`, which have as many columns each, one part below the other.
+    pub fn stacked(parts: &[&Self]) -> Self {
+        let columns = parts.first().map_or(0, |part| part.columns);
+        Self { columns, entries: parts.iter().flat_map(|part| &part.entries).copied().collect() }
+    }
+}
+
+impl Add for &Dense<f64> {
+    type Output = Dense<f64>;
+
+    fn add(self, rhs: Self) -> Dense<f64> {
+        let entries = self.entries.iter().zip(&rhs.entries).map(|(a, b)| a + b).collect();
+        Dense { columns: self.columns, entries }
+    }
+}
+
+impl Mul for &Dense<f64> {
+    type Output = Dense<f64>;
+
+    fn mul(self, rhs: Self) -> Dense<f64> {
+        let rows = self.rows().len();
+        let mut product = Dense::zeros(rows, rhs.columns);
+        for (sum, row) in product.entries.chunks_exact_mut(rhs.columns.max(1)).zip(self.rows()) {
+            for (&factor, other) in row.iter().zip(rhs.rows()) {
+                if factor != 0.0 {
+                    sum.iter_mut().zip(other).for_each(|(sum, x)| *sum += factor * x);
+                }
+            }
+        }
+        product
     }
 }
 

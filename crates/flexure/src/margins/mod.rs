@@ -11,6 +11,7 @@ use serde::Serialize;
 use crate::feasible;
 use crate::files::{Problem, Problems};
 use crate::progress::{Progress, tell};
+use crate::sampled::{Sampled, probe};
 use crate::scenario::{Hold, Scenario};
 use crate::simulate::{Run, measure};
 
@@ -61,6 +62,8 @@ pub struct Margins {
     pub noise_to_torque: Option<f64>,
     /// Runs that were simulated.
     pub runs: usize,
+    /// Whether small errors shrink in the loop as it is.
+    pub sampled: Option<Sampled>,
 }
 
 /// A loop holds if it does not diverge and its error is at most this many times what it is without the change …
@@ -156,6 +159,7 @@ pub fn margins(scenario: &Scenario, progress: Progress<'_>) -> Result<Margins, P
         noise_to_error: per_noise(|run| run.summary.rms_e_l),
         noise_to_torque: per_noise(|run| run.summary.rms_torque_change),
         runs: runs + usize::from(noisy.is_some()),
+        sampled: probe(&scenario)?,
     })
 }
 
@@ -173,7 +177,10 @@ impl Margins {
                 Some(rms) => format!("does not follow its reference, rms error {rms:.3} rad"),
             };
             let message = format!("{}, {}: the loop {how}: it has no margins", self.name, self.law());
-            let help = "lower the gains, shorten control_period, or join the reference smoothly; `flexure run` shows how it diverges";
+            let help = self.sampled.as_ref().and_then(Sampled::help).unwrap_or_else(|| {
+                "small errors shrink: join the reference smoothly; `flexure run` shows how it diverges"
+                    .to_owned()
+            });
             scenario.places.problem("controller", "diverged", message, help)
         })
     }

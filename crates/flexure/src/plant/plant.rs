@@ -2,6 +2,7 @@
 
 use flexure_core::linalg::{Matrix, Vector};
 use flexure_core::model::{Fjr, Links, MassFactor, Motion, Power, RotorCoupling};
+use flexure_core::scalar::{Over, Piecewise};
 
 use crate::plant::friction::Friction;
 use crate::plant::spring::Hysteresis;
@@ -31,7 +32,7 @@ pub struct Plant<L, const N: usize> {
 }
 
 /// One vector for the links and one for the motors.
-pub(crate) type Sides<const N: usize> = [Vector<f64, N>; 2];
+pub(crate) type Sides<const N: usize, T = f64> = [Vector<T, N>; 2];
 
 impl<L, const N: usize> From<Fjr<f64, L, N>> for Plant<L, N> {
     /// The plant that is as its model.
@@ -74,21 +75,27 @@ impl<L: Links<f64, N>, const N: usize> Plant<L, N> {
     }
 
     /// S(q_l) of the rotor coupling [kg m²], if there is any.
-    pub(crate) fn coupling_matrix(&self, q_l: &Vector<f64, N>) -> Option<Matrix<f64, N, N>> {
+    pub(crate) fn coupling_matrix<T: Over<f64>>(&self, q_l: &Vector<T, N>) -> Option<Matrix<T, N, N>> {
         self.rotor_coupling.map(|coupling| coupling.matrix(&self.robot.links, q_l))
     }
 
     /// Torques on links and motors that the accelerations `a` leave unbalanced under the motor torque `u_m` [N m]; without
     /// friction and hysteresis.
     #[inline]
-    pub(crate) fn unbalanced(&self, x: &Motion<f64, N>, u_m: &Vector<f64, N>, a: Sides<N>) -> Sides<N> {
+    pub(crate) fn unbalanced<T: Over<f64> + Piecewise>(
+        &self,
+        x: &Motion<T, N>,
+        u_m: &Vector<T, N>,
+        a: Sides<N, T>,
+    ) -> Sides<N, T> {
         let (robot, [a_l, a_m]) = (&self.robot, a);
+        let external = self.external.map(T::constant);
         let nonlinear = self.nonlinear_torque(x);
         let needed = robot.links.inverse_dynamics(&x.q_l, &x.v_l, &x.v_l, &a_l);
         let spring = robot.spring_torque(&x.q_l, &x.q_m);
         let damping_m = robot.motor_damping.diag_mul(&x.v_m);
         let inertia_m = robot.motor_inertia.diag_mul(&a_m);
-        let link = robot.link_torque(x) + nonlinear - needed + self.external;
+        let link = robot.link_torque(x) + nonlinear - needed + external;
         let motor = *u_m - nonlinear - spring - damping_m - inertia_m;
         match &self.rotor_coupling {
             None => [link, motor],
@@ -101,21 +108,26 @@ impl<L: Links<f64, N>, const N: usize> Plant<L, N> {
 
     /// Torques that the coupling needs on links and motors [N m]. Compiled once: it is much code in many places.
     #[inline(never)]
-    pub(crate) fn coupling_torques(
+    pub(crate) fn coupling_torques<T: Over<f64>>(
         &self,
         coupling: &RotorCoupling<f64, N>,
-        x: &Motion<f64, N>,
-        [a_l, a_m]: Sides<N>,
-    ) -> Sides<N> {
+        x: &Motion<T, N>,
+        [a_l, a_m]: Sides<N, T>,
+    ) -> Sides<N, T> {
         let links = &self.robot.links;
         [coupling.link_torque(links, x, &a_m), coupling.motor_torque(links, x, &a_l)]
     }
 
     /// Accelerations of links and motors [rad/s²] under the motor torque `u_m` [N m]; without friction and hysteresis.
-    pub fn accelerations(&self, x: &Motion<f64, N>, u_m: &Vector<f64, N>) -> [Vector<f64, N>; 2] {
+    pub fn accelerations<T: Over<f64> + Piecewise>(
+        &self,
+        x: &Motion<T, N>,
+        u_m: &Vector<T, N>,
+    ) -> [Vector<T, N>; 2] {
         let robot = &self.robot;
+        let inertia = robot.motor_inertia.map(T::constant);
         let [link, motor] = self.unbalanced(x, u_m, [Vector::ZERO; 2]);
-        let per_inertia = |torque: Vector<f64, N>| Vector::from_fn(|i| torque[i] / robot.motor_inertia[i]);
+        let per_inertia = |torque: Vector<T, N>| Vector::from_fn(|i| torque[i] / inertia[i]);
         match self.coupling_matrix(&x.q_l) {
             None => [robot.links.factor(&x.q_l).solve(&link), per_inertia(motor)],
             Some(S) => {
@@ -133,10 +145,11 @@ impl<L: Links<f64, N>, const N: usize> Plant<L, N> {
     }
 
     /// Mass that the links feel with motors left to themselves: M_l − S M_m⁻¹ Sᵀ [kg m²].
-    fn felt_mass(&self, q_l: &Vector<f64, N>, S: &Matrix<f64, N, N>) -> Matrix<f64, N, N> {
+    fn felt_mass<T: Over<f64>>(&self, q_l: &Vector<T, N>, S: &Matrix<T, N, N>) -> Matrix<T, N, N> {
         let mass = self.robot.links.mass_matrix(q_l);
+        let inertia = self.robot.motor_inertia.map(T::constant);
         Matrix::from_fn(|k, l| {
-            let shared: f64 = (0..N).map(|i| S[(k, i)] * S[(l, i)] / self.robot.motor_inertia[i]).sum();
+            let shared = (0..N).fold(T::ZERO, |sum, i| sum + S[(k, i)] * S[(l, i)] / inertia[i]);
             mass[(k, l)] - shared
         })
     }

@@ -2,6 +2,7 @@
 
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Links, Motion};
+use flexure_core::scalar::{Over, Piecewise};
 
 use crate::plant::plant::Plant;
 
@@ -68,10 +69,10 @@ impl<L: Links<f64, N>, const N: usize> Plant<L, N> {
 
     /// What [`spring_torque`](Self::spring_torque) has beyond K ζ [N m].
     #[inline]
-    pub(crate) fn nonlinear_torque(&self, x: &Motion<f64, N>) -> Vector<f64, N> {
+    pub(crate) fn nonlinear_torque<T: Over<f64> + Piecewise>(&self, x: &Motion<T, N>) -> Vector<T, N> {
         let slack = self.slack(x);
         let zeta = x.deflection();
-        Vector::from_fn(|i| self.hardening(i, zeta[i] - slack[i]) - self.robot.stiffness[i] * slack[i])
+        Vector::from_fn(|i| self.hardening(i, zeta[i] - slack[i]) - slack[i].scale(self.robot.stiffness[i]))
     }
 
     /// Slope K + 3 k ε² of the spring torque [N m/rad], none inside the play.
@@ -112,17 +113,18 @@ impl<L: Links<f64, N>, const N: usize> Plant<L, N> {
 
     /// k ε³ of joint `i` [N m].
     #[inline]
-    fn hardening(&self, i: usize, wound: f64) -> f64 {
-        self.spring_hardening[i] * wound * wound * wound
+    fn hardening<T: Over<f64>>(&self, i: usize, wound: T) -> T {
+        wound.scale(self.spring_hardening[i]) * wound * wound
     }
 
     /// The part of the deflections that winds no spring, in rad.
     #[inline]
-    fn slack(&self, x: &Motion<f64, N>) -> Vector<f64, N> {
+    fn slack<T: Over<f64> + Piecewise>(&self, x: &Motion<T, N>) -> Vector<T, N> {
         let zeta = x.deflection();
         Vector::from_fn(|i| {
             let half = 0.5 * self.spring_gap[i];
-            zeta[i].min(half).max(-half)
+            // Where the deflection is on an edge it winds the spring: without play every deflection does.
+            Piecewise::min(T::constant(half), Piecewise::max(T::constant(-half), zeta[i]))
         })
     }
 }

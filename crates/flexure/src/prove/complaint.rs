@@ -7,15 +7,6 @@ use crate::prove::question::Proof;
 use crate::scenario::Scenario;
 
 impl Proof {
-    /// The verdict on everything that was asked, in a word.
-    pub fn word(&self, scenario: &Scenario) -> &'static str {
-        match self.complaint(scenario) {
-            None => "proved",
-            Some((_, true)) => "refuted",
-            Some((_, false)) => "undecided",
-        }
-    }
-
     /// What to say where nothing was proved, and whether that is because it is wrong.
     pub fn complaint(&self, scenario: &Scenario) -> Option<(Problem, bool)> {
         let problem =

@@ -9,4 +9,5 @@ pub mod engine;
 pub mod paper;
 pub mod question;
 pub mod sampling;
+pub mod standing;
 pub mod summary;

@@ -11,7 +11,9 @@ use crate::prove::engine::number::Number;
 use crate::prove::engine::verdict::Verdict;
 use crate::prove::engine::witness::WitnessState;
 use crate::prove::question::{Proof, inside};
-use crate::prove::sampling::Sampled;
+use crate::prove::sampling;
+use crate::prove::standing::Standing;
+use crate::sampled::Sampled;
 use crate::scenario::Scenario;
 
 /// What was proved, as numbers.
@@ -19,8 +21,13 @@ use crate::scenario::Scenario;
 pub struct ProofSummary {
     /// Name of the scenario.
     pub name: String,
-    /// `proved`, `refuted` or `undecided`: on everything that was asked. Rates stand where they were proved.
+    /// On everything that was asked, as [`Standing::words`] has it. Rates stand where they were proved of the law in continuous
+    /// time.
     pub verdict: &'static str,
+    /// What the loop in the file has that the proof leaves out: options of the plant, imperfections, estimators, guard.
+    pub left_out: Vec<&'static str>,
+    /// Whether the loop is stable that holds its torque for a control period; none for laws in continuous time.
+    pub sampled: Option<Sampled>,
     /// Proved contraction rate [1/s].
     pub contraction_rate: Option<f64>,
     /// Proved convergence rate [1/s].
@@ -40,7 +47,7 @@ pub struct ProofSummary {
     /// True where the mass matrix was proved to be positive definite at every configuration.
     pub mass_matrix_positive_definite: Option<bool>,
     /// The links' momentum block, sampled over all configurations.
-    pub sampled: Sampled,
+    pub sigma_l_sampled: sampling::Sampled,
     /// Proved rate of the links' momentum block over the sampled one.
     pub tightness: Option<f64>,
     /// Where the scenario starts; none where W is not defined or jumps.
@@ -185,7 +192,7 @@ impl BlockSummary {
 
 impl ProofSummary {
     /// The summary of a proof of `scenario`.
-    pub fn new(scenario: &Scenario, proof: &Proof) -> Self {
+    pub fn new(scenario: &Scenario, proof: &Proof, sampled: Option<Sampled>) -> Self {
         let certificate = proof.verdict.proved();
         let sigma_l = |c: &Certificate| BlockSummary::of(&c.blocks, |block| &block.contraction).sigma_l;
         let (witness, undecided) = match &proof.verdict {
@@ -205,7 +212,8 @@ impl ProofSummary {
         };
         Self {
             name: scenario.name.clone(),
-            verdict: proof.word(scenario),
+            verdict: Standing::of(scenario, proof, sampled.as_ref()).words(),
+            left_out: scenario.conditions(),
             contraction_rate: certificate.map(|c| c.contraction_rate.approximate()),
             convergence_rate: certificate.map(|c| c.convergence_rate.approximate()),
             paper_rate: proof.paper_rate,
@@ -220,7 +228,8 @@ impl ProofSummary {
                     .collect()
             }),
             mass_matrix_positive_definite: certificate.map(|_| true),
-            sampled: proof.sampled.clone(),
+            sigma_l_sampled: proof.sampled.clone(),
+            sampled,
             tightness: certificate.map(|c| sigma_l(c) / proof.sampled.rate),
             start: proof
                 .start

@@ -125,7 +125,7 @@ const COLUMNS: [(&str, &str); 11] = [
     ("max |u_m|", units::TORQUE.raised),
     ("rms u_m", units::TORQUE.raised),
     ("saturated", "%"),
-    ("rate sampled", units::RATE.raised),
+    ("pointwise rate", units::RATE.raised),
     ("rate certified", units::RATE.raised),
     ("energy drift", "–"),
     ("steps", "–"),
@@ -141,7 +141,7 @@ fn numbers(summary: &Summary) -> [String; COLUMNS.len()] {
         engineering(summary.max_abs_u_m),
         engineering(summary.rms_u_m),
         engineering(100.0 * summary.saturated_fraction),
-        engineering(summary.rate_measured),
+        engineering(summary.rate_pointwise),
         optional(summary.rate_certified),
         engineering(summary.energy_drift),
         summary.steps.to_string(),
@@ -175,8 +175,8 @@ fn summary_table(runs: &[RunReport]) -> Markup {
         }
         p.note {
             "Settling time: after it every " (symbols("|e_l|")) " stays below 1 mrad; — if that never happens. "
-            "Rate sampled: the smallest contraction rate evaluated along the run, a sample and not a proof. "
-            "Rate certified: proved, on the region that `flexure certify` takes by itself; — where nothing was proved. "
+            "Pointwise rate: the smallest contraction rate of the law in continuous time at the states of the run, evaluated and not proved. "
+            "Rate certified: proved, on the region that `flexure certify` takes by itself; — where nothing was proved of this loop. "
             "Energy drift: the energy balance's residual, relative to the energy that went through the robot."
         }
     }

@@ -13,14 +13,25 @@ use crate::units::{self, Unit};
 /// What was proved, refuted or left undecided, at most 100 columns wide.
 pub fn proof_table(summary: &ProofSummary) -> String {
     let mut text = format!("{}: {}\n", summary.name, summary.verdict);
+    if let Some(left_out) = left_out(summary) {
+        // Writing to a text cannot fail.
+        let _ = writeln!(text, "the proof leaves out what the loop in the file has: {left_out}");
+    }
+    if let Some(sampled) = &summary.sampled {
+        let _ = writeln!(text, "{}", sampled.line());
+    }
     if let (Some(contraction), Some(convergence)) = (summary.blocks, summary.convergence_blocks) {
         text += &rates(summary, contraction, convergence);
     }
     for line in lines(summary) {
-        // Writing to a text cannot fail.
         let _ = write!(text, "\n{line}");
     }
     text
+}
+
+/// What a proof leaves out, in words.
+fn left_out(summary: &ProofSummary) -> Option<String> {
+    (!summary.left_out.is_empty()).then(|| summary.left_out.join(", ").replace('_', " "))
 }
 
 /// What was proved of several scenarios, a row each.
@@ -96,7 +107,7 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
         lines.push(format!(
             "tightness    σ_l: {} % of {} 1/s, the slowest configuration of a dense sample",
             short(100.0 * tightness, 4),
-            significant(summary.sampled.rate, 6)
+            significant(summary.sigma_l_sampled.rate, 6)
         ));
     }
     for side in [LoopSide::Link, LoopSide::Motor] {

@@ -8,10 +8,12 @@ use crate::files::Problems;
 use crate::files::number::engineering;
 use crate::progress::{PartProgress, Progress};
 use crate::prove::question::{Direct, Proof, Question, Region, certified_rate, prove};
+use crate::prove::standing::is_about;
 use crate::prove::summary::ProofSummary;
 use crate::report::{
     CertificateReport, FigureOptions, RunReport, RunsReport, Scene, assumptions, comparison, four_panel,
 };
+use crate::sampled::{Sampled, probe};
 use crate::scenario::{Hold, Scenario, load_scenario};
 use crate::simulate::{Run, Summary, run};
 
@@ -34,6 +36,8 @@ pub struct Experiment {
     pub scenario: Scenario,
     /// Its trace and summary.
     pub run: Run,
+    /// Whether the loop is stable that holds its torque for a control period; none for laws in continuous time.
+    pub sampled: Option<Sampled>,
     /// The four-panel figure.
     pub figure: Scene,
 }
@@ -45,12 +49,15 @@ impl Experiment {
     /// As [`run`].
     pub fn new(scenario: Scenario, progress: Progress<'_>) -> Result<Self, Problems> {
         let mut run = run(&scenario, progress)?;
-        run.summary.rate_certified = certified_rate(&scenario)?;
+        let sampled = probe(&scenario)?;
+        if is_about(&scenario, sampled.as_ref()) {
+            run.summary.rate_certified = certified_rate(&scenario)?;
+        }
         let ended = run.divergence.map(|divergence| format!("; diverged at t = {:.3} s", divergence.time));
         let subtitle = describe(&scenario) + &ended.unwrap_or_default();
         let options = FigureOptions { title: scenario.name.clone(), subtitle };
         let figure = four_panel(&run.trace, &options);
-        Ok(Self { scenario, run, figure })
+        Ok(Self { scenario, run, sampled, figure })
     }
 }
 
@@ -74,6 +81,15 @@ pub struct Certified {
     pub scenario: Scenario,
     /// Rates, region and certificate.
     pub proof: Proof,
+    /// Its sampled loop.
+    pub sampled: Option<Sampled>,
+}
+
+impl Certified {
+    /// The proof at a glance.
+    pub fn summary(&self) -> ProofSummary {
+        ProofSummary::new(&self.scenario, &self.proof, self.sampled.clone())
+    }
 }
 
 /// Proves the rates of the paper's experiments.
@@ -86,7 +102,8 @@ pub fn certificates() -> Result<Vec<Certified>, Problems> {
         .map(|name| {
             let scenario = load_scenario(name)?;
             let proof = prove(&scenario, &question(&scenario))?;
-            Ok(Certified { scenario, proof })
+            let sampled = probe(&scenario)?;
+            Ok(Certified { scenario, proof, sampled })
         })
         .collect()
 }
@@ -156,9 +173,9 @@ const INTRODUCTION: &str = "The experiments of Reyes-Báez, van der Schaft, Jaya
     with a reference that joins the sine smoothly from rest.";
 
 fn certificate_report(certified: &Certified) -> CertificateReport {
-    let Certified { scenario, proof } = certified;
+    let scenario = &certified.scenario;
     CertificateReport {
-        summary: ProofSummary::new(scenario, proof),
+        summary: certified.summary(),
         phi: scenario.controller.phi().unwrap_or_default().to_owned(),
         file: certificate_name(&scenario.name),
     }

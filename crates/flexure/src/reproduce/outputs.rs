@@ -26,7 +26,7 @@ pub fn write_experiment(folder: &Path, experiment: &Experiment) -> Result<Vec<Pa
 /// If one cannot be written.
 pub fn write_certificates(folder: &Path, certificates: &[Certified]) -> Result<Vec<PathBuf>, WriteError> {
     let mut paths = Vec::new();
-    for Certified { scenario, proof } in certificates {
+    for Certified { scenario, proof, .. } in certificates {
         if let Some(certificate) = proof.verdict.proved() {
             let path = folder.join(certificate_name(&scenario.name));
             write_certificate(&path, certificate)?;

@@ -95,7 +95,7 @@ pub(crate) fn controller<L, R, F, const N: usize>(
     reference: R,
     law: F,
     x: &Motion<f64, N>,
-) -> Controller<L, R, F, AnyEstimator<N>, N>
+) -> Controller<L, R, F, AnyEstimator<f64, N>, N>
 where
     L: Links<f64, N>,
     R: Reference<f64, N>,

@@ -43,7 +43,7 @@ mod tests;
 
 /// A loop whose size is known to the compiler.
 struct Held<L, const N: usize> {
-    simulation: Simulation<L, AnyReference<f64, N>, AnyLaw<f64, N>, AnyEstimator<N>, N>,
+    simulation: Simulation<L, AnyReference<f64, N>, AnyLaw<f64, N>, AnyEstimator<f64, N>, N>,
     scenario: Scenario,
     columns: Columns,
     signals: Vec<Signal>,
@@ -70,7 +70,7 @@ fn simulation<L: Links<f64, N> + Clone, const N: usize>(
     plant: Plant<L, N>,
     law: AnyLaw<f64, N>,
     reference: AnyReference<f64, N>,
-) -> Simulation<L, AnyReference<f64, N>, AnyLaw<f64, N>, AnyEstimator<N>, N> {
+) -> Simulation<L, AnyReference<f64, N>, AnyLaw<f64, N>, AnyEstimator<f64, N>, N> {
     let start = assembly::initial(scenario);
     let controller = assembly::controller(scenario, model, reference, law, &start);
     Simulation::new(assembly::timing(scenario), plant, start, assembly::pushes(scenario), controller)

@@ -1,6 +1,6 @@
 //! The closed loop in time: a sampled controller on a plant that is integrated between samples; runs with trace and summary.
 
-mod assembly;
+pub(crate) mod assembly;
 mod controller;
 mod figures;
 mod gauss;

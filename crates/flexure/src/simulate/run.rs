@@ -130,7 +130,7 @@ fn summary(
         saturated_fraction: figures.limited_fraction(),
         suspended_fraction: figures.suspended_fraction(),
         stops: figures.stops,
-        rate_measured: if rate.is_finite() { rate } else { f64::NAN },
+        rate_pointwise: if rate.is_finite() { rate } else { f64::NAN },
         rate_certified: None,
         energy_drift: held.energy_drift(),
         steps: held.steps(),

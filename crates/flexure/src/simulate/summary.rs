@@ -47,10 +47,10 @@ pub struct Summary {
     pub suspended_fraction: f64,
     /// Times that the guard stopped the robot.
     pub stops: u32,
-    /// Smallest contraction rate evaluated along the run [1/s]: a sample, not a proof. NaN (null in JSON) for laws that
-    /// have none.
-    pub rate_measured: f64,
-    /// Proved contraction rate [1/s]; none until it is certified.
+    /// Smallest contraction rate of the law in continuous time at the states that the run went through [1/s]: evaluated, neither
+    /// measured from a decay nor proved. NaN (null in JSON) for laws that have none.
+    pub rate_pointwise: f64,
+    /// Proved contraction rate [1/s]; none until it is certified, and for a loop that the certificate is not about.
     pub rate_certified: Option<f64>,
     /// |H(T) − H(0) − supplied + dissipated| relative to the energy that went through the robot.
     pub energy_drift: f64,

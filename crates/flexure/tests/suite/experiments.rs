@@ -89,7 +89,7 @@ fn every_built_in_scenario_runs_to_its_end_and_settles() {
         let run = simulate(|_| (), name);
         assert!(run.divergence.is_none(), "{name}: {:?}", run.divergence);
         assert!(run.summary.settling_time.is_some(), "{name}: {:?}", run.summary);
-        assert!(run.summary.rate_measured > 0.0, "{name}: {:?}", run.summary);
+        assert!(run.summary.rate_pointwise > 0.0, "{name}: {:?}", run.summary);
     }
 }
 

@@ -35,6 +35,7 @@ mod real_loop;
 mod registry;
 mod report;
 mod rough_plant;
+mod sampled;
 mod samples;
 mod suites;
 mod urdf;

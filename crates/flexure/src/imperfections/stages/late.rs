@@ -17,18 +17,20 @@ pub(crate) struct Late {
 /// A part of a control period that is not told from none.
 const NEGLIGIBLE: f64 = 1e-9;
 
+/// How many torques are on their way at the end of a control instant that are `delay` \[s\] late, in a loop with control periods of
+/// `period` \[s\]; and how long into a period the next of them acts \[s\], 0 for from its beginning.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "delays are shorter than runs")]
+pub(crate) fn split(delay: f64, period: f64) -> (usize, f64) {
+    let whole = (delay / period + NEGLIGIBLE).floor();
+    let offset = delay - whole * period;
+    let offset = if offset > NEGLIGIBLE * period { offset } else { 0.0 };
+    (whole as usize + usize::from(offset > 0.0), offset)
+}
+
 impl Late {
     /// By `delay` ≥ 0 in a loop with control periods of `period` \[s\]. Until it is [started](Self::start), no torque acts.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "delays are shorter than runs"
-    )]
     pub fn new(joints: usize, delay: f64, period: f64) -> Self {
-        let whole = (delay / period + NEGLIGIBLE).floor();
-        let offset = delay - whole * period;
-        let offset = if offset > NEGLIGIBLE * period { offset } else { 0.0 };
-        let waiting = whole as usize + usize::from(offset > 0.0);
+        let (waiting, offset) = split(delay, period);
         Self { joints, offset, ring: vec![0.0; waiting * joints], oldest: 0 }
     }
 

@@ -14,6 +14,7 @@ mod sensors;
 
 pub use actuator::{Actuating, Actuator};
 pub(crate) use held::Held;
+pub(crate) use late::split;
 pub use pieces::Pieces;
 pub use random::Random;
 pub use sensors::{Measured, Readings, Sensing, Sensors};

@@ -118,7 +118,7 @@ macro_rules! closed_forms {
 
         impl<C: Copy> Links<C> {
             /// The same links with every number through `f`.
-            fn map<D>(&self, f: impl Fn(C) -> D) -> Links<D> {
+            pub(crate) fn map<D>(&self, f: impl Fn(C) -> D) -> Links<D> {
                 match self {
                     $(Self::$kind(data) => Links::$kind(data.map(f)),)+
                     Self::Tree(bodies) => Links::Tree(bodies.iter().map(|body| body.map(&f)).collect()),

@@ -16,7 +16,7 @@ use super::{PERIOD, motion, registered, torque};
 /// Everything between motion and torque that remembers.
 struct Devices {
     sensors: Sensors,
-    estimator: Option<AnyEstimator<2>>,
+    estimator: Option<AnyEstimator<f64, 2>>,
     actuator: Actuator,
 }
 

@@ -62,7 +62,7 @@ pub fn summary(name: &str) -> Summary {
         saturated_fraction: 0.0,
         suspended_fraction: 0.0,
         stops: 0,
-        rate_measured: 9.95,
+        rate_pointwise: 9.95,
         rate_certified: None,
         energy_drift: 3.2e-9,
         steps: 10_000,

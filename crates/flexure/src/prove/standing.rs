@@ -1,0 +1,53 @@
+//! What a proof is worth for the loop in the file.
+
+use crate::files::Problem;
+use crate::prove::question::Proof;
+use crate::sampled::Sampled;
+use crate::scenario::Scenario;
+
+/// What is to be said of a scenario after a proof about its law in continuous time.
+#[derive(Clone, Debug)]
+pub enum Standing<'a> {
+    /// Everything that was asked is proved, and nothing is left out but what the file's assumptions list.
+    Proved,
+    /// It is proved of the ideal loop; the one in the file has these too.
+    Ideal(Vec<&'static str>),
+    /// It is proved in continuous time, but the loop that holds its torque for a control period is unstable.
+    Unstable(&'a Sampled),
+    /// It is wrong.
+    Refuted(Problem),
+    /// It was not found.
+    Undecided(Problem),
+}
+
+impl<'a> Standing<'a> {
+    /// Of `proof` for `scenario`, whose sampled loop is `sampled`.
+    pub fn of(scenario: &Scenario, proof: &Proof, sampled: Option<&'a Sampled>) -> Self {
+        match (proof.complaint(scenario), sampled.filter(|sampled| !sampled.stable)) {
+            (Some((problem, true)), _) => Self::Refuted(problem),
+            (Some((problem, false)), _) => Self::Undecided(problem),
+            (None, Some(sampled)) => Self::Unstable(sampled),
+            (None, None) => match scenario.conditions() {
+                nothing if nothing.is_empty() => Self::Proved,
+                conditions => Self::Ideal(conditions),
+            },
+        }
+    }
+
+    /// In a few words: the `verdict` of `certify --json`.
+    pub fn words(&self) -> &'static str {
+        match self {
+            Self::Proved => "proved",
+            Self::Ideal(_) => "proved (ideal loop)",
+            Self::Unstable(_) => "proved for continuous time; unstable as sampled",
+            Self::Refuted(_) => "refuted",
+            Self::Undecided(_) => "undecided",
+        }
+    }
+}
+
+/// Whether a certificate of the law in continuous time is about the loop of `scenario`: nothing stands between them, and the
+/// sampled loop is stable.
+pub fn is_about(scenario: &Scenario, sampled: Option<&Sampled>) -> bool {
+    scenario.conditions().is_empty() && sampled.is_none_or(|sampled| sampled.stable)
+}

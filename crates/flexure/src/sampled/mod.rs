@@ -1,0 +1,194 @@
+//! The sampled loop of a scenario: is the loop stable that holds its torque for a control period?
+//!
+//! A controller acts at instants; between them its torque stays, comes late, and is computed from what sensors and estimators
+//! made of the motion. The exact linearisation of all that from one instant to the next has a spectral radius ρ: small errors grow or
+//! shrink by it, control period for control period. It is looked at where the robot starts, and along the reference. A loop
+//! with ρ ≥ 1 is of no use, whatever is proved of the same law in continuous time; ρ < 1 is necessary, not sufficient: limits,
+//! noise and large errors are not small signals.
+//!
+//! The parts are the loop's own code on numbers that carry a derivative along ([`Tangent`](crate::core::scalar::Tangent)), the plant
+//! between two instants is the exponential of its Jacobian.
+
+mod advice;
+mod devices;
+mod exchange;
+mod lifted;
+mod map;
+mod words;
+
+use serde::Serialize;
+
+use crate::files::Problems;
+use crate::laws::Controller;
+use crate::linalg::{Dense, spectral_radius};
+use crate::robot::Arm;
+use crate::sampled::devices::Devices;
+use crate::sampled::lifted::{Lifted, Nominal, lifted};
+use crate::sampled::map::Around;
+use crate::scenario::{Hold, Scenario};
+
+pub use advice::{Advice, Move};
+
+/// Places along the reference that are looked at, the first at t = 0.
+const PLACES: u32 = 25;
+
+/// What small errors do in a sampled loop, where that is worst.
+#[derive(Clone, Debug, Serialize)]
+pub struct Sampled {
+    /// Largest spectral radius of the map from one control instant to the next; NaN (null in JSON) where the law has no slope.
+    pub spectral_radius: f64,
+    /// When, in s.
+    pub time: f64,
+    /// Where: at the initial motion, or on the reference.
+    pub place: Place,
+    /// Whether small errors shrink everywhere that was looked at.
+    pub stable: bool,
+    /// Rate at which they do at least [1/s]; negative where they grow.
+    pub rate: f64,
+    /// The joint that moves most in the mode of this radius, where it is not stable.
+    pub joint: Option<String>,
+    /// The gain to move, where it is not stable, as a key of the scenario: `controller.motor.metric`.
+    pub gain: Option<String>,
+    /// Which way, how far, and what else helps, where it is not stable.
+    #[serde(flatten)]
+    pub advice: Option<Advice>,
+}
+
+/// Where a loop is looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Place {
+    /// At the initial motion of the scenario.
+    Start,
+    /// Exactly on the reference.
+    Reference,
+}
+
+/// Looks at the sampled loop of `scenario`; none if its law acts in continuous time.
+///
+/// # Errors
+/// As [`Scenario::open`].
+pub fn probe(scenario: &Scenario) -> Result<Option<Sampled>, Problems> {
+    if scenario.hold == Hold::Continuous {
+        return Ok(None);
+    }
+    let probe = Probe::new(scenario)?;
+    let (radius, worst) = probe.worst(&scenario.controller);
+    let stable = radius < 1.0;
+    let advice = if stable { None } else { advice::advice(&probe, worst)? };
+    Ok(Some(Sampled {
+        spectral_radius: radius,
+        time: probe.spots[worst].time,
+        place: probe.spots[worst].place,
+        stable,
+        rate: -radius.ln() / scenario.control_period,
+        joint: advice.as_ref().map(|advice| advice.joint_name.clone()),
+        gain: advice.as_ref().map(|advice| advice.key.clone()),
+        advice,
+    }))
+}
+
+/// The spectral radius at every place that [`probe`] looks at: time in s, place and radius; nothing for laws in continuous time.
+///
+/// # Errors
+/// As [`Scenario::open`].
+pub fn radii(scenario: &Scenario) -> Result<Vec<(f64, Place, f64)>, Problems> {
+    if scenario.hold == Hold::Continuous {
+        return Ok(Vec::new());
+    }
+    let probe = Probe::new(scenario)?;
+    let law = &scenario.controller;
+    Ok(probe.spots.iter().map(|spot| (spot.time, spot.place, probe.radius(spot, law))).collect())
+}
+
+/// Everything about a scenario that its gains do not change.
+struct Probe<'a> {
+    scenario: &'a Scenario,
+    lifted: Box<dyn Lifted>,
+    arm: Box<dyn Arm>,
+    devices: Devices,
+    spots: Vec<Spot>,
+}
+
+/// A time and place, and the loop there.
+struct Spot {
+    time: f64,
+    place: Place,
+    around: Around,
+}
+
+impl<'a> Probe<'a> {
+    fn new(scenario: &'a Scenario) -> Result<Self, Problems> {
+        let (lifted, arm) = (lifted(scenario)?, scenario.robot.arm()?);
+        let devices = Devices::of(scenario);
+        let mut probe = Self { scenario, lifted, arm, devices, spots: Vec::new() };
+        let period = scenario.control_period;
+        let on_reference = (0..PLACES).map(|i| f64::from(i) / f64::from(PLACES - 1) * scenario.duration);
+        let spots: Vec<_> = [(0.0, Place::Start)]
+            .into_iter()
+            .chain(on_reference.map(|time| (time, Place::Reference)))
+            .map(|(time, place)| Spot { time, place, around: probe.around(time, place, period) })
+            .collect();
+        probe.spots = spots;
+        Ok(probe)
+    }
+
+    /// The loop at a time and place, with control periods of `period` in s.
+    fn around(&self, time: f64, place: Place, period: f64) -> Around {
+        let at = |t: f64| match place {
+            Place::Start => self.start(),
+            Place::Reference => self.on_reference(t),
+        };
+        Around::new(&*self.lifted, &self.devices, period, &at((time - period).max(0.0)), &|after| {
+            at(time + after)
+        })
+    }
+
+    fn start(&self) -> Nominal {
+        let initial = &self.scenario.initial;
+        let motion = [&initial.q_l, &initial.q_m, &initial.dq_l, &initial.dq_m]
+            .into_iter()
+            .flatten()
+            .copied()
+            .collect();
+        let motion: Vec<f64> = motion;
+        let u_m = self.lifted.torque(&self.scenario.controller, 0.0, &motion);
+        Nominal { motion, u_m }
+    }
+
+    /// Links on the reference, motors where that takes them.
+    fn on_reference(&self, t: f64) -> Nominal {
+        let q_l = self.lifted.reference(t);
+        let (mut q_m, mut u_m) = (vec![[0.0; 4]; q_l.len()], vec![[0.0; 2]; q_l.len()]);
+        self.arm.feed_forward(&q_l, &mut q_m, &mut u_m).expect("a series a joint");
+        let links = |k: usize| q_l.iter().map(move |q| q[k]);
+        let motors = |k: usize| q_m.iter().map(move |q| q[k]);
+        let motion = links(0).chain(motors(0)).chain(links(1)).chain(motors(1)).collect();
+        Nominal { motion, u_m: u_m.iter().map(|u| u[0]).collect() }
+    }
+
+    /// Spectral radius of a spot with `law`, per control period.
+    fn radius(&self, spot: &Spot, law: &Controller) -> f64 {
+        self.radius_of(spot, law, &spot.around)
+    }
+
+    fn radius_of(&self, spot: &Spot, law: &Controller, around: &Around) -> f64 {
+        let radius = spectral_radius(&self.cycle(spot, law, around));
+        radius.powf(1.0 / f64::from(self.devices.cycle))
+    }
+
+    /// The map over a cycle.
+    fn cycle(&self, spot: &Spot, law: &Controller, around: &Around) -> Dense<f64> {
+        let motion = match spot.place {
+            Place::Start => self.start().motion,
+            Place::Reference => self.on_reference(spot.time).motion,
+        };
+        around.cycle(&self.lifted.law(law, spot.time, &motion))
+    }
+
+    /// The largest spectral radius with `law` and where it is; what is no number is larger than any.
+    fn worst(&self, law: &Controller) -> (f64, usize) {
+        let radii = self.spots.iter().map(|spot| self.radius(spot, law)).zip(0..);
+        radii.max_by(|(x, _), (y, _)| x.abs().total_cmp(&y.abs())).expect("there are spots")
+    }
+}

@@ -1,0 +1,69 @@
+//! What is said of a sampled loop.
+
+use crate::files::number::short;
+use crate::files::{Problem, quantity::shortest};
+use crate::sampled::advice::{Advice, Move};
+use crate::sampled::{Place, Sampled};
+use crate::scenario::Scenario;
+
+impl Sampled {
+    /// In one line.
+    pub fn line(&self) -> String {
+        let at = match self.place {
+            Place::Start => "at the start".to_owned(),
+            Place::Reference => format!("on the reference at t = {} s", short(self.time, 4)),
+        };
+        let radius = short(self.spectral_radius, 4);
+        match (self.stable, &self.joint) {
+            (true, _) => {
+                format!(
+                    "sampled loop: spectral radius {radius} {at}; small errors shrink by {} 1/s",
+                    short(self.rate, 4)
+                )
+            }
+            (false, None) => format!("sampled loop: spectral radius {radius} {at}: unstable"),
+            (false, Some(joint)) => {
+                format!("sampled loop: spectral radius {radius} {at}: unstable, in joint {joint} most")
+            }
+        }
+    }
+
+    /// What makes it stable, where it is not.
+    pub fn help(&self) -> Option<String> {
+        let (advice, gain) = (self.advice.as_ref()?, self.gain.as_ref()?);
+        let Advice { direction, factor, starting_gains, period, exchange, .. } = advice;
+        let mut ways = vec![match (direction, factor) {
+            (Move::Raise, Some(factor)) => {
+                format!("raise {gain}: the loop is stable with {factor} times as much")
+            }
+            (Move::Lower, Some(factor)) => {
+                format!("lower {gain}: the loop is stable with 1/{} of it", 1.0 / factor)
+            }
+            (Move::Raise, None) => format!("raise {gain} first; alone it does not suffice"),
+            (Move::Lower, None) => format!("lower {gain} first; alone it does not suffice"),
+        }];
+        if *starting_gains < 1.0 {
+            ways.push(format!(
+                "the starting gains of this law have a spectral radius of {}: `flexure compare SCENARIO --budget 1 --json` shows \
+                 them",
+                short(*starting_gains, 4)
+            ));
+        }
+        if let Some(period) = period {
+            ways.push(format!("control_period = {} is short enough", shortest(*period)));
+        }
+        let why = exchange
+            .as_ref()
+            .map_or(String::new(), |exchange| format!("{exchange} is too fast for the control period; "));
+        Some(format!("{why}{}", ways.join("; or ")))
+    }
+
+    /// The problem that it is, if it is not stable.
+    pub fn problem(&self, scenario: &Scenario) -> Option<Problem> {
+        let help = self.help().unwrap_or_else(|| {
+            "the slope of the law is no number there: check gains and reference".to_owned()
+        });
+        let message = format!("{}: {}", scenario.name, self.line());
+        (!self.stable).then(|| scenario.places.problem("control_period", "sampled", message, help))
+    }
+}

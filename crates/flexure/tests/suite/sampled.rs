@@ -1,0 +1,153 @@
+//! The spectral radius of sampled loops against the period map of the loop that runs, differentiated numerically.
+
+use flexure::Scenario;
+use flexure::linalg::{Dense, spectral_radius};
+use flexure::sampled::{Place, probe, radii};
+use flexure::scenario::scenario_from_text;
+
+use crate::common::root;
+
+fn read(text: &str) -> Scenario {
+    scenario_from_text("test.toml", text, &root().join("scenarios")).unwrap()
+}
+
+/// A two-link arm that stands on its reference, or follows it, with what `more` adds.
+fn two_link(period: f64, reference: &str, gains: &str, more: &str) -> Scenario {
+    read(&format!(
+        "robot = \"planar-2r\"\nduration = 1.2\ncontrol_period = {period}\n{more}\n[reference]\n{reference}\n\
+         [controller]\n{gains}"
+    ))
+}
+
+const STANDING: &str = "kind = \"sine\"\namplitude = 0.0\nfrequency = 1.0";
+const MOVING: &str =
+    "kind = \"sine\"\namplitude = 0.6\nfrequency = [2.0, 3.0]\n[reference.smooth_start]\nduration = 0.5";
+const TANH: &str = "kind = \"vcbc\"\nphi = \"tanh\"\n[controller.link]\nmetric = 9.0\nshaping = 8.0\ndamping = 3.0\n\
+                    [controller.motor]\nmetric = 200.0\nshaping = 10.0\ndamping = 6.0";
+
+/// Parts of the state of a loop that act on what happens next: motion, torques, what devices remember.
+fn acts(name: &str) -> bool {
+    let inner = ["motion.", "instant.u_m.", "controller."];
+    let books = ["rejoined", "disturbance_observer.started", "random"];
+    inner.iter().any(|part| name.starts_with(part)) && !books.iter().any(|part| name.contains(part))
+}
+
+/// Spectral radius, per control period, of the map of the loop over `cycle` periods after `time`, by differences of fourth order
+/// of the states that [`Loop::state`](flexure::simulate::Loop::state) saves.
+fn measured(scenario: &Scenario, time: f64, cycle: u32) -> f64 {
+    let mut held = scenario.open().unwrap();
+    let mut k = 0.0;
+    while k * scenario.control_period <= time + 1e-9 {
+        held.step().unwrap();
+        k += 1.0;
+    }
+    let (state, names) = (held.state(), held.state_names());
+    let moving: Vec<_> = (0..state.len()).filter(|&i| acts(&names[i].name)).collect();
+    let mut after = |i: usize, change: f64| -> Vec<f64> {
+        let mut moved = state.clone();
+        moved[i] += change;
+        held.restore(&moved).unwrap();
+        for _ in 0..cycle {
+            held.step().unwrap();
+        }
+        let next = held.state();
+        moving.iter().map(|&i| next[i]).collect()
+    };
+    let columns: Vec<Vec<f64>> = moving
+        .iter()
+        .map(|&i| {
+            let unit = names[i].unit;
+            if unit.is_empty() {
+                return vec![0.0; moving.len()]; // flags and counts
+            }
+            // The law is stiff, the springs are stiff: torques move by much more than positions.
+            let h = if unit.starts_with("N m") { 1e-2 } else { 1e-4 };
+            let [far, near] = [2.0 * h, h].map(|h| (after(i, h), after(i, -h)));
+            let slope = |(up, down): &(Vec<f64>, Vec<f64>), j: usize, h: f64| (up[j] - down[j]) / (2.0 * h);
+            (0..moving.len()).map(|j| (4.0 * slope(&near, j, h) - slope(&far, j, 2.0 * h)) / 3.0).collect()
+        })
+        .collect();
+    spectral_radius(&Dense::from_columns(&columns)).powf(1.0 / f64::from(cycle))
+}
+
+/// The integrator's tolerance is 1e-10 of the speeds; differences over 1e-4 make 1e-6 of that.
+const TOLERANCE: f64 = 1e-6;
+
+fn agrees(scenario: &Scenario, cycle: u32) {
+    let found = radii(scenario).unwrap();
+    for &(time, place, radius) in found.iter().filter(|(_, place, _)| *place == Place::Reference).step_by(8) {
+        let expected = measured(scenario, time, cycle);
+        assert!(
+            (radius - expected).abs() <= TOLERANCE * expected,
+            "at {time} s {place:?}: {radius} here, {expected} measured"
+        );
+    }
+}
+
+#[test]
+fn the_ideal_sampled_loop() {
+    agrees(&two_link(0.001, STANDING, TANH, ""), 1);
+    agrees(&two_link(0.01, STANDING, TANH, ""), 1);
+    agrees(&two_link(0.002, MOVING, TANH, ""), 1);
+}
+
+#[test]
+fn delays_slow_sensors_and_missed_instants() {
+    let of = |kind: &str| format!("[[imperfection]]\nkind = {kind}");
+    for (more, cycle) in [
+        (of("\"delay\"\ncomputation = 0.0004"), 1),
+        (of("\"delay\"\ncomputation = 0.002"), 1),
+        (of("\"delay\"\ncomputation = 0.0031"), 1),
+        (of("\"sampling\"\nperiod = 0.006"), 6),
+        (of("\"sampling\"\nside = \"link\"\nperiod = 0.004"), 4),
+        (of("\"deadline\"\nevery = 5"), 5),
+        (of("\"torque-gain\"\nfactor = [0.8, 1.3]"), 1),
+        (of("\"model-error\"\nmass = 1.2"), 1),
+    ] {
+        agrees(&two_link(0.001, STANDING, TANH, &more), cycle);
+    }
+}
+
+#[test]
+fn filters_and_observers() {
+    let filter = "[[imperfection]]\nkind = \"velocity-filter\"\norder = 2\ncutoff = 60.0\ndamping = 0.9\n";
+    let first = "[[imperfection]]\nkind = \"velocity-filter\"\norder = 1\ncutoff = 80.0\n";
+    let both = "[estimator]\nkind = \"observer\"\nbandwidth = 150.0\n";
+    let motor = "[estimator]\nkind = \"observer\"\nencoders = \"motor\"\nbandwidth = 60.0\n";
+    let observer = "[disturbance_observer]\nbandwidth = 20.0\ncompensate = true\n";
+    let late = "[[imperfection]]\nkind = \"delay\"\ncomputation = 0.0004\n";
+    for more in [
+        filter.into(),
+        first.into(),
+        both.into(),
+        motor.into(),
+        observer.into(),
+        format!("{both}{observer}{late}"),
+    ] {
+        agrees(&two_link(0.001, STANDING, TANH, &more), 1);
+    }
+}
+
+/// Every law, from its starting gains.
+#[test]
+fn every_law() {
+    for law in flexure::laws::CONTROLLERS {
+        let mut scenario = two_link(0.002, STANDING, TANH, "");
+        scenario.controller = flexure::laws::Controller::default_for(law.name, &scenario.robot).unwrap();
+        agrees(&scenario, 1);
+    }
+}
+
+/// What is proved of a law in continuous time says nothing of a slow computer: the paper's gains bear 1 ms, not 2 ms.
+#[test]
+fn a_slow_loop_is_found_out() {
+    let at = |period: f64| {
+        let mut scenario = Scenario::load("two-link-linear-smooth").unwrap();
+        scenario.control_period = period;
+        probe(&scenario).unwrap().unwrap()
+    };
+    assert!(at(1e-3).stable);
+    let slow = at(5e-3);
+    assert!(!slow.stable && slow.spectral_radius > 1.0 && slow.rate < 0.0);
+    assert!(slow.joint.is_some() && slow.gain.is_some());
+}
