@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::command::Place;
+use crate::command::{Place, SCENARIO};
 
 /// theory.md, section 5: the paper's gains on |q̃_i| ≤ 3.
 #[test]
@@ -37,6 +37,46 @@ fn every_scenario_is_certified() {
         };
         assert_eq!(certified("a.json"), certified("b.json"), "{name}");
     }
+}
+
+/// What is printed is true of the loop in the file: a proof about the law in continuous time says so where that is another loop.
+#[test]
+fn proofs_of_another_loop_say_so() {
+    let folder = Place::new();
+    let ideal = folder.run(&["certify", "two-link-linear-smooth", "--strict", "--json"]).done().json();
+    assert_eq!(ideal["verdict"], "proved");
+    assert_eq!(ideal["left_out"], Value::Array(Vec::new()));
+    assert_eq!(ideal["sampled"]["stable"], true);
+
+    let real = folder.run(&["certify", "two-link-hardware", "--json"]).done().json();
+    assert_eq!(real["verdict"], "proved (ideal loop)");
+    let left_out: Vec<_> =
+        real["left_out"].as_array().unwrap().iter().map(|part| part.as_str().unwrap()).collect();
+    assert!(
+        ["encoder", "velocity-filter", "saturation", "guard"].iter().all(|part| left_out.contains(part)),
+        "{left_out:?}"
+    );
+    let strict = folder.run(&["certify", "two-link-hardware", "--strict"]);
+    assert_eq!(strict.code, Some(1), "{strict:?}");
+    strict.said(&["the proof leaves out encoder"]);
+    assert!(strict.stdout.contains("proved (ideal loop)"), "{}", strict.stdout);
+    let run = folder.run(&["run", "two-link-hardware", "--json"]).done().json();
+    assert_eq!(run["rate_certified"], Value::Null);
+    assert_eq!(run["sampled"]["stable"], true);
+
+    // The linear law of the paper, proved everywhere, held for 5 ms.
+    folder.write("slow.toml", SCENARIO.replace("control_period = 0.001", "control_period = 0.005"));
+    let slow = folder.run(&["certify", "slow.toml", "--error-box", "1", "--json"]);
+    assert_eq!(slow.code, Some(1), "{slow:?}");
+    slow.said(&["slow.toml:5:18", "unstable", "controller."]);
+    let found = slow.json();
+    assert_eq!(found["verdict"], "proved for continuous time; unstable as sampled");
+    let sampled = &found["sampled"];
+    assert!(sampled["spectral_radius"].as_f64().unwrap() > 1.0 && sampled["stable"] == false, "{sampled}");
+    assert!(["joint", "gain", "move", "place"].iter().all(|key| sampled[key].is_string()), "{sampled}");
+    let checked = folder.run(&["check", "slow.toml", "--json"]);
+    assert_eq!(checked.code, Some(1), "{checked:?}");
+    assert_eq!(checked.json()[0]["sampled"]["spectral_radius"], sampled["spectral_radius"]);
 }
 
 #[test]

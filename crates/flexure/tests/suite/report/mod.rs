@@ -218,7 +218,7 @@ fn report() -> RunsReport {
 
 fn proof() -> ProofSummary {
     let scenario = load_scenario("two-link-tanh").unwrap();
-    ProofSummary::new(&scenario, &prove(&scenario, &Question::default()).unwrap())
+    ProofSummary::new(&scenario, &prove(&scenario, &Question::default()).unwrap(), None)
 }
 
 #[test]
