@@ -25,8 +25,8 @@ pub struct Advice {
     pub factor: Option<f64>,
     /// Spectral radius of the same law with its starting gains; below 1 these are a way out.
     pub starting_gains: f64,
-    /// A control period in s with which the loop is stable as it is, the given one halved as often as needed; none if ten times are not
-    /// enough.
+    /// A control period in s with which the loop is stable as it is, the given one halved as often as needed; none if a 64th of it is not
+    /// short enough.
     pub period: Option<f64>,
     /// What goes too fast, for laws whose loop has closed forms.
     pub exchange: Option<String>,
@@ -47,7 +47,10 @@ const CHANGE: f64 = 1e-4;
 
 /// Doublings of a gain that are tried, and halvings of the control period.
 const DOUBLINGS: i32 = 12;
-const HALVINGS: i32 = 10;
+const HALVINGS: i32 = 6;
+
+/// Gains that are tried.
+const TRIED: usize = 3;
 
 /// What goes through more of a radian than this in a control period is fast for it.
 const FAST: f64 = 0.3;
@@ -62,6 +65,7 @@ pub(super) fn advice(probe: &Probe<'_>, worst: usize) -> Result<Option<Advice>, 
     let moves = moves(probe, spot, &mode, &map);
     let alone = moves
         .iter()
+        .take(TRIED)
         .find_map(|&(gain, direction)| Some((gain, direction, factor(probe, spot, gain, direction)?)));
     let (gain, direction, factor) = match (alone, moves.first()) {
         (Some((gain, direction, factor)), _) => (gain, direction, Some(factor)),

@@ -54,8 +54,8 @@ impl Sampled {
         }
         let why = exchange
             .as_ref()
-            .map_or(String::new(), |exchange| format!("{exchange} is too fast for the control period; "));
-        Some(format!("{why}{}", ways.join("; or ")))
+            .map_or(String::new(), |exchange| format!("{exchange} is too fast for the control period;\n"));
+        Some(format!("{why}{}", ways.join(";\nor ")))
     }
 
     /// The problem that it is, if it is not stable.
