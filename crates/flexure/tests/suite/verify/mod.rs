@@ -9,7 +9,7 @@ mod lists;
 mod mangled;
 mod mutants;
 mod prover;
-mod python;
+pub mod python;
 mod signs;
 mod values;
 

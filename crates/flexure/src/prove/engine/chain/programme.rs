@@ -14,7 +14,7 @@ const ABOVE: f64 = 4.2;
 
 /// Some directions of a form may never be felt at the base: its traces stay below this many times those at the start, or the
 /// barrier has no least value.
-const BOUND: f64 = 50.0;
+const BOUND: f64 = 500.0;
 
 /// What parts of a form without inertia start from, relative to the whole robot.
 const NOTHING: f64 = 1e-9;
