@@ -153,7 +153,7 @@ class Side:  # the law of one side: its slope has the entries factor[i][j] * a_j
 
 # ---- The mass matrix, and the momentum blocks
 def dot(a, b):
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    return sum(x * y for x, y in zip(a, b))
 def cross(a, b):
     return [a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)]
 def norm(a):
@@ -211,9 +211,7 @@ def mass_bound(bodies):
     return bound
 
 def times(*factors):
-    def product_of(a, b):
-        return [[sum(x * y for x, y in zip(row, column)) for column in zip(*b)] for row in a]
-    return reduce(product_of, factors)
+    return reduce(lambda a, b: [[dot(row, column) for column in zip(*b)] for row in a], factors)
 def plus(a, b, factor=ONE):
     return [[x + factor * y for x, y in zip(*rows)] for rows in zip(a, b)]
 def flipped(a):
@@ -228,8 +226,8 @@ def moved(rotation, offset):  # velocities, angular first, in a frame that stand
 NOTHING, UNIT = diagonal([ZERO] * 3), diagonal([ONE] * 3)
 def inertia_of(body):  # twice the kinetic energy, as a form of the velocity
     c, mass = turning(body.c), diagonal([body.mass] * 3)
-    product_of = times(mass, c)
-    return four(plus(body.inertia, times(product_of, flipped(c))), product_of, flipped(product_of), mass)
+    moment = times(mass, c)
+    return four(plus(body.inertia, times(moment, flipped(c))), moment, flipped(moment), mass)
 def form_of(body, y):
     if body.slides:
         return [[y[max(i, j) * (max(i, j) + 1) // 2 + min(i, j)] for j in range(6)] for i in range(6)]
@@ -243,7 +241,8 @@ def chain_matrix(bodies, forms, damping, k, travelled, rate, beta):
         if child.parent == k:
             placed = moved(child.rotation, child.o)
             carried = plus(carried, times(flipped(placed), form_of(child, form), placed))
-    carried, own = plus(carried, inertia_of(body), beta), [[x] for x in ([ZERO] * 3 + body.axis if body.slides else body.axis + [ZERO] * 3)]
+    carried, rest = plus(carried, inertia_of(body), beta), [ZERO] * 3
+    own = [[x] for x in (rest + body.axis if body.slides else body.axis + rest)]
     if body.parent is None:
         return [[damping[k] - times(flipped(own), carried, own)[0][0]]]
     lift = [p + q for p, q in zip(moved(UNIT, [travelled * x for x in body.axis]), own)]
@@ -268,14 +267,15 @@ def momentum_matrix(damping, mass, rate, beta):
     return [[(damping[i] if i == j else 0) - beta * m for j, m in enumerate(row)] for i, row in enumerate(mass)]
 def momentum_cases(file, damping):  # of both sides, by case a function of which rate and the rate; pivots of the mass matrix
     links, forms = file["robot"]["links"], file["mass_matrix"].get("forms")
-    if links["kind"] == "tree":
-        bodies = [Body(body) for body in links["bodies"]]
-        masses, pivots = {"": mass_bound(bodies)} if forms is None else {}, [body.own_inertia() for body in bodies]
-    else:
+    def of(side, masses):
+        return {case: partial(momentum_matrix, damping[side], mass) for case, mass in masses.items()}
+    motors = of("motor", {"": diagonal(file["robot"]["motor_inertia"])})
+    if links["kind"] != "tree":
         masses, pivots = mass_matrices(links)
-    of_links = {case: partial(momentum_matrix, damping["link"], mass) for case, mass in masses.items()}
-    of_motors = {"": partial(momentum_matrix, damping["motor"], diagonal(file["robot"]["motor_inertia"]))}
-    return {"link": of_links or chain(bodies, forms, damping["link"]), "motor": of_motors}, pivots
+        return {"link": of("link", masses), "motor": motors}, pivots
+    bodies = [Body(body) for body in links["bodies"]]
+    cases = chain(bodies, forms, damping["link"]) if forms else of("link", {"": mass_bound(bodies)})
+    return {"link": cases, "motor": motors}, [body.own_inertia() for body in bodies]
 
 # ---- The claims
 def check_block(block, cases):  # by case, a function of which rate and the rate: a matrix with pivots of at least the margin

@@ -191,6 +191,31 @@ fn chains_are_as_tight_as_elsewhere() {
     }
 }
 
+/// The paper's arm as a tree: the chain loses nothing of what its mass matrix at both ends of the cosine shows.
+#[test]
+fn a_chain_reaches_the_closed_form() {
+    let numbers = |x: [f64; 3]| x.map(Number::decimal);
+    let body = |parent, x, mass, com, inertia| DecimalBody {
+        parent,
+        kind: JointMotion::Revolute,
+        axis: numbers([0.0, 0.0, 1.0]),
+        rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(numbers),
+        translation: numbers([x, 0.0, 0.0]),
+        mass: Number::decimal(mass),
+        com: numbers([com, 0.0, 0.0]),
+        inertia: [0.0, 0.0, 0.0, 0.0, 0.0, inertia].map(Number::decimal),
+        travel: None,
+    };
+    let mut problem = problem(CertifiedPhi::Linear, RequestedRegion::Everywhere);
+    problem.robot.links = DecimalLinks::Tree {
+        bodies: vec![body(None, 0.0, 1.510, 0.159, 0.0392), body(Some(0), 0.343, 0.873, 0.055, 0.00808)],
+    };
+    let verdict = certify(&problem);
+    let rate = verdict.proved().unwrap().blocks[2].contraction.bounds();
+    let exact = 69.013_154_939_393_06;
+    assert!(rate.hi() <= exact && rate.lo() > exact * (1.0 - 1e-6), "{rate:?} of {exact}");
+}
+
 /// A joint that slides without limits has no bound on its inertia; with limits it does.
 #[test]
 fn travel_bounds_a_sliding_joint() {

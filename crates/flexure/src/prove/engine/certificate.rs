@@ -266,8 +266,7 @@ pub struct Case {
 pub struct MassMatrix {
     /// Lower bounds of pivots: one per case or body.
     pub margins: Vec<Number>,
-    /// For trees the forms of the chain, a joint each: 7 numbers for one that turns, 21 for one that slides, none at the
-    /// base. None for other links.
+    /// For trees a form for each joint: 7 numbers if it turns, 21 if it slides, none at the base.
     pub forms: Option<Vec<Option<Vec<Number>>>>,
 }
 

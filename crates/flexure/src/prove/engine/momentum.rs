@@ -53,7 +53,7 @@ pub struct MomentumBlock {
 
 /// What a rate from a chain leaves unclaimed at least: its matrices have seven rows, and pivots cancel more digits than
 /// those of closed forms.
-const CHAIN_RESERVE: f64 = 1e-10;
+const CHAIN_RESERVE: f64 = 1e-9;
 
 /// diag(`damping`) − β M_m.
 pub fn motors(robot: &DecimalRobot, damping: &[Interval]) -> Inequality {

@@ -37,7 +37,7 @@ pub fn links(scenario: &Scenario, certificate: &Certificate, noise: &mut Random,
         flexure::robot::JointKind::Prismatic => (robot.limits.lower[i], robot.limits.upper[i]),
     };
     let anywhere = |noise: &mut Random| -> Vec<f64> {
-        // A third of the sliding joints at each end, where inertias are largest.
+        // A sixth of the sliding joints at each end, where inertias are largest.
         let place =
             |(low, high): (f64, f64), x: f64| (0.5 * (low + high) + 0.75 * (high - low) * x).clamp(low, high);
         (0..n).map(|i| place(range(i), noise.next())).collect()
