@@ -5,7 +5,7 @@ Exit code: 0 all proved, 1 a claim does not hold, 2 not a certificate; the worst
 bits rounded outward; a comparison of two is true only where it holds for all reals inside. Any other error refuses the file."""
 import json, re, sys, time
 from fractions import Fraction
-from functools import partial
+from functools import partial, reduce
 from itertools import combinations_with_replacement, permutations, product
 from math import nan, prod
 from mpmath import iv, mp, mpf
@@ -74,24 +74,27 @@ def read_file(text):
     need(len(text.encode()) <= 4 << 20, "larger than 4 MiB", ValueError)
     raw = json.loads(text, object_pairs_hook=lambda pairs: dict(pairs) if len(dict(pairs)) == len(pairs) else pairs)
     coupled, kind = raw["controller"]["phi"] == "coupled-tanh", raw["robot"]["links"]["kind"]
-    n = read(raw["robot"]["joints"], range(1, 17 if coupled else 65))
+    n, first = read(raw["robot"]["joints"], range(1, 17 if coupled else 65)), read(raw["version"], range(1, 3)) == 1
     above, from_zero, side = [positive] * n, [not_negative] * n, {"link", "motor"}
     links = {
         ("planar-two-link", 2): {"mass": [positive] * 2, "length": positive, "com": [number] * 2, "inertia": [positive] * 2},
         ("pendulum", 1): {"mass": not_negative, "com": number, "inertia": not_negative},
         ("tree", n): {"bodies": [partial(read_body, k) for k in range(n)]}}[kind, n]
+    shapes = [type(None) if body["parent"] is None else [number] * (21 if body["kind"] == "prismatic" else 7)
+              for body in raw["robot"]["links"].get("bodies", [])]
+    forms = {} if first else {"forms": shapes if kind == "tree" else type(None)}
     gains = {"metric": above, "shaping": above, "damping": above, "kappa": above if coupled else type(None)}
     rates, margins = ({"contraction": sign, "convergence": sign} for sign in (positive, not_negative))
     witness = {"side": side, "error": [number] * n, "row": range(n), "column": range(n), "difference": positive}
     return read(raw, {
-        "format": {"flexure-certificate"}, "version": range(1, 2), "name": str, "made_by": str, "assumptions": [str, ...],
+        "format": {"flexure-certificate"}, "version": int, "name": str, "made_by": str, "assumptions": [str, ...],
         "robot": {"name": str, "joints": int, "stiffness": above, "motor_inertia": above, "link_damping": from_zero,
                   "motor_damping": from_zero, "links": {"kind": str} | links},
         "controller": {"phi": {"tanh", "linear", "coupled-tanh"}, "link": gains, "motor": gains},
         "region": {"error": [(positive,)] * 2 * n, "level": (positive,)}, "contraction_rate": positive,
         "closed_loop": {"rows": [[str] * 4] * 4, "dissipation": [str] * 4}, "convergence_rate": positive,
         "blocks": [{"block": str, "cases": [{"case": str} | margins, ...]} | rates, ...],
-        "mass_matrix": {"margins": [positive, ...]}, "measures": [{"side": side, "norm": str, "bound": number}, ...],
+        "mass_matrix": {"margins": [positive, ...]} | forms, "measures": [{"side": side, "norm": str, "bound": number}, ...],
         "structure": [{"name": str, "holds": bool, "witness": (witness,)}, ...],
         "tube": ({"disturbance": from_zero, "level": not_negative, "error": from_zero * 2},)})
 
@@ -150,7 +153,7 @@ class Side:  # the law of one side: its slope has the entries factor[i][j] * a_j
 
 # ---- The mass matrix, and the momentum blocks
 def dot(a, b):
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    return sum(x * y for x, y in zip(a, b))
 def cross(a, b):
     return [a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)]
 def norm(a):
@@ -167,7 +170,8 @@ class Body:
         self.parent, self.slides, (low, high) = body["parent"], body["kind"] == "prismatic", body["travel"] or (number("0"),) * 2
         need(low.high <= high.low, "bodies: a travel is the wrong way round")
         self.axis, self.o, self.c, self.mass = nearest([body["axis"]])[0], body["translation"], body["com"], body["mass"]
-        self.z, self.travel = [dot(row, self.axis) for row in nearest(body["rotation"])], span(low, high)
+        self.rotation, self.ends, self.travel = nearest(body["rotation"]), (low, high), span(low, high)
+        self.z = [dot(row, self.axis) for row in self.rotation]
         self.inertia = [[body["inertia"][k] for k in row] for row in ((0, 1, 2), (1, 3, 4), (2, 4, 5))]
         self.turned = [dot(row, self.axis) for row in self.inertia]
         self.spread = min(norm(sum(self.inertia, [])).b, max(sum(map(abs, row)).b for row in self.inertia))
@@ -205,10 +209,53 @@ def mass_bound(bodies):
                 angular = min(angular.b, (g * body.spread).b)
             bound[i][j] = bound[j][i] = (bound[i][j] + body.mass * linear + (angular if turning else 0)).b
     return bound
+
+def times(*factors):
+    return reduce(lambda a, b: [[dot(row, column) for column in zip(*b)] for row in a], factors)
+def plus(a, b, factor=ONE):
+    return [[x + factor * y for x, y in zip(*rows)] for rows in zip(a, b)]
+def flipped(a):
+    return [list(column) for column in zip(*a)]
+def turning(v):  # v x
+    return [[ZERO, -v[2], v[1]], [v[2], ZERO, -v[0]], [-v[1], v[0], ZERO]]
+def four(a, b, c, d):
+    return [x + y for x, y in [*zip(a, b), *zip(c, d)]]
+def moved(rotation, offset):  # velocities, angular first, in a frame that stands so in another
+    back = flipped(rotation)
+    return four(back, NOTHING, plus(NOTHING, times(back, turning(offset)), -ONE), back)
+NOTHING, UNIT = diagonal([ZERO] * 3), diagonal([ONE] * 3)
+def inertia_of(body):  # twice the kinetic energy, as a form of the velocity
+    c, mass = turning(body.c), diagonal([body.mass] * 3)
+    moment = times(mass, c)
+    return four(plus(body.inertia, times(moment, flipped(c))), moment, flipped(moment), mass)
+def form_of(body, y):
+    if body.slides:
+        return [[y[max(i, j) * (max(i, j) + 1) // 2 + min(i, j)] for j in range(6)] for i in range(6)]
+    along = [[p * q if p is not q else p**2 for q in body.axis] for p in body.axis]
+    angular, linear, mixed = (plus(plus(NOTHING, plus(UNIT, along, -ONE), p), along, q) for p, q in (y[:2], y[2:4], y[4:6]))
+    mixed = plus(mixed, turning(body.axis), y[6])
+    return four(angular, mixed, flipped(mixed), linear)
+def chain_matrix(bodies, forms, damping, k, travelled, rate, beta):
+    body, carried = bodies[k], [[ZERO] * 6] * 6
+    for child, form in zip(bodies, forms):
+        if child.parent == k:
+            placed = moved(child.rotation, child.o)
+            carried = plus(carried, times(flipped(placed), form_of(child, form), placed))
+    carried, rest = plus(carried, inertia_of(body), beta), [ZERO] * 3
+    own = [[x] for x in (rest + body.axis if body.slides else body.axis + rest)]
+    if body.parent is None:
+        return [[damping[k] - times(flipped(own), carried, own)[0][0]]]
+    lift = [p + q for p, q in zip(moved(UNIT, [travelled * x for x in body.axis]), own)]
+    bound = [row + [ZERO] for row in form_of(body, forms[k])] + [[ZERO] * 6 + [damping[k]]]
+    return plus(bound, times(flipped(lift), carried, lift), -ONE)
+def chain(bodies, forms, damping):  # what shows that damping - beta * mass matrix is positive definite, by case
+    cases = {}
+    for k, body in enumerate(bodies):
+        halves = [("", ZERO)] if forms[k] is None or not body.slides else zip("LH", body.ends)
+        cases |= {f"{k}{letter}": partial(chain_matrix, bodies, forms, damping, k, end) for letter, end in halves}
+    return cases
+
 def mass_matrices(links):  # by case, with lower bounds of the pivots of the mass matrix
-    if links["kind"] == "tree":
-        bodies = [Body(body) for body in links["bodies"]]
-        return {"": mass_bound(bodies)}, [body.own_inertia() for body in bodies]
     if links["kind"] == "pendulum":
         mass = links["inertia"] + links["mass"] * links["com"] ** 2
         return {"": [[mass]]}, [mass.a]
@@ -218,6 +265,17 @@ def mass_matrices(links):  # by case, with lower bounds of the pivots of the mas
     return cases, [smallest_pivot(matrix) for matrix in cases.values()]
 def momentum_matrix(damping, mass, rate, beta):
     return [[(damping[i] if i == j else 0) - beta * m for j, m in enumerate(row)] for i, row in enumerate(mass)]
+def momentum_cases(file, damping):  # of both sides, by case a function of which rate and the rate; pivots of the mass matrix
+    links, forms = file["robot"]["links"], file["mass_matrix"].get("forms")
+    def of(side, masses):
+        return {case: partial(momentum_matrix, damping[side], mass) for case, mass in masses.items()}
+    motors = of("motor", {"": diagonal(file["robot"]["motor_inertia"])})
+    if links["kind"] != "tree":
+        masses, pivots = mass_matrices(links)
+        return {"link": of("link", masses), "motor": motors}, pivots
+    bodies = [Body(body) for body in links["bodies"]]
+    cases = chain(bodies, forms, damping["link"]) if forms else of("link", {"": mass_bound(bodies)})
+    return {"link": cases, "motor": motors}, [body.own_inertia() for body in bodies]
 
 # ---- The claims
 def check_block(block, cases):  # by case, a function of which rate and the rate: a matrix with pivots of at least the margin
@@ -225,12 +283,11 @@ def check_block(block, cases):  # by case, a function of which rate and the rate
         for rate in RATES:
             pivot = smallest_pivot(cases[case](rate, block[rate]))
             need(margins[rate] <= pivot, f"{block['block']}: case '{case}', {rate}: pivot {float(pivot):.6g} at that rate")
-def check_blocks(file, blocks, sides, masses):
+def check_blocks(file, blocks, sides, momenta):
     for name, side in sides.items():
         phi, sigma = blocks["phi_" + name[0]], blocks["sigma_" + name[0]]
-        damping = [d + k for d, k in zip(file["robot"][name + "_damping"], side.damping)]
         check_block(phi, {case: partial(side.matrix, case) for case in side.cases})
-        check_block(sigma, {case: partial(momentum_matrix, damping, mass) for case, mass in masses[name].items()})
+        check_block(sigma, momenta[name])
         need(sigma["contraction"].exact == sigma["convergence"].exact, f"{sigma['block']}: the rates differ")
     for block, rate in product(blocks.values(), RATES):
         need(file[rate + "_rate"].high <= block[rate].low, f"{rate}_rate: more than that of {block['block']}")
@@ -271,11 +328,12 @@ def check(text):  # the rates that are proved
     metric, errors, level = sides["link"].metric + sides["motor"].metric, *file["region"].values()
     bounded = all(bound and level and 2 * level <= p * bound**2 for bound, p in zip(errors, metric))
     need(bounded or {*errors, level} == {None}, "region: W <= level leaves it, or some are null and some are not")
-    masses, pivots = mass_matrices(file["robot"]["links"])
+    damping = {name: [d + k for d, k in zip(file["robot"][name + "_damping"], side.damping)] for name, side in sides.items()}
+    momenta, pivots = momentum_cases(file, damping)
     margins = file["mass_matrix"]["margins"]
     need(len(margins) == len(pivots) and all(m <= p for m, p in zip(margins, pivots)), "mass_matrix: a margin is not reached")
     blocks = by_name(file["blocks"], ["phi_l", "phi_m", "sigma_l", "sigma_m"], "block")
-    check_blocks(file, blocks, sides, {"link": masses, "motor": {"": diagonal(file["robot"]["motor_inertia"])}})
+    check_blocks(file, blocks, sides, momenta)
     check_measures(file, blocks, sides)
     check_structure(file, sides)
     if file["tube"]:

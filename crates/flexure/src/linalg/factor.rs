@@ -54,6 +54,21 @@ pub fn direction_of_descent(a: &Symmetric<f64>) -> Option<Vec<f64>> {
     Some(x)
 }
 
+/// The x with L Lᵀ x = `b`.
+pub fn solved(lower: &Dense<f64>, b: &[f64]) -> Vec<f64> {
+    let mut x = b.to_vec();
+    let n = x.len();
+    for i in 0..n {
+        let known: f64 = (0..i).map(|k| lower[(i, k)] * x[k]).sum();
+        x[i] = (x[i] - known) / lower[(i, i)];
+    }
+    for i in (0..n).rev() {
+        let known: f64 = (i + 1..n).map(|k| lower[(k, i)] * x[k]).sum();
+        x[i] = (x[i] - known) / lower[(i, i)];
+    }
+    x
+}
+
 /// The inverse of a lower triangular matrix.
 pub fn lower_inverse(lower: &Dense<f64>) -> Dense<f64> {
     let n = lower.columns();
@@ -88,7 +103,7 @@ pub fn weakest(a: &Symmetric<f64>, p: &Symmetric<f64>) -> Option<(f64, Vec<f64>)
 
 #[cfg(test)]
 mod tests {
-    use super::{Dense, Symmetric, cholesky, direction_of_descent, lower_inverse, weakest};
+    use super::{Dense, Symmetric, cholesky, direction_of_descent, lower_inverse, solved, weakest};
 
     fn second_difference(size: usize, shift: f64) -> Symmetric<f64> {
         Symmetric::from_fn(size, |i, j| match i - j {
@@ -116,6 +131,20 @@ mod tests {
                     assert!((square[(i, j)] - a.at(i, j)).abs() < 1e-15 * n as f64, "{n}");
                     assert!((unit[(i, j)] - f64::from(u8::from(i == j))).abs() < 1e-14 * n as f64, "{n}");
                 }
+            }
+        }
+    }
+
+    /// A x = b, to rounding.
+    #[test]
+    fn solutions() {
+        for n in [1, 2, 7, 28] {
+            let a = second_difference(n, 0.0);
+            let b: Vec<f64> = (0..n).map(|i| 1.0 - 0.3 * i as f64).collect();
+            let x = solved(&cholesky(&a).expect("positive definite"), &b);
+            for (i, b) in b.iter().enumerate() {
+                let image: f64 = (0..n).map(|j| a.at(i, j) * x[j]).sum();
+                assert!((image - b).abs() < 1e-12 * n as f64, "{n}");
             }
         }
     }

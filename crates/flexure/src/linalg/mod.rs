@@ -8,7 +8,7 @@
 //! | [`eigenvalues`], [`eigenvectors`] | Jacobi rotations, in place in the leading block of any storage |
 //! | [`spectral_radius`], [`dominant_mode`] | eigenvalues of matrices that are not symmetric |
 //! | [`exponential`] | of a matrix |
-//! | [`cholesky`], [`lower_inverse`], [`direction_of_descent`], [`weakest`] | floats that suggest, and never prove |
+//! | [`cholesky`], [`solved`], [`lower_inverse`], [`direction_of_descent`], [`weakest`] | floats that suggest, and never prove |
 //!
 //! Kernels that a robot's controller runs have sizes known at compile time and are in
 //! [`flexure_core::linalg`]. `verify` has an elimination of its own: a checker shares nothing with what it checks but the
@@ -27,7 +27,7 @@ pub use complex::Complex;
 pub use dense::Dense;
 pub use eigen::{eigenvalues, eigenvectors};
 pub use exponential::exponential;
-pub use factor::{cholesky, direction_of_descent, lower_inverse, weakest};
+pub use factor::{cholesky, direction_of_descent, lower_inverse, solved, weakest};
 pub use leading::Leading;
 pub use spectrum::{Mode, dominant_mode, spectral_radius};
 pub use symmetric::Symmetric;

@@ -11,3 +11,4 @@ pub mod question;
 pub mod sampling;
 pub mod standing;
 pub mod summary;
+pub mod verified;

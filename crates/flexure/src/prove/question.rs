@@ -14,11 +14,12 @@ use crate::prove::engine::momentum;
 use crate::prove::engine::number::Number;
 use crate::prove::engine::rate::Inequality;
 use crate::prove::engine::region::{RequestedRegion, level_that_holds, region};
-use crate::prove::engine::structural::{self, certify, positions};
+use crate::prove::engine::structural::{self, positions};
 use crate::prove::engine::verdict::{Undecided, Verdict};
 use crate::prove::engine::witness::{RateWitness, WitnessState, against};
 use crate::prove::paper::paper_rate;
 use crate::prove::sampling::{Sampled, sample};
+use crate::prove::verified::certify;
 use crate::scenario::{self, Scenario};
 use crate::{laws, robot};
 

@@ -91,8 +91,5 @@ pub fn write_certificate(path: &Path, certificate: &Certificate) -> Result<(), W
     if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         create_folder(folder)?;
     }
-    write_atomic(path, |out| {
-        serde_json::to_writer_pretty(&mut *out, certificate).map_err(io::Error::from)?;
-        writeln!(out)
-    })
+    write_atomic(path, |out| out.write_all(certificate.text().as_bytes()))
 }

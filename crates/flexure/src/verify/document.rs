@@ -1,5 +1,6 @@
 //! The file as types. What is here has the right keys, names and list lengths; nothing is said of the numbers yet.
 
+use crate::verify::chain::{self, Forms};
 use crate::verify::field::Field;
 use crate::verify::json::Node;
 use crate::verify::number::Number;
@@ -18,6 +19,8 @@ pub(super) struct Certificate {
     pub contraction_rate: Number,
     pub convergence_rate: Number,
     pub mass_margins: Vec<Number>,
+    /// What bounds the mass matrix of a tree; none in version 1, and for other links.
+    pub forms: Option<Forms>,
     pub measures: Vec<Measure>,
     pub structure: Vec<Property>,
     pub tube: Option<Tube>,
@@ -154,13 +157,21 @@ fn certificate(root: &Field<'_>) -> Result<Certificate, Rejected> {
     let [_, version, name, made_by, assumptions, robot, controller, region, closed_loop, rest @ ..] =
         root.object(KEYS)?;
     let [blocks, contraction_rate, convergence_rate, mass_matrix, measures, structure, tube] = rest;
-    if version.index()? != 1 {
-        return Err(version.bad("must be 1"));
-    }
+    let first = match version.index()? {
+        1 => true,
+        2 => false,
+        _ => return Err(version.bad("must be 1 or 2")),
+    };
     made_by.text()?;
     let robot = robot::read(&robot)?;
     let n = robot.joints;
-    let [mass_margins] = mass_matrix.object(["margins"])?;
+    let (mass_margins, forms) = if first {
+        let [margins] = mass_matrix.object(["margins"])?;
+        (margins, None)
+    } else {
+        let [margins, forms] = mass_matrix.object(["margins", "forms"])?;
+        (margins, chain::read(forms, &robot.links)?)
+    };
     Ok(Certificate {
         name: name.text()?.to_owned(),
         assumptions: each(&assumptions, |text| Ok(text.text()?.to_owned()))?,
@@ -171,6 +182,7 @@ fn certificate(root: &Field<'_>) -> Result<Certificate, Rejected> {
         contraction_rate: contraction_rate.number()?,
         convergence_rate: convergence_rate.number()?,
         mass_margins: each(&mass_margins, Field::number)?,
+        forms,
         measures: each(&measures, measure)?,
         structure: each(&structure, |entry| property(entry, n))?,
         tube: tube.unless_null().map(|tube| self::tube(&tube, n)).transpose()?,

@@ -5,9 +5,11 @@
 //! writes certificates. A mistake would have to be made twice to go unnoticed.
 
 mod block;
+mod chain;
 mod coupling;
 mod document;
 mod field;
+mod frame;
 mod json;
 mod mass;
 mod matrix;

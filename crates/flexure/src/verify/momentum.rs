@@ -1,8 +1,11 @@
 //! Momentum blocks: the damping outweighs the inertia at every configuration.
 
+use std::collections::BTreeMap;
+
 use flexure_core::scalar::Interval;
 
 use crate::verify::block;
+use crate::verify::chain::Chain;
 use crate::verify::document::{Certificate, Side};
 use crate::verify::mass::{pendulum_mass, planar_mass};
 use crate::verify::matrix::Symmetric;
@@ -48,10 +51,22 @@ fn links(certificate: &Certificate) -> Result<Claim, Rejected> {
             let mass = pendulum_mass(&robot.links);
             block::check(block, &one, |_, rate| pivot(&|_, _| mass, rate))
         }
-        Links::Tree(bodies) => {
-            let bound = mass_bound(bodies)?;
-            block::check(block, &one, |_, rate| pivot(&|i, j| bound[i][j], rate))
-        }
+        Links::Tree(bodies) => match &certificate.forms {
+            None => {
+                let bound = mass_bound(bodies)?;
+                block::check(block, &one, |_, rate| pivot(&|i, j| bound[i][j], rate))
+            }
+            Some(forms) => {
+                let chain = Chain::new(bodies, forms)?;
+                let cases: BTreeMap<_, _> =
+                    chain.cases().into_iter().map(|case| (case.name.clone(), case)).collect();
+                let names: Vec<_> = cases.keys().cloned().collect();
+                block::check(block, &names, |case, rate| {
+                    let case = &cases[case];
+                    chain.matrix(case, damping[case.joint], block.rate(rate).value).smallest_pivot()
+                })
+            }
+        },
     }
 }
 

@@ -1,14 +1,15 @@
-//! M̄, a bound of the mass matrix of a tree for all configurations: where centres of mass can be, joint by joint.
+//! M̄, a bound of the mass matrix of a tree for all configurations: where centres of mass can be, joint by joint. What
+//! certificates of version 1 rest on.
 
 #[cfg(test)]
 mod tests;
 
 use flexure_core::scalar::{Interval, Scalar};
 
+use crate::verify::frame::{inertia, rotation, unit_axis, values};
 use crate::verify::matrix::Symmetric;
-use crate::verify::number::Number;
 use crate::verify::robot::Body;
-use crate::verify::vector::{Vec3, across, cross, dot, norm, plus, rotation, scaled, squared, turned, unit};
+use crate::verify::vector::{Vec3, across, cross, dot, norm, plus, scaled, squared, turned};
 use crate::verify::verdict::{Rejected, ensure};
 
 /// Where a centre of mass can be, in a joint's frame: its coordinate along the axis, and upper bounds of its distances
@@ -29,10 +30,6 @@ struct Frame<'a> {
     offset: Vec3,
 }
 
-fn values<const N: usize>(numbers: &[Number; N]) -> [Interval; N] {
-    numbers.each_ref().map(|number| number.value)
-}
-
 /// The upper end as a number.
 fn upper(x: Interval) -> Interval {
     Interval::point(x.hi())
@@ -45,12 +42,8 @@ fn least(candidates: &[Interval]) -> Interval {
 
 impl<'a> Frame<'a> {
     fn new(k: usize, body: &'a Body) -> Result<Self, Rejected> {
-        let place = |what| format!("robot.links.bodies[{k}].{what}");
         let axis = unit_axis(k, body)?;
-        let rotation = rotation(body.rotation.each_ref().map(values));
-        let rotation = rotation
-            .ok_or_else(|| Rejected::claim(place("rotation"), "R R' is not the unit matrix or det R < 0"))?;
-        Ok(Self { body, axis, carried: turned(rotation, axis), offset: values(&body.translation) })
+        Ok(Self { body, axis, carried: turned(rotation(k, body)?, axis), offset: values(&body.translation) })
     }
 
     fn is_revolute(&self) -> bool {
@@ -112,17 +105,6 @@ impl<'a> Frame<'a> {
 /// |x|, its upper end.
 fn size(x: Interval) -> Interval {
     Interval::point(x.magnitude())
-}
-
-fn unit_axis(k: usize, body: &Body) -> Result<Vec3, Rejected> {
-    let place = || format!("robot.links.bodies[{k}].axis");
-    unit(values(&body.axis)).ok_or_else(|| Rejected::claim(place(), "is not a unit vector"))
-}
-
-/// Rows of the inertia about the centre of mass.
-fn inertia(body: &Body) -> [Vec3; 3] {
-    let [xx, xy, xz, yy, yz, zz] = values(&body.inertia);
-    [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
 }
 
 /// M̄: entries are upper ends.

@@ -9,6 +9,7 @@ const ROOMS: [&str; 21] = [
     "units",         // how numbers are measured and how that is written
     "files",         // text with places, problems that point at it, files that appear whole
     "linalg",        // matrices of run-time sizes
+    "verify",        // the checker of certificates
     "progress",      // how far long jobs are
     "robot",         // robot files, URDFs, Arm
     "plant",         // what is simulated: joints as they are
@@ -22,7 +23,6 @@ const ROOMS: [&str; 21] = [
     "sampled",       // is the loop stable that holds its torque
     "eval",          // law and model at given states
     "prove",         // certificates
-    "verify",        // their checker
     "tune",          // gains by search
     "compare",       // laws on the same tasks
     "margins",       // what a loop bears

@@ -30,6 +30,7 @@ mod mangled_files;
 mod model_error;
 mod plant;
 mod plant_files;
+mod random_robots;
 mod rates;
 mod real_loop;
 mod registry;

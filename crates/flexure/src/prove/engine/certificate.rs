@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::prove::engine::number::Number;
 
 /// Version of the format.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// A proof in numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -45,6 +45,16 @@ pub struct Certificate {
     pub structure: Vec<StructureClaim>,
     /// Error tube under a disturbance of the motors.
     pub tube: Option<Tube>,
+}
+
+impl Certificate {
+    /// The file: JSON.
+    ///
+    /// # Panics
+    /// Never: there is nothing in it that JSON cannot say.
+    pub fn text(&self) -> String {
+        serde_json::to_string_pretty(self).expect("texts and lists") + "\n"
+    }
 }
 
 /// A flexible-joint robot in decimals.
@@ -250,12 +260,14 @@ pub struct Case {
     pub convergence: Number,
 }
 
-/// Lower bounds of pivots of the mass matrix.
+/// Why the mass matrix is positive definite, and for trees what bounds it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct MassMatrix {
-    /// One per case or body.
+    /// Lower bounds of pivots: one per case or body.
     pub margins: Vec<Number>,
+    /// For trees a form for each joint: 7 numbers if it turns, 21 if it slides, none at the base.
+    pub forms: Option<Vec<Option<Vec<Number>>>>,
 }
 
 /// An upper bound of a matrix measure of −Θ ∂φ Θ⁻¹.

@@ -9,6 +9,7 @@
 //! simulation.
 
 pub mod certificate;
+pub mod chain;
 pub mod coupling;
 pub mod direct;
 pub mod envelope;
@@ -16,8 +17,8 @@ pub mod momentum;
 pub mod number;
 pub mod position;
 pub mod rate;
-pub mod reach;
 pub mod region;
+pub mod reserve;
 #[cfg(test)]
 mod schema;
 pub mod shaping;
@@ -29,6 +30,7 @@ pub mod witness;
 pub use certificate::Certificate;
 pub use number::Number;
 pub use region::RequestedRegion;
+pub use reserve::Reserve;
 pub use structural::{Proposition, certify};
 pub use verdict::{Undecided, Verdict};
 pub use witness::{RateWitness, WitnessState};

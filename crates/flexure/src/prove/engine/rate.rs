@@ -34,12 +34,8 @@ pub struct ClaimedRate {
 const SLOWEST: f64 = 1e-30;
 const FASTEST: f64 = 1e30;
 
-/// By how much a claim stays below the largest rate that can be shown, relative to it: pivots then are as many times
-/// larger than their rounding.
-const RESERVE: f64 = 1e-13;
-
-/// The largest rate at which all the inequalities hold; none if no positive one can be shown.
-pub fn largest(inequalities: &[Inequality]) -> Option<ClaimedRate> {
+/// The largest rate at which all the inequalities hold, less `reserve` of it; none if no positive one can be shown.
+pub fn largest(inequalities: &[Inequality], reserve: f64) -> Option<ClaimedRate> {
     let holds = |beta: f64| inequalities.iter().all(|one| one.margin(Interval::point(beta)) > 0.0);
     // Between a rate that holds and one that does not: by factors first, then by halves.
     let mut low = if holds(1.0) {
@@ -53,16 +49,17 @@ pub fn largest(inequalities: &[Inequality]) -> Option<ClaimedRate> {
     while holds(high) && high < FASTEST {
         (low, high) = (high, 2.0 * high);
     }
-    while high - low > 0.1 * RESERVE * low {
+    while high - low > 0.1 * reserve * low {
         let middle = 0.5 * (low + high);
         *(if holds(middle) { &mut low } else { &mut high }) = middle;
     }
-    claim(low * (1.0 - RESERVE), inequalities)
+    claim(low * (1.0 - reserve), inequalities, reserve)
 }
 
-/// The claim of the rate `beta`, or of one slightly below it.
-pub fn claim(beta: f64, inequalities: &[Inequality]) -> Option<ClaimedRate> {
-    let below = std::iter::successors(Some(RESERVE), |step| Some(4.0 * step)).take_while(|&step| step < 1e-6);
+/// The claim of the rate `beta`, or of one slightly below it, by `reserve` of it at first.
+fn claim(beta: f64, inequalities: &[Inequality], reserve: f64) -> Option<ClaimedRate> {
+    let below = std::iter::successors(Some(reserve), |step| Some(4.0 * step))
+        .take_while(|&step| step < 1e7 * reserve);
     std::iter::once(0.0).chain(below).find_map(|step| {
         let rate = Number::decimal(beta * (1.0 - step));
         let margins: Vec<f64> = inequalities.iter().map(|one| one.margin(rate.bounds())).collect();
@@ -81,11 +78,11 @@ mod tests {
             Symmetric::from_fn(2, |i, j| if i == j { Interval::point(d[i]) } else { Interval::point(0.0) })
         };
         let one = Inequality { form: diagonal([4.0, 9.0]), weight: diagonal([2.0, 3.0]) };
-        let claim = largest(std::slice::from_ref(&one)).unwrap();
+        let claim = largest(std::slice::from_ref(&one), 1e-13).unwrap();
         let rate = claim.rate.bounds();
         assert!(rate.hi() < 2.0 && rate.lo() > 2.0 * (1.0 - 1e-12), "{rate:?}");
         assert!(claim.margins[0] > 0.0);
         let none = Inequality { form: diagonal([4.0, -1.0]), ..one };
-        assert!(largest(&[none]).is_none());
+        assert!(largest(&[none], 1e-13).is_none());
     }
 }

@@ -8,17 +8,15 @@ use crate::prove::engine::certificate::{
     Measure, Norm, VERSION, bounds,
 };
 use crate::prove::engine::coupling::{DISSIPATION, ROWS, coupling_cancels};
-use crate::prove::engine::momentum;
+use crate::prove::engine::momentum::{self, MomentumBlock};
 use crate::prove::engine::number::Number;
 use crate::prove::engine::position::{Ends, Position};
 use crate::prove::engine::rate::{ClaimedRate, Inequality, largest};
 use crate::prove::engine::region::{RequestedRegion, region, tube};
+use crate::prove::engine::reserve::Reserve;
 use crate::prove::engine::structure::{self, SideOf};
 use crate::prove::engine::verdict::{Undecided, Verdict};
 use crate::prove::engine::witness::{RateWitness, WitnessState, against};
-
-/// By how much the bound of a measure stays above what was found, relative to it: others may round differently.
-const RESERVE: f64 = 1e-13;
 
 /// Most cases of a position block: those of ten joints. A certificate lists every one.
 const MOST_CASES: usize = 1024;
@@ -40,9 +38,9 @@ pub struct Proposition {
     pub disturbance: Option<Vec<Number>>,
 }
 
-/// Proves contraction and convergence rates of the closed loop, and what follows from them.
-pub fn certify(problem: &Proposition) -> Verdict<Certificate, RateWitness> {
-    match attempt(problem) {
+/// Proves contraction and convergence rates of the closed loop, and what follows from them, leaving `reserve` unclaimed.
+pub fn certify(problem: &Proposition, reserve: Reserve) -> Verdict<Certificate, RateWitness> {
+    match attempt(problem, reserve) {
         Ok(certificate) => Verdict::Proved(certificate),
         Err(Failure::Witness(witness)) => Verdict::Refuted(*witness),
         Err(Failure::Reason(at)) => Verdict::Undecided(Undecided { at, spent: 1 }),
@@ -71,7 +69,7 @@ pub fn positions(controller: &DecimalLaw, errors: &[Option<Number>]) -> [Positio
     ]
 }
 
-fn attempt(problem: &Proposition) -> Result<Certificate, Failure> {
+fn attempt(problem: &Proposition, reserve: Reserve) -> Result<Certificate, Failure> {
     let Proposition { robot, controller, .. } = problem;
     if !coupling_cancels() {
         return Err(Failure::Reason("the coupling does not cancel".to_owned()));
@@ -84,18 +82,18 @@ fn attempt(problem: &Proposition) -> Result<Certificate, Failure> {
 
     let damping_l = momentum::damping(&robot.link_damping, &controller.link.damping);
     let damping_m = momentum::damping(&robot.motor_damping, &controller.motor.damping);
-    let sigma_l = momentum_block(
-        BlockName::SigmaL,
-        &momentum::links(robot, &damping_l)?,
-        &momentum::cases(&robot.links),
-    )?;
-    let sigma_m =
-        momentum_block(BlockName::SigmaM, &[momentum::motors(robot, &damping_m)], &[String::new()])?;
+    let link_block = momentum::links(robot, &damping_l, reserve)?;
+    let motor_block = MomentumBlock {
+        inequalities: vec![momentum::motors(robot, &damping_m)],
+        cases: vec![String::new()],
+        unclaimed: reserve.relative(),
+        forms: None,
+    };
     let blocks = vec![
-        position_block(BlockName::PhiL, links)?,
-        position_block(BlockName::PhiM, motors)?,
-        sigma_l,
-        sigma_m,
+        position_block(BlockName::PhiL, links, reserve)?,
+        position_block(BlockName::PhiM, motors, reserve)?,
+        momentum_block(BlockName::SigmaL, &link_block, reserve)?,
+        momentum_block(BlockName::SigmaM, &motor_block, reserve)?,
     ];
 
     let smallest = |rate: fn(&Block) -> &Number, blocks: &[Block]| {
@@ -132,15 +130,19 @@ fn attempt(problem: &Proposition) -> Result<Certificate, Failure> {
         },
         contraction_rate: smallest(|block| &block.contraction, &blocks),
         convergence_rate: smallest(|block| &block.convergence, &blocks),
-        mass_matrix: mass_matrix(robot)?,
-        measures: measures(&[links, motors], &blocks),
+        mass_matrix: mass_matrix(robot, link_block.forms, reserve)?,
+        measures: measures(&[links, motors], &blocks, reserve),
         structure,
         blocks,
         tube,
     })
 }
 
-fn mass_matrix(robot: &DecimalRobot) -> Result<MassMatrix, Failure> {
+fn mass_matrix(
+    robot: &DecimalRobot,
+    forms: Option<Vec<Option<Vec<Number>>>>,
+    reserve: Reserve,
+) -> Result<MassMatrix, Failure> {
     let pivots = momentum::pivots(&robot.links);
     if let Some(k) = pivots.iter().position(|&pivot| pivot <= 0.0) {
         return Err(Failure::Reason(format!(
@@ -148,14 +150,15 @@ fn mass_matrix(robot: &DecimalRobot) -> Result<MassMatrix, Failure> {
             k + 1
         )));
     }
-    Ok(MassMatrix { margins: pivots.iter().map(|&pivot| Number::decimal(0.5 * pivot)).collect() })
+    let margins = pivots.iter().map(|&pivot| Number::decimal(reserve.claimed() * pivot)).collect();
+    Ok(MassMatrix { margins, forms })
 }
 
-fn measures(sides: &[&Position; 2], blocks: &[Block]) -> Vec<Measure> {
+fn measures(sides: &[&Position; 2], blocks: &[Block], reserve: Reserve) -> Vec<Measure> {
     let entries = [LoopSide::Link, LoopSide::Motor].into_iter().zip(sides).zip(blocks);
     entries
         .flat_map(|((side, position), block)| {
-            let up = |x: f64| Number::decimal(x + RESERVE * x.abs());
+            let up = |x: f64| Number::decimal(x + reserve.relative() * x.abs());
             let negative = |rate: &Number| match rate {
                 Number::Decimal(text) | Number::Between([text, _]) => Number::Decimal(format!("-{text}")),
             };
@@ -169,11 +172,11 @@ fn measures(sides: &[&Position; 2], blocks: &[Block]) -> Vec<Measure> {
         .collect()
 }
 
-fn momentum_block(block: BlockName, inequalities: &[Inequality], cases: &[String]) -> Result<Block, Failure> {
-    let claim = largest(inequalities)
+fn momentum_block(block: BlockName, from: &MomentumBlock, reserve: Reserve) -> Result<Block, Failure> {
+    let claim = largest(&from.inequalities, from.unclaimed)
         .ok_or_else(|| Failure::Reason(format!("no positive rate of {} could be shown", block.name())))?;
-    let margins = claim.margins.iter().map(|&margin| Number::decimal(0.5 * margin));
-    let cases = cases.iter().zip(margins).map(|(case, margin)| Case {
+    let margins = claim.margins.iter().map(|&margin| Number::decimal(reserve.claimed() * margin));
+    let cases = from.cases.iter().zip(margins).map(|(case, margin)| Case {
         case: case.clone(),
         contraction: margin.clone(),
         convergence: margin,
@@ -181,7 +184,7 @@ fn momentum_block(block: BlockName, inequalities: &[Inequality], cases: &[String
     Ok(Block { block, cases: cases.collect(), contraction: claim.rate.clone(), convergence: claim.rate })
 }
 
-fn position_block(block: BlockName, position: &Position) -> Result<Block, Failure> {
+fn position_block(block: BlockName, position: &Position, reserve: Reserve) -> Result<Block, Failure> {
     if position.case_count() > MOST_CASES {
         return Err(Failure::Reason(format!(
             "{} has {} cases, one per corner of the slopes of {} joints that φ couples; at most {MOST_CASES} are looked at; linear and tanh have one",
@@ -193,7 +196,7 @@ fn position_block(block: BlockName, position: &Position) -> Result<Block, Failur
     let cases = position.cases();
     let claimed = |a: &dyn Fn(&Ends) -> Vec<Interval>| -> Result<ClaimedRate, Failure> {
         let inequalities: Vec<Inequality> = cases.iter().map(|case| position.inequality(&a(case))).collect();
-        largest(&inequalities).ok_or_else(|| {
+        largest(&inequalities, reserve.relative()).ok_or_else(|| {
             let refuted = cases.iter().zip(&inequalities).find_map(|(case, inequality)| {
                 let (direction, value) = against(inequality, 0.0)?;
                 // Slopes are 1 at no error and smallest at the largest.
@@ -217,8 +220,8 @@ fn position_block(block: BlockName, position: &Position) -> Result<Block, Failur
     let margins = contraction.margins.iter().zip(&convergence.margins);
     let cases = cases.iter().zip(margins).map(|(case, (&contraction, &convergence))| Case {
         case: case.iter().map(|&high| if high { 'H' } else { 'L' }).collect(),
-        contraction: Number::decimal(0.5 * contraction),
-        convergence: Number::decimal(0.5 * convergence),
+        contraction: Number::decimal(reserve.claimed() * contraction),
+        convergence: Number::decimal(reserve.claimed() * convergence),
     });
     Ok(Block { block, cases: cases.collect(), contraction: contraction.rate, convergence: convergence.rate })
 }

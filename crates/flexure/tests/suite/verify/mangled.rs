@@ -98,6 +98,7 @@ fn what_is_no_certificate_is_malformed() {
     let text = CERTIFICATES[0].1;
     for (from, to) in [
         ("\"version\": 1", "\"version\": 2"),
+        ("\"version\": 1", "\"version\": 3"),
         ("\"version\": 1", "\"version\": 1.0"),
         ("\"version\": 1", "\"version\": true"),
         ("\"version\": 1", "\"version\": NaN"),

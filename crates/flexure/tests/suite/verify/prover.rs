@@ -2,8 +2,8 @@
 //! more, or lacks a case.
 
 use flexure::files::SCENARIOS;
-use flexure::prove::engine::structural::certify;
 use flexure::prove::question::{Question, Region, problem};
+use flexure::prove::verified::certify;
 use flexure::robot::robot_from_text;
 use flexure::scenario::load_scenario;
 use flexure::verify::verify;
@@ -67,7 +67,40 @@ fn mutants(certificate: &Value) -> Vec<Value> {
     mutants
 }
 
-/// A sliding joint between two that turn: what it adds to every reach, the checkers add too.
+/// A form with a wrong sign, a number that is not there and one too many, or a millionth less of it: refused by both checkers.
+#[test]
+fn forms_that_bound_nothing_are_refused() {
+    let scenario = load_scenario("panda-tanh-smooth").unwrap();
+    let verdict = certify(&problem(&scenario, &Question::default(), None).unwrap());
+    let certificate = serde_json::to_value(verdict.proved().unwrap()).unwrap();
+    let path = |joint: usize, i: usize| format!("/mass_matrix/forms/{joint}/{i}");
+    let (mut wrong, mut malformed) = (Vec::new(), Vec::new());
+    for joint in 1..7 {
+        let numbers: Vec<_> = (0..7).map(|i| path(joint, i)).collect();
+        let all: Vec<&str> = numbers.iter().map(String::as_str).collect();
+        wrong.push(scaled(&certificate, &all, 1.0 - 1e-6).to_string());
+        // Parts of ω and of v across and along the axis.
+        wrong.extend(all[..4].iter().map(|one| scaled(&certificate, &[one], -1.0).to_string()));
+        let changed = |change: &dyn Fn(&mut Vec<Value>)| {
+            let mut mutant = certificate.clone();
+            let forms = mutant.pointer_mut(&format!("/mass_matrix/forms/{joint}")).unwrap();
+            change(forms.as_array_mut().unwrap());
+            mutant.to_string()
+        };
+        malformed.push(changed(&|form| drop(form.pop())));
+        malformed.push(changed(&|form| form.push("0".into())));
+    }
+    for (texts, code) in [(wrong, 1), (malformed, 2)] {
+        for text in &texts {
+            let rejected = verify(text).unwrap_err();
+            let malformed = matches!(rejected, flexure::verify::Rejected::Malformed { .. });
+            assert_eq!(malformed, code == 2, "{rejected}");
+        }
+        assert!(python::codes(&texts).is_none_or(|codes| codes.iter().all(|&found| found == code)));
+    }
+}
+
+/// A sliding joint between two that turn: its form is asked at both ends of its travel.
 #[test]
 fn a_sliding_joint_on_the_way() {
     let text = "name = 'slider'\n[links]\nkind = 'tree'\n\

@@ -58,6 +58,9 @@ const TRUE_ANYWAY: &[(&str, &[&str])] = &[
             "tree/structure/1/witness/error/0",
             "tree/structure/1/witness/error/1",
             "tree/structure/1/witness/error/2",
+            "tree-chain/structure/1/witness/error/0",
+            "tree-chain/structure/1/witness/error/1",
+            "tree-chain/structure/1/witness/error/2",
             "two-link-coupled-tanh/structure/0/witness/error/0",
             "two-link-coupled-tanh/structure/0/witness/error/1",
             "two-link-coupled-tanh/structure/1/witness/error/0",
@@ -77,6 +80,8 @@ const TRUE_ANYWAY: &[(&str, &[&str])] = &[
             "tree/robot/links/bodies/1/axis/1",
             "tree/robot/links/bodies/1/axis/2",
             "tree/robot/links/bodies/2/axis/0",
+            "tree-chain/robot/links/bodies/0/axis/2",
+            "tree-chain/robot/links/bodies/2/axis/0",
         ],
     ),
     (
@@ -89,6 +94,13 @@ const TRUE_ANYWAY: &[(&str, &[&str])] = &[
             "tree/robot/links/bodies/0/inertia/2",
             "tree/robot/links/bodies/0/inertia/4",
             "tree/robot/links/bodies/0/translation/2",
+            "tree-chain/robot/links/bodies/0/com/0",
+            "tree-chain/robot/links/bodies/0/com/1",
+            "tree-chain/robot/links/bodies/0/com/2",
+            "tree-chain/robot/links/bodies/0/inertia/1",
+            "tree-chain/robot/links/bodies/0/inertia/2",
+            "tree-chain/robot/links/bodies/0/inertia/4",
+            "tree-chain/robot/links/bodies/0/translation/2",
         ],
     ),
     (
@@ -106,9 +118,18 @@ const TRUE_ANYWAY: &[(&str, &[&str])] = &[
             "tree/robot/links/bodies/2/com/2",
             "tree/robot/links/bodies/2/inertia/2",
             "tree/robot/links/bodies/2/translation/0",
+            "tree-chain/robot/links/bodies/1/com/0",
+            "tree-chain/robot/links/bodies/1/com/1",
+            "tree-chain/robot/links/bodies/1/inertia/1",
+            "tree-chain/robot/links/bodies/1/inertia/2",
+            "tree-chain/robot/links/bodies/1/translation/2",
+            "tree-chain/robot/links/bodies/2/com/0",
         ],
     ),
-    ("a shorter travel, from 0.1 m instead of -0.1 m", &["tree/robot/links/bodies/2/travel/0"]),
+    (
+        "a shorter travel, from 0.1 m instead of -0.1 m",
+        &["tree/robot/links/bodies/2/travel/0", "tree-chain/robot/links/bodies/2/travel/0"],
+    ),
 ];
 
 #[test]
