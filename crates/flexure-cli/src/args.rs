@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use flexure::compare::BUDGET;
+use flexure::files::Outside;
 
 /// Model, design, simulate and compare controllers for robots with elastic joints.
 #[derive(Debug, Parser)]
@@ -24,6 +25,17 @@ pub struct Cli {
     /// Print one JSON document on stdout and nothing else there.
     #[arg(long, global = true)]
     pub json: bool,
+
+    /// Let files name files outside of their own folders, as a scenario may a robot or samples, and a robot a URDF.
+    #[arg(long, global = true)]
+    allow_outside: bool,
+}
+
+impl Cli {
+    /// Whether files may name files outside of their folders.
+    pub fn outside(&self) -> Outside {
+        if self.allow_outside { Outside::Allowed } else { Outside::Refused }
+    }
 }
 
 #[derive(Debug, Subcommand)]

@@ -1,11 +1,15 @@
 //! Why a command did not succeed, the exit code that says so, and how it is said.
 
+use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
 
+use clap::error::ErrorKind;
 use flexure::files::{Problem, Problems, WriteError};
-use miette::{MietteDiagnostic, MietteHandlerOpts, Report};
+use miette::{Diagnostic, MietteHandlerOpts, Report};
 use textwrap::WordSplitter;
+
+use crate::complaint::Errors;
 
 /// Problems beyond these are counted, not shown.
 const MOST_SHOWN: usize = 10;
@@ -24,17 +28,26 @@ pub enum Failure {
 
 impl Failure {
     /// A bad input that a sentence and a hint tell.
-    pub fn input(code: &str, message: String, hint: &str) -> Self {
-        Self::Input(vec![
-            MietteDiagnostic::new(message).with_code(format!("error[{code}]")).with_help(hint).into(),
-        ])
+    pub fn input(code: &'static str, message: String, hint: &str) -> Self {
+        Self::Input(vec![Said { code, message, hint: hint.to_owned(), place: None }.into()])
+    }
+
+    /// The same at a place, which the message names too.
+    pub fn input_at(place: Place, code: &'static str, message: String, hint: &str) -> Self {
+        Self::Input(vec![Said { code, message, hint: hint.to_owned(), place: Some(place) }.into()])
     }
 
     /// The answer is no, as a sentence and a hint tell.
-    pub fn no(code: &str, message: String, hint: &str) -> Self {
-        Self::No(vec![
-            MietteDiagnostic::new(message).with_code(format!("error[{code}]")).with_help(hint).into(),
-        ])
+    pub fn no(code: &'static str, message: String, hint: &str) -> Self {
+        Self::No(vec![Said { code, message, hint: hint.to_owned(), place: None }.into()])
+    }
+
+    /// What is to be said with `--json`, if there is anything.
+    pub fn errors(&self) -> Option<Errors> {
+        match self {
+            Self::Input(reports) | Self::No(reports) | Self::Undecided(reports) => Errors::of(reports),
+            Self::Gone => None,
+        }
     }
 
     /// Says it on stderr and gives the exit code.
@@ -75,6 +88,52 @@ impl From<io::Error> for Failure {
         }
         Self::input("write", format!("cannot write to stdout: {error}"), "is the disk full?")
     }
+}
+
+/// What a sentence and a hint tell, perhaps in line and column of a file.
+#[derive(Debug)]
+pub struct Said {
+    code: &'static str,
+    message: String,
+    hint: String,
+    pub place: Option<Place>,
+}
+
+/// A file, and where in it that is known.
+#[derive(Clone, Debug)]
+pub struct Place {
+    pub file: String,
+    pub line: Option<usize>,
+    pub column: Option<usize>,
+}
+
+impl Display for Said {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Said {}
+
+impl Diagnostic for Said {
+    fn code<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        Some(Box::new(format!("error[{}]", self.code)))
+    }
+    fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        Some(Box::new(&self.hint))
+    }
+}
+
+/// Bad arguments, or a wish for help, in clap's words; what is to be said with `--json` of bad ones.
+pub fn usage(error: &clap::Error) -> Option<Errors> {
+    let text = error.to_string();
+    let message = match error.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => return None,
+        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => "no command is given",
+        _ => text.split("\n\n").next().unwrap_or_default().trim_start_matches("error: "),
+    };
+    let hint = "flexure --help lists commands and options".to_owned();
+    Errors::of(&[Said { code: "usage", message: message.trim().to_owned(), hint, place: None }.into()])
 }
 
 /// Shows problems on stderr.

@@ -2,6 +2,7 @@
 
 mod args;
 mod commands;
+mod complaint;
 mod failure;
 mod progress;
 
@@ -10,25 +11,36 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use args::{Cli, Command};
+use commands::print;
+use failure::Failure;
 
 fn main() -> ExitCode {
     failure::install();
-    let cli = Cli::parse();
-    let json = cli.json;
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            if std::env::args_os().any(|argument| argument == "--json") {
+                let _ = print::end(failure::usage(&error));
+            }
+            error.exit()
+        }
+    };
+    let (json, outside) = (cli.json, cli.outside());
     let done = match cli.command {
         Command::Reproduce(output) => commands::reproduce(&output.out, json),
-        Command::Run { scenario, output } => commands::run(&scenario, &output.out, json),
-        Command::Compare(options) => commands::compare(&options, json),
-        Command::Eval { scenario, states } => commands::eval(&scenario, &states, json),
-        Command::Model { robot, states } => commands::model(&robot, &states, json),
-        Command::Certify(options) => commands::certify(&options, json),
-        Command::Check { files } => commands::check(&files, json),
+        Command::Run { scenario, output } => commands::run(&scenario, outside, &output.out, json),
+        Command::Compare(options) => commands::compare(&options, outside, json),
+        Command::Eval { scenario, states } => commands::eval(&scenario, outside, &states, json),
+        Command::Model { robot, states } => commands::model(&robot, outside, &states, json),
+        Command::Certify(options) => commands::certify(&options, outside, json),
+        Command::Check { files } => commands::check(&files, outside, json),
         Command::Import { urdf, lock } => commands::import(&urdf, &lock, json),
         Command::Verify { certificate } => commands::verify(&certificate, json),
-        Command::Margins(options) => commands::margins(&options, json),
+        Command::Margins(options) => commands::margins(&options, outside, json),
         Command::List { kind } => commands::list(kind, json),
     };
-    match done {
+    let errors = done.as_ref().err().and_then(Failure::errors).filter(|_| json);
+    match done.and(print::end(errors)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
     }

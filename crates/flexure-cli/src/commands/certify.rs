@@ -2,12 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use flexure::files::Outside;
 use flexure::prove::question::{Direct, Question, Region, SMALLEST_ERROR, prove};
 use flexure::prove::standing::Standing;
 use flexure::prove::summary::ProofSummary;
 use flexure::report::{proof_table, write_certificate};
 use flexure::sampled::probe;
-use flexure::scenario::{Scenario, load_scenario};
+use flexure::scenario::{Scenario, load_scenario_with};
 use serde::Serialize;
 
 use super::print;
@@ -23,8 +24,8 @@ struct Outcome {
     file: Option<PathBuf>,
 }
 
-pub fn certify(options: &Certify, json: bool) -> Result<(), Failure> {
-    let scenario = load_scenario(&options.scenario)?;
+pub fn certify(options: &Certify, outside: Outside, json: bool) -> Result<(), Failure> {
+    let scenario = load_scenario_with(&options.scenario, outside)?;
     say(&scenario.warnings);
     let question = question(options, &scenario)?;
     let proof = prove(&scenario, &question)?;

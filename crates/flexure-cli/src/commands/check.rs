@@ -1,7 +1,7 @@
 //! `flexure check`: are these files good?
 
 use flexure::feasible::{self, Usage};
-use flexure::files::{Assumption, Problem, Problems};
+use flexure::files::{Assumption, Outside, Problem, Problems};
 use flexure::report::{joint_table, usage_table};
 use flexure::robot::{JointRow, overview, supported};
 use flexure::sampled::{Sampled, probe};
@@ -9,6 +9,7 @@ use flexure::scenario::{self, Checked, Scenario};
 use serde::Serialize;
 
 use super::print;
+use crate::complaint::Complaint;
 use crate::failure::{Failure, say};
 
 /// What is said of a file.
@@ -68,17 +69,8 @@ struct Assumed {
     note: String,
 }
 
-#[derive(Serialize)]
-struct Complaint {
-    message: String,
-    hint: String,
-    file: Option<String>,
-    line: Option<usize>,
-    column: Option<usize>,
-}
-
-pub fn check(files: &[String], json: bool) -> Result<(), Failure> {
-    let verdicts: Vec<_> = files.iter().map(|file| verdict(file, json)).collect();
+pub fn check(files: &[String], outside: Outside, json: bool) -> Result<(), Failure> {
+    let verdicts: Vec<_> = files.iter().map(|file| verdict(file, outside, json)).collect();
     if json {
         print::json(&verdicts)?;
     } else {
@@ -138,8 +130,8 @@ fn counted(n: usize, what: &str) -> String {
     format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
-fn verdict(file: &str, json: bool) -> Verdict {
-    let Found { content, warnings, exceeded } = match content(file) {
+fn verdict(file: &str, outside: Outside, json: bool) -> Verdict {
+    let Found { content, warnings, exceeded } = match content(file, outside) {
         Ok(found) => found,
         Err(problems) => return bad(file, &problems, json),
     };
@@ -150,8 +142,8 @@ fn verdict(file: &str, json: bool) -> Verdict {
         file: file.to_owned(),
         ok: exceeded.is_empty(),
         content: Some(content),
-        warnings: warnings.iter().map(complaint).collect(),
-        errors: exceeded.iter().map(complaint).collect(),
+        warnings: warnings.iter().map(Complaint::from).collect(),
+        errors: exceeded.iter().map(Complaint::from).collect(),
         exceeded,
     }
 }
@@ -163,8 +155,8 @@ struct Found {
     exceeded: Vec<Problem>,
 }
 
-fn content(file: &str) -> Result<Found, Problems> {
-    match scenario::check(file)? {
+fn content(file: &str, outside: Outside) -> Result<Found, Problems> {
+    match scenario::check(file, outside)? {
         Checked::Robot(robot) => {
             let rows = overview(&robot)?;
             let assumed = assumed(&robot.assumptions());
@@ -212,7 +204,7 @@ fn bad(file: &str, problems: &Problems, json: bool) -> Verdict {
         say(problems.iter());
     }
     let (warnings, errors): (Vec<_>, Vec<_>) = problems.iter().partition(|problem| problem.is_warning());
-    let complaints = |problems: Vec<&Problem>| problems.into_iter().map(complaint).collect();
+    let complaints = |problems: Vec<&Problem>| problems.into_iter().map(Complaint::from).collect();
     Verdict {
         file: file.to_owned(),
         ok: false,
@@ -220,16 +212,5 @@ fn bad(file: &str, problems: &Problems, json: bool) -> Verdict {
         warnings: complaints(warnings),
         errors: complaints(errors),
         exceeded: Vec::new(),
-    }
-}
-
-fn complaint(problem: &Problem) -> Complaint {
-    let (line, column) = problem.line_column().unzip();
-    Complaint {
-        message: problem.to_string(),
-        hint: problem.hint().to_owned(),
-        file: problem.file().map(str::to_owned),
-        line,
-        column,
     }
 }

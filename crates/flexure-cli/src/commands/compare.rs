@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use flexure::compare::{Leaderboard, check_budget, compare as compared, entrants, tasks};
-use flexure::files::prepare;
+use flexure::files::{Outside, prepare};
 use flexure::report::{leaderboard_table, write_leaderboard};
 use serde::Serialize;
 
@@ -20,10 +20,10 @@ struct Outcome<'a> {
     files: Vec<PathBuf>,
 }
 
-pub fn compare(options: &Compare, json: bool) -> Result<(), Failure> {
+pub fn compare(options: &Compare, outside: Outside, json: bool) -> Result<(), Failure> {
     check_budget(options.budget)?;
     let entrants = entrants(&options.controllers)?;
-    let tasks = tasks(&options.scenarios)?;
+    let tasks = tasks(&options.scenarios, outside)?;
     say(tasks.iter().flat_map(|task| &task.scenario.warnings));
     let out = &options.output.out;
     prepare(out)?;

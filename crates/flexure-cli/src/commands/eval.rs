@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use flexure::eval::evaluate_law;
-use flexure::files::load_states;
-use flexure::scenario::load_scenario;
+use flexure::files::{Outside, load_states};
+use flexure::scenario::load_scenario_with;
 
 use super::print;
 use crate::failure::{Failure, say};
 
-pub fn eval(scenario: &str, states: &Path, json: bool) -> Result<(), Failure> {
-    let scenario = load_scenario(scenario)?;
+pub fn eval(scenario: &str, outside: Outside, states: &Path, json: bool) -> Result<(), Failure> {
+    let scenario = load_scenario_with(scenario, outside)?;
     say(&scenario.warnings);
     let states = load_states(states, scenario.robot.joint_count())?;
     print::rows(&evaluate_law(&scenario, &states)?, json)

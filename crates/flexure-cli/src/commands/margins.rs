@@ -1,11 +1,11 @@
 //! `flexure margins`: how much a loop bears.
 
 use flexure::compare::{Entrant, check_budget, entrants};
-use flexure::files::Problems;
+use flexure::files::{Outside, Problems};
 use flexure::margins::{Margins as Found, margins as measured};
 use flexure::progress::unwatched;
 use flexure::report::margins_table;
-use flexure::scenario::{Scenario, load_scenario};
+use flexure::scenario::{Scenario, load_scenario_with};
 use flexure::tune::tune;
 use serde::Serialize;
 
@@ -19,10 +19,10 @@ struct Outcome {
     loops: Vec<Found>,
 }
 
-pub fn margins(options: &Margins, json: bool) -> Result<(), Failure> {
+pub fn margins(options: &Margins, outside: Outside, json: bool) -> Result<(), Failure> {
     check_budget(options.budget)?;
     let chosen = if options.controllers.is_empty() { Vec::new() } else { entrants(&options.controllers)? };
-    let scenario = load_scenario(&options.scenario)?;
+    let scenario = load_scenario_with(&options.scenario, outside)?;
     say(&scenario.warnings);
     let loops = if chosen.is_empty() {
         vec![measured(&scenario, &unwatched)?]

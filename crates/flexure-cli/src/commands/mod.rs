@@ -8,7 +8,7 @@ mod import;
 mod list;
 mod margins;
 mod model;
-mod print;
+pub mod print;
 mod reproduce;
 mod run;
 mod verify;

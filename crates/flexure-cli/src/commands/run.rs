@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use flexure::feasible;
-use flexure::files::{Problem, prepare};
+use flexure::files::{Outside, Problem, prepare};
 use flexure::report::summary_table;
 use flexure::reproduce::{Experiment, write_experiment};
 use flexure::sampled::Sampled;
-use flexure::scenario::load_scenario;
+use flexure::scenario::load_scenario_with;
 use flexure::simulate::{Cause, Summary, exceeded, preload};
 use serde::Serialize;
 
@@ -34,8 +34,8 @@ impl<'a> Outcome<'a> {
     }
 }
 
-pub fn run(scenario: &str, out: &Path, json: bool) -> Result<(), Failure> {
-    let scenario = load_scenario(scenario)?;
+pub fn run(scenario: &str, outside: Outside, out: &Path, json: bool) -> Result<(), Failure> {
+    let scenario = load_scenario_with(scenario, outside)?;
     say(&scenario.warnings);
     say(&preload(&scenario)?);
     let beyond = feasible::exceeded(&scenario, &feasible::usage(&scenario)?);

@@ -8,7 +8,7 @@ use flexure::verify::{self, CheckReport, Claim, Rejected};
 use serde::Serialize;
 
 use super::print;
-use crate::failure::Failure;
+use crate::failure::{Failure, Place};
 
 /// One byte more than a certificate may have: enough to see that it has too many.
 const ENOUGH: u64 = (4 << 20) + 1;
@@ -107,5 +107,6 @@ fn malformed(file: &Path, place: &str, reason: &str, line: Option<usize>, column
         _ => String::new(),
     };
     let message = format!("{}{at} is not a certificate: {}: {}", file.display(), shown(place), shown(reason));
-    Failure::input("verify", message, "the file must be a certificate as docs/certificate.md has it")
+    let hint = "the file must be a certificate as docs/certificate.md has it";
+    Failure::input_at(Place { file: file.display().to_string(), line, column }, "verify", message, hint)
 }

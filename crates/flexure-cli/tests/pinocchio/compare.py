@@ -134,7 +134,7 @@ def along(derivatives, t):
 def compare(binary, urdf, model, path, generator):
     """The largest relative deviation of each quantity."""
     locked = tomllib.loads(path.read_text())["links"].get("locked", {})
-    checked = json.loads(flexure(binary, "check", path, "--json").stdout)
+    checked = json.loads(flexure(binary, "check", path, "--allow-outside", "--json").stdout)
     moving = [row["name"] for row in checked[0]["robot"]]
     model = reduced(model, urdf, moving, locked)
     data, index = model.createData(), order(model, moving)
@@ -146,7 +146,7 @@ def compare(binary, urdf, model, path, generator):
         json.dumps({**dict(zip(KEYS, map(list, state))), "q_m": list(state[0]), "dq_m": list(state[1])})
         for state in states
     ]
-    out = flexure(binary, "model", path, "--states", "-", text="\n".join(lines))
+    out = flexure(binary, "model", path, "--allow-outside", "--states", "-", text="\n".join(lines))
     if out.returncode != 0:
         raise SystemExit(f"{urdf.name}: flexure model: {out.stderr}")
     worst = dict.fromkeys(["M", "bias", "tau", "dtau", "ddtau"], 0.0)

@@ -34,7 +34,8 @@ const SCENARIOS: &[Case] = &[
     ("damping = [15.0, 10.0]", "damping = [15.0, -10.0]", &["s.toml:25:18", "must be > 0", "N m s/rad"]),
     ("metric = [55.0, 30.0]", "metric = [55.0, 30.0", &["s.toml:", "not valid TOML"]),
     ("robot = \"quanser-2dof\"", "robot = \"quanser-2dfo\"", &["s.toml:3:9", "did you mean 'quanser-2dof'?"]),
-    ("robot = \"quanser-2dof\"", "robot = \"../none.toml\"", &["s.toml:3:9", "cannot read", "none.toml"]),
+    ("robot = \"quanser-2dof\"", "robot = \"none.toml\"", &["s.toml:3:9", "cannot read", "none.toml"]),
+    ("robot = \"quanser-2dof\"", "robot = \"../none.toml\"", &["s.toml:3:9", "'../none.toml' is outside"]),
     (
         "[sources]",
         "[[imperfection]]\nkind = \"delay\"\n[sources]",
@@ -48,8 +49,9 @@ fn scenarios() {
     for (from, to, fragments) in SCENARIOS {
         let place = Place::new();
         place.scenario("s.toml", &[(from, to)]);
-        for json in [&[][..], &["--json"]] {
-            place.run(&[&["run", "s.toml"], json].concat()).refused(fragments);
+        for outcome in [place.run(&["run", "s.toml"]), place.run(&["run", "s.toml", "--json"]).error_taken()]
+        {
+            outcome.refused(fragments);
             assert_eq!(place.names("."), ["s.toml"], "{to}: nothing is left behind");
         }
         place.run(&["check", "s.toml"]).refused(fragments);

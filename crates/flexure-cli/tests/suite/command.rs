@@ -63,6 +63,15 @@ impl Outcome {
         serde_json::from_str(&self.stdout).unwrap_or_else(|error| panic!("{error}: {self:?}"))
     }
 
+    /// Without the error that stdout has and nothing else.
+    #[track_caller]
+    pub fn error_taken(self) -> Self {
+        let document = self.json();
+        let keys: Vec<_> = document.as_object().into_iter().flatten().map(|(key, _)| key).collect();
+        assert_eq!(keys, ["error"], "{self:?}");
+        Self { stdout: String::new(), ..self }
+    }
+
     /// It refused the input: exit code 2, nothing on stdout, and a plain message on stderr that has a hint and each of
     /// `fragments`.
     #[track_caller]

@@ -1,5 +1,6 @@
 //! The command as a user meets it: arguments, files, output, messages and exit codes.
 
+mod bad_corpus;
 mod bad_input;
 mod certify;
 mod check_list;
@@ -9,6 +10,7 @@ mod divergence;
 mod eval_model;
 mod hostile;
 mod margins;
+mod outside;
 mod pinocchio;
 mod pipes;
 mod reproduce;

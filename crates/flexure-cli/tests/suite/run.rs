@@ -57,12 +57,13 @@ fn a_scenario_elsewhere_names_its_robot_by_a_relative_path() {
     place.write("data/robots/arm.toml", ROBOT);
     place.scenario("data/scenarios/mine.toml", &[("\"quanser-2dof\"", "\"../robots/arm.toml\""), SHORT]);
     place.scenario("built-in.toml", &[SHORT]);
-    place.run(&["run", "data/scenarios/mine.toml"]).done();
+    place.run(&["run", "data/scenarios/mine.toml"]).refused(&["mine.toml:3:9", "--allow-outside"]);
+    place.run(&["run", "data/scenarios/mine.toml", "--allow-outside"]).done();
     place.run(&["run", "built-in.toml"]).done();
     assert_eq!(place.read("out/mine.csv"), place.read("out/built-in.csv"));
     let absolute = place.path().join("data/scenarios/mine.toml");
     let elsewhere = Place::new();
-    elsewhere.run(&["run", absolute.to_str().unwrap()]).done();
+    elsewhere.run(&["--allow-outside", "run", absolute.to_str().unwrap()]).done();
     assert_eq!(elsewhere.read("out/mine.csv"), place.read("out/mine.csv"));
 }
 

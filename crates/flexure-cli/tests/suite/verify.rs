@@ -71,7 +71,7 @@ fn nasty_files_are_refused_with_their_name() {
     ];
     for (text, said) in cases {
         verify(text, &[]).refused(said);
-        verify(text, &["--json"]).refused(said);
+        verify(text, &["--json"]).error_taken().refused(said);
     }
     let place = Place::new();
     std::fs::create_dir(place.path().join("folder")).unwrap();

@@ -2,8 +2,8 @@
 
 use crate::feasible::{effort, pinned};
 use crate::files::number::duration;
-use crate::files::{Problem, Problems, TASKS};
-use crate::scenario::{Scenario, load_scenario};
+use crate::files::{Outside, Problem, Problems, TASKS};
+use crate::scenario::{Scenario, load_scenario_with};
 
 /// Names of built-in tasks begin with it; left out where only tasks are named.
 const PREFIX: &str = "task-";
@@ -47,15 +47,16 @@ impl Task {
     }
 }
 
-/// Tasks from scenario files or names of built-in scenarios; without any, [the suite](TASKS).
+/// Tasks from scenario files or names of built-in scenarios; without any, [the suite](TASKS). `outside` says whether files may
+/// name files outside of their folders.
 ///
 /// # Errors
 /// With everything that is wrong with one of them, and for a scenario that is named twice.
-pub fn tasks(scenarios: &[String]) -> Result<Vec<Task>, Problems> {
+pub fn tasks(scenarios: &[String], outside: Outside) -> Result<Vec<Task>, Problems> {
     let suite = TASKS.iter().map(|(name, _)| (*name).to_owned()).collect::<Vec<_>>();
     let mut tasks: Vec<Task> = Vec::new();
     for path in if scenarios.is_empty() { &suite } else { scenarios } {
-        let scenario = load_scenario(path)?;
+        let scenario = load_scenario_with(path, outside)?;
         if tasks.iter().any(|task| task.scenario.name == scenario.name) {
             let message = format!("two scenarios are called {}", scenario.name);
             let hint = "name each scenario once; a file's name without its ending tells them apart";

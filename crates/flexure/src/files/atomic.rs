@@ -6,7 +6,8 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use miette::Diagnostic;
-use tempfile::Builder;
+
+use crate::files::leftover;
 
 /// Why a file was not written. Nothing is left behind, and a file that was there before is as it was.
 #[derive(Debug, thiserror::Error)]
@@ -64,12 +65,8 @@ pub fn write_atomic(
     }
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let failed = |cause| WriteError::Content { path: path.into(), cause };
-    let mut builder = Builder::new();
-    // As for any new file, before the umask: temporary files are private otherwise.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let file =
-        builder.tempfile_in(folder).map_err(|cause| WriteError::Folder { folder: folder.into(), cause })?;
+        leftover::create(folder).map_err(|cause| WriteError::Folder { folder: folder.into(), cause })?;
     let mut buffered = BufWriter::new(file);
     write(&mut buffered).map_err(failed)?;
     let file = buffered.into_inner().map_err(|error| failed(error.into_error()))?;
@@ -90,12 +87,14 @@ pub fn prepare(folder: &Path) -> Result<(), WriteError> {
         .map_err(|cause| WriteError::Folder { folder: folder.into(), cause })
 }
 
-/// Creates `folder` if it is missing.
+/// Creates `folder` if it is missing, and removes temporary files from it that runs left there which were killed.
 ///
 /// # Errors
 /// If it cannot be created.
 pub fn create_folder(folder: &Path) -> Result<(), WriteError> {
-    fs::create_dir_all(folder).map_err(|cause| WriteError::Folder { folder: folder.into(), cause })
+    fs::create_dir_all(folder).map_err(|cause| WriteError::Folder { folder: folder.into(), cause })?;
+    leftover::remove(folder);
+    Ok(())
 }
 
 #[cfg(test)]

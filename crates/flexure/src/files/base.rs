@@ -1,53 +1,166 @@
-//! What paths inside a file are relative to.
+//! What paths inside a file are relative to, and which files may be named there.
 
-use std::path::{Path, PathBuf};
+use std::io;
+use std::path::{Component, Path, PathBuf};
 
 use crate::files::diagnostic::Problem;
 use crate::files::source::{self, Source};
 use crate::files::{builtin, suggest};
 
+/// Whether a file may name files outside of its folder.
+///
+/// What is wrong with a file is shown with the line that it is in. A scenario of unknown origin that names
+/// `robot = "../../../etc/passwd"` would show a line of that.
+///
+/// ```
+/// use flexure::files::Outside;
+/// use flexure::scenario::load_scenario_with;
+/// assert!(load_scenario_with("two-link-tanh", Outside::Refused).is_ok());
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Outside {
+    /// Files that a file names lie in its folder or below, links resolved: others are not opened.
+    #[default]
+    Refused,
+    /// A file may name any file.
+    Allowed,
+}
+
 /// Where the file that is being read came from.
 #[derive(Clone, Debug)]
 pub(crate) enum Base {
     /// From this folder: relative paths start there.
-    Folder(PathBuf),
+    Folder(PathBuf, Outside),
     /// Out of the program: a relative path names another file in it.
     BuiltIn,
 }
 
 impl Base {
-    /// The folder of the file at `path`.
-    pub fn of(path: &Path) -> Self {
-        Self::Folder(path.parent().unwrap_or(Path::new("")).to_owned())
+    /// The folder of the file at `path`; of what is no file, as a pipe, the current one.
+    pub fn of(path: &Path, outside: Outside) -> Self {
+        let folder = if path.metadata().is_ok_and(|what| !what.is_file()) { None } else { path.parent() };
+        Self::Folder(folder.unwrap_or(Path::new("")).to_owned(), outside)
     }
 
     /// The base of what stands in the file at `path` of this one.
     pub fn beside(&self, path: &str) -> Self {
         match self {
-            Self::Folder(folder) => Self::of(&folder.join(path)),
-            Self::BuiltIn => Self::of(Path::new(path)),
+            Self::Folder(folder, outside) => Self::of(&folder.join(path), *outside),
+            Self::BuiltIn => Self::BuiltIn,
         }
     }
 
     /// The file at `path`, of at most `limit` bytes.
     pub fn read(&self, path: &str, limit: u64) -> Result<Source, Problem> {
         match self {
-            Self::Folder(folder) => source::read(&folder.join(path), limit),
-            Self::BuiltIn => {
-                if let Some(text) = builtin::file(path) {
-                    return Ok(Source::new(path, text));
-                }
-                if Path::new(path).is_absolute() {
-                    return source::read(Path::new(path), limit);
-                }
-                let message =
-                    format!("{} is a relative path in a file that is in no folder", suggest::quoted(path));
-                Err(Problem::new(
-                    "unreadable",
-                    message,
-                    "give the whole path, or save the file that names it",
-                ))
+            Self::Folder(folder, Outside::Allowed) => source::read(&folder.join(path), limit),
+            Self::Folder(folder, Outside::Refused) => {
+                let named = folder.join(path);
+                let real =
+                    inside(folder, Path::new(path)).map_err(|error| source::unreadable(&named, &error))?;
+                let real = real.ok_or_else(|| outside(path, folder))?;
+                source::read_as(&named, &real, limit)
             }
+            Self::BuiltIn => builtin::file(path).map(|text| Source::new(path, text)).ok_or_else(|| {
+                let message = format!("no built-in file is called {}", suggest::quoted(path));
+                Problem::new("unreadable", message, "built-in files name built-in files only")
+            }),
         }
+    }
+}
+
+/// The file at `path` from `folder` with all links resolved; none if it is not in `folder` or below. Nothing is said of
+/// what is outside, not even whether it is there.
+fn inside(folder: &Path, path: &Path) -> io::Result<Option<PathBuf>> {
+    let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let home = here.canonicalize()?;
+    match here.join(path).canonicalize() {
+        Ok(real) => Ok(real.starts_with(&home).then_some(real)),
+        Err(error) if plain(&home.join(path)).starts_with(&home) => Err(error),
+        Err(_) => Ok(None),
+    }
+}
+
+/// `path` with every `..` taken back, by name alone.
+fn plain(path: &Path) -> PathBuf {
+    let mut plain = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::ParentDir => drop(plain.pop()),
+            part => plain.push(part),
+        }
+    }
+    plain
+}
+
+fn outside(path: &str, folder: &Path) -> Problem {
+    let folder = match folder.display().to_string() {
+        none if none.is_empty() => "the current folder".to_owned(),
+        folder => suggest::quoted(&folder),
+    };
+    let message =
+        format!("{} is outside of {folder}, where the file that names it is", suggest::quoted(path));
+    let help = "move it there, or allow such files with --allow-outside, in a program with Outside::Allowed";
+    Problem::new("outside", message, help)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::path::Path;
+
+    use super::{Base, Outside, inside, plain};
+
+    #[test]
+    fn dots_are_taken_back() {
+        for (path, expected) in
+            [("/a/b/../c", "/a/c"), ("/a/./b", "/a/b"), ("/../../a", "/a"), ("/a/../..", "/")]
+        {
+            assert_eq!(plain(Path::new(path)), Path::new(expected));
+        }
+    }
+
+    /// Inside: at the same place or below, whatever the path looks like and whoever links to whom.
+    #[test]
+    #[cfg(unix)]
+    fn inside_is_where_the_file_is() {
+        use std::os::unix::fs::symlink;
+        let top = tempfile::tempdir().unwrap();
+        let (home, away) = (top.path().join("home"), top.path().join("home-away"));
+        fs::create_dir_all(home.join("sub")).unwrap();
+        fs::create_dir(&away).unwrap();
+        for file in [home.join("sub/in"), away.join("out"), top.path().join("out")] {
+            fs::write(file, "secret").unwrap();
+        }
+        symlink(away.join("out"), home.join("link")).unwrap();
+        symlink(&away, home.join("folder")).unwrap();
+        symlink("sub/in", home.join("near")).unwrap();
+        symlink(&home, top.path().join("alias")).unwrap();
+        let absolute = |path: &Path| path.to_str().unwrap().to_owned();
+        for folder in [&home, &top.path().join("alias")] {
+            for path in
+                ["sub/in", "./sub/../sub/in", "near", "../home/sub/in", &absolute(&home.join("sub/in"))]
+            {
+                assert!(inside(folder, Path::new(path)).unwrap().is_some(), "{path}");
+            }
+            for path in [
+                "../out",
+                "../home-away/out",
+                "sub/../../out",
+                "link",
+                "folder/out",
+                "../none",
+                "/etc/passwd",
+                "/none/none",
+                &absolute(&away.join("out")),
+            ] {
+                assert!(inside(folder, Path::new(path)).unwrap().is_none(), "{path}");
+            }
+            assert!(inside(folder, Path::new("none")).is_err());
+        }
+        let read = |outside| Base::Folder(home.clone(), outside).read("../out", 100);
+        assert_eq!(&*read(Outside::Allowed).unwrap().text, "secret");
+        let refused = read(Outside::Refused).unwrap_err();
+        assert!(!format!("{refused:?}").contains("secret"));
     }
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use miette::{Diagnostic, LabeledSpan, Severity, SourceCode};
 
-use crate::files::source::Source;
+use crate::files::source::{self, Source};
 
 /// One thing wrong with a file, or suspicious about it: what, where, and what to do.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -21,7 +21,9 @@ pub struct Problem {
 impl Problem {
     /// An error that concerns no place in a file.
     pub(crate) fn new(code: &'static str, message: impl Into<String>, help: impl Into<String>) -> Self {
-        Self { message: message.into(), code, help: help.into(), severity: Severity::Error, place: None }
+        // Libraries quote what they read.
+        let (message, help) = (source::harmless(message.into()), source::harmless(help.into()));
+        Self { message, code, help, severity: Severity::Error, place: None }
     }
 
     /// The same problem, at the bytes `span` of `source`.
@@ -54,6 +56,11 @@ impl Problem {
     pub fn line_column(&self) -> Option<(usize, usize)> {
         let (source, span) = self.place.as_deref()?;
         source.line_column(span.start)
+    }
+
+    /// What kind of problem it is, in one word that stays the same: docs/files.md lists them.
+    pub fn code_word(&self) -> &'static str {
+        self.code
     }
 
     /// A hint: what to do about it.

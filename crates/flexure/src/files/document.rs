@@ -7,6 +7,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 
+use crate::files::bounds;
 use crate::files::decimals::Decimals;
 use crate::files::diagnostic::{Problem, Problems};
 use crate::files::quantity::Quantity;
@@ -155,12 +156,13 @@ pub(crate) fn parse<T>(
         log.error(0..0, "wrong-kind", message, help);
         return log.finish(None);
     }
+    if let Some((span, objection)) = bounds::objection(&source.text) {
+        let help = format!("a {} is far smaller: is it the right file?", form.what);
+        log.error(span, "huge", objection, help);
+        return log.finish(None);
+    }
     let (root, errors) = DeTable::parse_recoverable(&source.text);
-    // One slip in nested brackets is reported once for each of them.
-    let same = |a: &Error, b: &Error| a.message() == b.message() && a.span() == b.span();
-    for (_, error) in
-        errors.iter().enumerate().filter(|(i, error)| !errors[..*i].iter().any(|e| same(e, error)))
-    {
+    for error in distinct(&errors) {
         let help =
             "not valid TOML: text stands in quotes, numbers like 0.5, arrays like [1.0, 2.0], one key a line";
         log.error(error.span().unwrap_or(0..0), "syntax", error.message(), help);
@@ -176,6 +178,18 @@ pub(crate) fn parse<T>(
     table.refuse_unknown(&[form.required, form.optional].concat());
     let value = read(&table, &places);
     log.finish(value)
+}
+
+/// The first errors that differ: one slip in nested brackets is reported once for each of them.
+fn distinct(errors: &[Error]) -> Vec<&Error> {
+    let same = |a: &Error, b: &Error| a.message() == b.message() && a.span() == b.span();
+    let mut kept: Vec<&Error> = Vec::new();
+    for error in errors {
+        if kept.len() < MOST_PROBLEMS && !kept.iter().any(|other| same(other, error)) {
+            kept.push(error);
+        }
+    }
+    kept
 }
 
 /// Where the keys of a file stand: to report what only shows once the file is used.

@@ -7,12 +7,14 @@
 
 mod atomic;
 pub(crate) mod base;
+pub(crate) mod bounds;
 pub(crate) mod builtin;
 pub(crate) mod decimals;
 pub(crate) mod diagnostic;
 pub(crate) mod document;
 mod entry;
 pub(crate) mod field;
+mod leftover;
 pub mod number;
 pub(crate) mod provenance;
 pub(crate) mod quantity;
@@ -23,6 +25,7 @@ pub(crate) mod suggest;
 pub(crate) mod table;
 
 pub use atomic::{WriteError, create_folder, prepare, write_atomic};
+pub use base::Outside;
 pub use builtin::{ROBOTS, SCENARIOS, TASKS};
 pub use diagnostic::{Problem, Problems};
 pub use document::Places;

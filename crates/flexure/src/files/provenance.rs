@@ -23,47 +23,77 @@ pub struct Assumption {
 /// Reads `[sources]` of `root`: each key names a key of the same file, in full or by its last parts.
 pub(crate) fn assumptions(root: &Table<'_>, places: &Places) -> Option<Vec<Assumption>> {
     let Some(sources) = root.get("sources") else { return Some(Vec::new()) };
+    let known = Known::of(places);
     let mut assumed = Vec::new();
-    visit(&sources.any_table()?, "", places, &mut assumed)?;
+    visit(&sources.any_table()?, "", &known, places, &mut assumed)?;
     Some(assumed)
 }
 
+/// The keys that may be named.
+struct Known<'a> {
+    /// As they stand in the file.
+    indexed: Vec<Key<'a>>,
+    /// Without the indices of arrays.
+    plain: Vec<Key<'a>>,
+}
+
+struct Key<'a> {
+    path: String,
+    /// Without the name of a joint: a number of one joint is found like the one of all joints.
+    of_all: String,
+    text: &'a str,
+}
+
+impl<'a> Known<'a> {
+    fn of(places: &'a Places) -> Self {
+        let of = |name: fn(&str) -> String| {
+            let keys = places.keys().filter(|(path, _)| !path.starts_with("sources"));
+            let key = |(path, text): (&str, &'a str)| {
+                let path = name(path);
+                Key { of_all: without_joint(&path), path, text }
+            };
+            keys.map(key).collect()
+        };
+        Self { indexed: of(str::to_owned), plain: of(without_indices) }
+    }
+}
+
 /// A dotted key without quotes is a table inside `[sources]`: both notations mean the same.
-fn visit(table: &Table<'_>, prefix: &str, places: &Places, assumed: &mut Vec<Assumption>) -> Option<()> {
+fn visit(
+    table: &Table<'_>,
+    prefix: &str,
+    known: &Known<'_>,
+    places: &Places,
+    assumed: &mut Vec<Assumption>,
+) -> Option<()> {
     for (key, field) in table.fields() {
         let key = if prefix.is_empty() { key.to_owned() } else { format!("{prefix}.{key}") };
         if field.value.is_table() {
-            visit(&field.any_table()?, &key, places, assumed)?;
+            visit(&field.any_table()?, &key, known, places, assumed)?;
         } else if let Some(note) = field.text()?.strip_prefix("assumed:") {
-            let (key, value) = named_by(&key, &field, places)?;
+            let (key, value) = named_by(&key, &field, known)?;
             let note = note.trim().to_owned();
             assumed.push(Assumption { key, value, note, file: places.file().to_owned() });
         } else {
-            named_by(&key, &field, places)?;
+            named_by(&key, &field, known)?;
         }
     }
     Some(())
 }
 
 /// The full key that `key` names, and its text in the file.
-fn named_by(key: &str, field: &Field<'_>, places: &Places) -> Option<(String, String)> {
-    let paths = || {
-        let keys = places.keys().filter(|(path, _)| !path.starts_with("sources"));
-        keys.map(|(path, text)| {
-            (if key.contains('[') { path.to_owned() } else { without_indices(path) }, text)
-        })
-    };
+fn named_by(key: &str, field: &Field<'_>, known: &Known<'_>) -> Option<(String, String)> {
+    let known = if key.contains('[') { &known.indexed } else { &known.plain };
     let ending = format!(".{key}");
-    let mut matches: Vec<_> = paths().filter(|(path, _)| path == key).collect();
+    let mut matches: Vec<_> = known.iter().filter(|k| k.path == key).map(|k| (&k.path, k.text)).collect();
     if matches.is_empty() {
-        // A number of one joint is found like the one of all joints.
-        matches = paths().map(|(path, text)| (without_joint(&path), text)).collect();
-        matches.retain(|(path, _)| path == key || path.ends_with(&ending));
+        let by_its_end = known.iter().filter(|k| k.of_all == key || k.of_all.ends_with(&ending));
+        matches = by_its_end.map(|k| (&k.of_all, k.text)).collect();
     }
-    let Some((first, text)) = matches.first().cloned() else {
-        let known: BTreeSet<String> = paths().map(|(path, _)| path).collect();
+    let Some((first, text)) = matches.first().copied() else {
+        let known: BTreeSet<&str> = known.iter().map(|k| &*k.path).collect();
         let message = format!("{} names no key of this file", suggest::quoted(key));
-        field.error("unknown-source", message, suggest::hint(key, known.iter().map(String::as_str)));
+        field.error("unknown-source", message, suggest::hint(key, known.iter().copied()));
         return None;
     };
     if let Some((other, _)) = matches.iter().find(|(path, _)| *path != first) {
@@ -75,7 +105,7 @@ fn named_by(key: &str, field: &Field<'_>, places: &Places) -> Option<(String, St
         1 => text.split_whitespace().collect::<Vec<_>>().join(" "),
         n => format!("{n} values"),
     };
-    Some((first, value))
+    Some((first.clone(), value))
 }
 
 /// `links.joint[2].mass` → `links.joint.mass`.

@@ -10,9 +10,6 @@ use miette::{MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanConten
 
 use crate::files::diagnostic::Problem;
 
-/// Largest file of tables that is read \[bytes\].
-pub(crate) const LIMIT: u64 = 16 << 20;
-
 /// A file's name and text, or a part of it from some line on; cheap to clone.
 #[derive(Clone, Debug)]
 pub(crate) struct Source {
@@ -33,7 +30,7 @@ impl Source {
     /// From the text after `lines_before` lines.
     pub fn part(name: &str, text: &str, lines_before: usize) -> Self {
         let text: Arc<str> = text.into();
-        let shown = if text.chars().any(is_hostile) { harmless(&text).into() } else { text.clone() };
+        let shown = if text.contains(is_hostile) { harmless(text.to_string()).into() } else { text.clone() };
         Self { name: name.into(), text, shown, lines_before }
     }
 
@@ -103,7 +100,11 @@ fn is_hostile(c: char) -> bool {
     c.is_control() && !matches!(c, '\n' | '\r' | '\t')
 }
 
-fn harmless(text: &str) -> String {
+/// `text` with a question mark for every byte of what a terminal might obey.
+pub(crate) fn harmless(text: String) -> String {
+    if !text.contains(is_hostile) {
+        return text;
+    }
     text.chars()
         .flat_map(|c| {
             let (shown, count) = if is_hostile(c) { ('?', c.len_utf8()) } else { (c, 1) };
@@ -114,17 +115,25 @@ fn harmless(text: &str) -> String {
 
 /// Reads the text file at `path`, of at most `limit` bytes.
 pub(crate) fn read(path: &Path, limit: u64) -> Result<Source, Problem> {
+    read_as(path, path, limit)
+}
+
+/// That the file at `path` cannot be read.
+pub(crate) fn unreadable(path: &Path, error: &std::io::Error) -> Problem {
+    Problem::new(
+        "unreadable",
+        format!("cannot read {}: {error}", path.display()),
+        "give the path of a text file (a path inside a file is relative to that file), or the name of a \
+         built-in robot or scenario",
+    )
+}
+
+/// Reads the text file at `real`, which is called `path`, of at most `limit` bytes.
+pub(crate) fn read_as(path: &Path, real: &Path, limit: u64) -> Result<Source, Problem> {
     let name = path.display();
-    let unreadable = |error: std::io::Error| {
-        Problem::new(
-            "unreadable",
-            format!("cannot read {name}: {error}"),
-            "give the path of a text file (a path inside a file is relative to that file), or the name of a \
-             built-in robot or scenario",
-        )
-    };
+    let unreadable = |error| unreadable(path, &error);
     let mut bytes = Vec::new();
-    let file = File::open(path).map_err(unreadable)?;
+    let file = File::open(real).map_err(unreadable)?;
     file.take(limit + 1).read_to_end(&mut bytes).map_err(unreadable)?;
     if bytes.len() as u64 > limit {
         return Err(Problem::new(

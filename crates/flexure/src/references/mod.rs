@@ -28,6 +28,7 @@ pub use point_to_point::{PointToPoint, Profile};
 pub use registry::{Instant, Jump};
 pub use sampled::Sampled;
 pub use samples::{Samples, SamplesError};
+pub use samples_file::samples_from_text;
 pub use sines::{Sines, Term};
 
 // One line a reference, in the order in which lists show them.

@@ -2,13 +2,17 @@
 
 use std::ops::Range;
 
+use crate::files::Problems;
 use crate::files::base::Base;
 use crate::files::document::Log;
 use crate::files::field::{Field, Joints};
 use crate::files::quantity::{self, Quantity};
-use crate::files::source::{LIMIT, Source};
+use crate::files::source::Source;
 use crate::files::suggest;
 use crate::files::table::Table;
+
+/// Largest file that is read \[bytes\].
+const LIMIT: u64 = 16 << 20;
 
 /// Fewer samples leave nothing to interpolate between with four derivatives.
 const FEWEST: usize = 8;
@@ -35,6 +39,22 @@ pub(crate) fn read(
     let rows = field.log.absorb(log.finish(rows))?;
     check_span(&field, &rows, end)?;
     Some(rows.into_iter().unzip())
+}
+
+/// The times in s and the positions in rad of the samples in `text`, a CSV file with the header `t,q1,…,qn` for as many
+/// `joints`; `name` stands for the file in messages.
+///
+/// # Errors
+/// With what is wrong.
+pub fn samples_from_text(
+    name: &str,
+    text: &str,
+    joints: usize,
+) -> Result<(Vec<f64>, Vec<Vec<f64>>), Problems> {
+    let log = Log::new(&Source::new(name, text));
+    let rows = parse(&log, &Joints { count: Some(joints), robot: "the robot".to_owned() });
+    let (rows, _) = log.finish(rows)?;
+    Ok(rows.into_iter().unzip())
 }
 
 /// One sample: its time and the positions.

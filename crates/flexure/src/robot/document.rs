@@ -9,7 +9,7 @@ use crate::files::decimals::Decimals;
 use crate::files::document::{self, Form};
 use crate::files::source::Source;
 use crate::files::table::Table;
-use crate::files::{Assumption, Places, Problem, Problems, provenance, quantity};
+use crate::files::{Assumption, Outside, Places, Problem, Problems, provenance, quantity};
 use crate::robot::joints::{self, Drives, Limits};
 use crate::robot::links::{self, Assembled, Links, MovingJoint};
 
@@ -74,12 +74,13 @@ impl Robot {
     }
 }
 
-/// Reads a robot from `text`; `name` stands for the file in messages, relative paths in it start from `folder`.
+/// Reads a robot from `text`; `name` stands for the file in messages, relative paths in it start from `folder`
+/// and stay there or below.
 ///
 /// # Errors
 /// With everything that is wrong.
 pub fn robot_from_text(name: &str, text: &str, folder: &Path) -> Result<Robot, Problems> {
-    read(&Source::new(name, text), &Base::Folder(folder.to_owned()))
+    read(&Source::new(name, text), &Base::Folder(folder.to_owned(), Outside::Refused))
 }
 
 const FORM: Form = Form {

@@ -1,18 +1,34 @@
 //! Loading a robot by name or path.
 
+use std::path::Path;
+
 use crate::files::base::Base;
+use crate::files::bounds;
 use crate::files::source::{self, Source};
-use crate::files::{Problems, ROBOTS, builtin};
+use crate::files::{Outside, Problems, ROBOTS, builtin};
 use crate::robot::document::{self, Robot};
 
 /// Loads the robot file at a path, or the built-in robot of that name.
 ///
-/// A bare word without ending or folder is a name; anything else is a path.
+/// A bare word without ending or folder is a name; anything else is a path. Files that the file names must lie in its folder
+/// or below: see [`load_robot_with`].
 ///
 /// # Errors
 /// With everything that is wrong.
 pub fn load_robot(path_or_name: &str) -> Result<Robot, Problems> {
-    robot(path_or_name, &Base::Folder("".into()))
+    load_robot_with(path_or_name, Outside::Refused)
+}
+
+/// As [`load_robot`]; `outside` says whether the file may name files outside of its folder.
+///
+/// # Errors
+/// With everything that is wrong.
+pub fn load_robot_with(path_or_name: &str, outside: Outside) -> Result<Robot, Problems> {
+    if builtin::is_name(path_or_name) {
+        return robot(path_or_name, &Base::BuiltIn);
+    }
+    let path = Path::new(path_or_name);
+    document::read(&source::read(path, bounds::LIMIT)?, &Base::of(path, outside))
 }
 
 impl Robot {
@@ -31,7 +47,7 @@ pub(crate) fn robot(path_or_name: &str, base: &Base) -> Result<Robot, Problems> 
         let text = builtin::find(path_or_name, ROBOTS, "robot")?;
         return document::read(&Source::new(path_or_name, text), &Base::BuiltIn);
     }
-    document::read(&base.read(path_or_name, source::LIMIT)?, &base.beside(path_or_name))
+    document::read(&base.read(path_or_name, bounds::LIMIT)?, &base.beside(path_or_name))
 }
 
 #[cfg(test)]

@@ -1,7 +1,14 @@
 //! A file that may be a robot or a scenario.
 
-use crate::files::{Problems, ROBOTS, builtin, source};
+use std::path::Path;
+
+use toml::de::DeTable;
+
+use crate::files::base::Base;
+use crate::files::{Outside, Problems, ROBOTS, bounds, builtin, source};
+use crate::robot::document as robot;
 use crate::robot::{Robot, load_robot};
+use crate::scenario::document as scenario;
 use crate::scenario::{Scenario, load_scenario};
 
 /// What a file turned out to be.
@@ -13,20 +20,28 @@ pub enum Checked {
     Scenario(Box<Scenario>),
 }
 
-/// Loads the robot or scenario at a path, or the built-in one of that name: a file with the key `links` is a robot.
+/// Loads the robot or scenario at a path, or the built-in one of that name: a file with the key `links` is a robot. It is read
+/// once, so that it may be a pipe. `outside` says whether files may name files outside of their folders.
 ///
 /// # Errors
 /// With everything that is wrong.
-pub fn check(path_or_name: &str) -> Result<Checked, Problems> {
-    let is_robot = if builtin::is_name(path_or_name) {
-        ROBOTS.iter().any(|(name, _)| *name == path_or_name)
-    } else {
-        let text = source::read(path_or_name.as_ref(), source::LIMIT)?.text;
-        toml::de::DeTable::parse_recoverable(&text).0.get_ref().contains_key("links")
-    };
+pub fn check(path_or_name: &str, outside: Outside) -> Result<Checked, Problems> {
+    if builtin::is_name(path_or_name) {
+        let is_robot = ROBOTS.iter().any(|(name, _)| *name == path_or_name);
+        return Ok(if is_robot {
+            Checked::Robot(Box::new(load_robot(path_or_name)?))
+        } else {
+            Checked::Scenario(Box::new(load_scenario(path_or_name)?))
+        });
+    }
+    let path = Path::new(path_or_name);
+    let (source, base) = (source::read(path, bounds::LIMIT)?, Base::of(path, outside));
+    // What is too much for a document is refused by either reader.
+    let is_robot = bounds::objection(&source.text).is_none()
+        && DeTable::parse_recoverable(&source.text).0.get_ref().contains_key("links");
     Ok(if is_robot {
-        Checked::Robot(Box::new(load_robot(path_or_name)?))
+        Checked::Robot(Box::new(robot::read(&source, &base)?))
     } else {
-        Checked::Scenario(Box::new(load_scenario(path_or_name)?))
+        Checked::Scenario(Box::new(scenario::read(&source, &base)?))
     })
 }

@@ -11,7 +11,7 @@ use crate::files::document::{self, Form};
 use crate::files::field::Field;
 use crate::files::source::Source;
 use crate::files::table::Table;
-use crate::files::{Assumption, Places, Problem, Problems, provenance, quantity};
+use crate::files::{Assumption, Outside, Places, Problem, Problems, provenance, quantity};
 use crate::imperfections::document::Context;
 use crate::imperfections::{Imperfection, document as imperfection};
 use crate::laws::{Controller, VcbcGains, document as controller};
@@ -136,12 +136,13 @@ pub enum Hold {
     Continuous,
 }
 
-/// Reads a scenario from `text`; `name` stands for the file in messages, relative paths in it start from `folder`.
+/// Reads a scenario from `text`; `name` stands for the file in messages, relative paths in it start from `folder`
+/// and stay there or below.
 ///
 /// # Errors
 /// With everything that is wrong, in the robot's file as well.
 pub fn scenario_from_text(name: &str, text: &str, folder: &Path) -> Result<Scenario, Problems> {
-    read(&Source::new(name, text), &Base::Folder(folder.to_owned()))
+    read(&Source::new(name, text), &Base::Folder(folder.to_owned(), Outside::Refused))
 }
 
 const FORM: Form = Form {

@@ -3,24 +3,34 @@
 use std::path::Path;
 
 use crate::files::base::Base;
+use crate::files::bounds;
 use crate::files::source::{self, Source};
-use crate::files::{Problems, SCENARIOS, TASKS, builtin};
+use crate::files::{Outside, Problems, SCENARIOS, TASKS, builtin};
 use crate::scenario::document::{self, Scenario};
 
 /// Loads the scenario file at a path, or the built-in scenario of that name.
 ///
-/// A bare word without ending or folder is a name; anything else is a path.
+/// A bare word without ending or folder is a name; anything else is a path. Files that a file names must lie in its folder
+/// or below: see [`load_scenario_with`].
 ///
 /// # Errors
 /// With everything that is wrong, in the robot's file as well.
 pub fn load_scenario(path_or_name: &str) -> Result<Scenario, Problems> {
+    load_scenario_with(path_or_name, Outside::Refused)
+}
+
+/// As [`load_scenario`]; `outside` says whether files may name files outside of their folders.
+///
+/// # Errors
+/// With everything that is wrong, in the robot's file as well.
+pub fn load_scenario_with(path_or_name: &str, outside: Outside) -> Result<Scenario, Problems> {
     if builtin::is_name(path_or_name) {
         let known = [SCENARIOS, TASKS].concat();
         let text = builtin::find(path_or_name, &known, "scenario")?;
         return document::read(&Source::new(path_or_name, text), &Base::BuiltIn);
     }
     let path = Path::new(path_or_name);
-    document::read(&source::read(path, source::LIMIT)?, &Base::of(path))
+    document::read(&source::read(path, bounds::LIMIT)?, &Base::of(path, outside))
 }
 
 impl Scenario {

@@ -24,5 +24,5 @@ pub use any::{Checked, check};
 pub use document::{Hold, Scenario, scenario_from_text};
 pub use guard::GuardSettings;
 pub use initial::Initial;
-pub use load::load_scenario;
+pub use load::{load_scenario, load_scenario_with};
 pub use plant::Plant;

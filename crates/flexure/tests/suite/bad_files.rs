@@ -455,7 +455,7 @@ fn what_cannot_be_read_is_refused() {
         }
     };
     refused(&file("latin.toml", b"# ok\nname = \"\xe9\""), "is not UTF-8: invalid byte 13 in line 2");
-    refused(&file("huge.toml", &vec![b'#'; (16 << 20) + 1]), "is larger than 16 MiB");
+    refused(&file("huge.toml", &vec![b'#'; (1 << 20) + 1]), "is larger than 1 MiB");
     refused(&file("empty.toml", b""), "missing key");
     refused(&file("nul.toml", b"\0\0"), "nul.toml:1:1");
     refused(&file("deep.toml", format!("a = {}", "[".repeat(100_000)).as_bytes()), "deep.toml:1:");

@@ -11,7 +11,7 @@ use flexure::compare::entrants;
 use flexure::compare::ranks;
 use flexure::compare::tasks;
 use flexure::compare::{check_budget, compare};
-use flexure::files::TASKS;
+use flexure::files::{Outside, TASKS};
 use flexure::imperfections::Imperfection;
 use flexure::report::chatter_figure;
 use flexure::report::effort_figure;
@@ -123,14 +123,15 @@ fn laws_are_named_once() {
     assert!(refused(&["pd", "vcbc:than"]).contains("did you mean 'vcbc:tanh'?"));
     assert!(refused(&["pd", "vcbc", "pd"]).contains("pd takes part twice"));
     assert!(check_budget(0).is_err() && check_budget(1).is_ok());
-    let twice = tasks(&["two-link-tanh".to_owned(), "two-link-tanh".to_owned()]).expect_err("refused");
+    let twice = tasks(&["two-link-tanh".to_owned(), "two-link-tanh".to_owned()], Outside::Refused)
+        .expect_err("refused");
     assert!(twice.to_string().contains("two scenarios are called two-link-tanh"));
 }
 
 /// Every task of the suite loads, and says what is assumed about it; no two differ in their name alone.
 #[test]
 fn the_suite_has_tasks_of_every_sort() {
-    let suite = tasks(&[]).expect("built in");
+    let suite = tasks(&[], Outside::Refused).expect("built in");
     assert_eq!(suite.len(), TASKS.len());
     assert!(suite.len() >= 9);
     let kinds: Vec<_> =

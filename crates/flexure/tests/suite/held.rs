@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use flexure::compare::{compare, entrants, tasks};
 use flexure::core::scalar::{Interval, Scalar};
-use flexure::files::{ROBOTS, SCENARIOS};
+use flexure::files::{Outside, ROBOTS, SCENARIOS};
 use flexure::margins::margins;
 use flexure::progress::unwatched;
 use flexure::reproduce::reproduce;
@@ -257,7 +257,8 @@ fn long_jobs_can_be_broken_off() {
     assert!(tune(&scenario, 1000, 0, &after(3)).expect_err("broken off").is_interrupted());
     assert!(margins(&scenario, &after(2)).expect_err("broken off").is_interrupted());
     let watched = after(4);
-    let (tasks, laws) = (tasks(&[]), entrants(&["pd".to_owned(), "vcbc".to_owned()]).expect("laws"));
+    let (tasks, laws) =
+        (tasks(&[], Outside::Refused), entrants(&["pd".to_owned(), "vcbc".to_owned()]).expect("laws"));
     let tasks = &tasks.expect("built in")[..2];
     let broken = compare(tasks, &laws, 1000, 0, &|_, fraction| watched(fraction)).expect_err("broken off");
     assert!(broken.is_interrupted(), "{broken}");

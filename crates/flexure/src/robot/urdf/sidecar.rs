@@ -5,8 +5,9 @@ use std::path::Path;
 
 use crate::files::document::Log;
 use crate::files::site::Site;
+use crate::files::source::{self, Source};
 use crate::files::suggest::{key, text};
-use crate::files::{Problem, Problems, source};
+use crate::files::{Problem, Problems};
 use crate::robot::document::DAMPING;
 use crate::robot::links::{Assembled, DriveDefaults, JointKind, MovingJoint};
 use crate::robot::urdf::{LIMIT, Locks, Urdf};
@@ -29,8 +30,19 @@ pub struct Import {
 /// # Errors
 /// With everything that is wrong with the URDF or the locks.
 pub fn import(path: &str, locks: &[(String, f64)]) -> Result<Import, Problems> {
-    let source = source::read(Path::new(path), LIMIT)?;
-    let log = Log::new(&source);
+    drafted(path, &source::read(Path::new(path), LIMIT)?, locks)
+}
+
+/// As [`import`], from the `text` of the URDF; `path` stands for it in messages and in the draft.
+///
+/// # Errors
+/// With everything that is wrong with the URDF or the locks.
+pub fn import_text(path: &str, text: &str, locks: &[(String, f64)]) -> Result<Import, Problems> {
+    drafted(path, &Source::new(path, text), locks)
+}
+
+fn drafted(path: &str, source: &Source, locks: &[(String, f64)]) -> Result<Import, Problems> {
+    let log = Log::new(source);
     let draft = super::with(&log, |urdf| {
         let site = Site { path: "lock".to_owned(), ..urdf.site.clone() };
         let sound: Vec<_> = locks.iter().map(|(name, q)| urdf.can_hold(name, *q, &site)).collect();

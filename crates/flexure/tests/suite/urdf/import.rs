@@ -79,9 +79,9 @@ fn odd_names_survive() {
 /// The draft of panda.urdf, completed, is the built-in arm.
 #[test]
 fn the_draft_of_the_panda_is_the_panda() {
-    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots/panda.urdf");
-    let toml = import(root, &[]).unwrap().toml.replace("nan", "0.5");
-    let robot = robot_from_text("draft.toml", &toml, ".".as_ref()).unwrap();
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots");
+    let toml = import(&format!("{folder}/panda.urdf"), &[]).unwrap().toml.replace("nan", "0.5");
+    let robot = robot_from_text("draft.toml", &toml, folder.as_ref()).unwrap();
     let panda = load_robot("panda").unwrap();
     assert_eq!((robot.links, robot.limits), (panda.links, panda.limits));
 }
