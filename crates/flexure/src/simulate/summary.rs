@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::simulate::following::Following;
+
 /// The figures of one closed-loop run: the contract of `run --json` and `reproduce --json`.
 ///
 /// ```
@@ -24,6 +26,9 @@ pub struct Summary {
     pub plant: Vec<&'static str>,
     /// What stands between the ideal loop and this one, as kinds of `[[imperfection]]` in the scenario file.
     pub imperfections: Vec<&'static str>,
+    /// Whether the run follows its reference, why not, and what it was held to.
+    #[serde(flatten)]
+    pub following: Following,
     /// Largest |q_l − q_ld| over all joints and the whole run, in rad. Like the next two NaN (null in JSON) for a run
     /// that diverged.
     pub max_abs_e_l: f64,
