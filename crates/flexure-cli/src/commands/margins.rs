@@ -36,9 +36,12 @@ pub fn margins(options: &Margins, json: bool) -> Result<(), Failure> {
         print::line(&margins_table(&loops))?;
         for found in &loops {
             print::line(&format!(
-                "{} holds: it does not diverge, and its rms error is at most {:.3} mrad; {} runs",
+                "{} holds: it follows as a run must, with an rms error of at most {:.3} mrad, torques of at most {:.4} N m, \
+                 changing by at most {:.4} N m a control period, rms; {} runs",
                 found.law(),
                 1e3 * found.allowed_rms_e_l,
+                found.allowed_max_u_m,
+                found.allowed_rms_torque_change,
                 found.runs
             ))?;
         }

@@ -22,28 +22,26 @@ pub fn effort(scenario: &Scenario) -> Result<f64, Problems> {
     Ok((squared.into_iter().fold(0.0, f64::max) / f64::from(instants)).sqrt())
 }
 
-/// Largest motor torque that the reference of `scenario` takes [N m], and how far it goes from where the links start, in rad,
-/// a joint each: at the control instants.
+/// Largest motor torque that the reference of `scenario` takes at the control instants [N m], and how far from where the links
+/// start it begins, in rad, a joint each.
 ///
 /// # Errors
 /// As [`speed`].
 pub fn peak_torque(scenario: &Scenario) -> Result<Vec<(f64, f64)>, Problems> {
     let start = &scenario.initial.q_l;
-    fold(scenario, vec![(0.0_f64, 0.0_f64); start.len()], |peaks, demand| {
-        let joints = demand.torque.iter().zip(&demand.position).zip(start);
-        for ((torque, size), ((u_m, q_ld), start)) in peaks.iter_mut().zip(joints) {
+    fold(scenario, Vec::new(), |peaks: &mut Vec<(f64, f64)>, demand| {
+        if peaks.is_empty() {
+            let begins = demand.position.iter().zip(start);
+            *peaks = begins.map(|(q_ld, start)| (0.0, (q_ld - start).abs())).collect();
+        }
+        for ((torque, _), u_m) in peaks.iter_mut().zip(&demand.torque) {
             *torque = torque.max(u_m.abs());
-            *size = size.max((q_ld - start).abs());
         }
     })
 }
 
 /// What `each` makes of the demands at every control instant.
-fn fold<A: Clone>(
-    scenario: &Scenario,
-    from: A,
-    each: impl Fn(&mut A, &Demand),
-) -> Result<A, Problems> {
+fn fold<A: Clone>(scenario: &Scenario, from: A, each: impl Fn(&mut A, &Demand)) -> Result<A, Problems> {
     let speed = speed(scenario)?;
     with_track(scenario, |track| {
         let demands = track.at_speed(speed);

@@ -214,8 +214,7 @@ pub(crate) const ACCEPTED_CHANGE: Quantity = Quantity::positive(
 );
 pub(crate) const ACCEPTED_SHARE: Quantity =
     Quantity::probability("part of the control instants at which the drive is at its torque limit");
-pub(crate) const SETTLING: Quantity =
-    Quantity::non_negative("time from which errors count", units::TIME);
+pub(crate) const SETTLING: Quantity = Quantity::non_negative("time from which errors count", units::TIME);
 pub(crate) const TORQUE_STEP: Quantity =
     Quantity::non_negative("step that the motor torque comes in, link side of the gear", units::TORQUE);
 pub(crate) const COUNTS: Quantity = Quantity::positive("counts per turn of the encoder's shaft", units::NONE)

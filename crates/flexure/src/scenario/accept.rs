@@ -25,8 +25,7 @@ pub struct Accept {
 }
 
 /// Its keys.
-const KEYS: &[&str] =
-    &["error", "settling", "torque", "speed", "deflection", "torque_change", "at_limit"];
+const KEYS: &[&str] = &["error", "settling", "torque", "speed", "deflection", "torque_change", "at_limit"];
 
 /// Reads `[accept]`; `times` are duration and control period.
 pub(crate) fn read(root: &Table<'_>, joints: &Joints, times: Option<(f64, f64)>) -> Option<Accept> {

@@ -15,12 +15,12 @@ const PART: f64 = 0.1;
 /// Largest error that is accepted by default \[rad\].
 const LOST: f64 = 0.1;
 
-/// Times the torque that the reference takes, or that bends the springs by the size of the reference, which is accepted of
-/// joints without a torque limit.
+/// Times the torque that the reference takes, or that bends the springs by the distance to the reference at the start, which is
+/// accepted of joints without a torque limit.
 const TIMES: f64 = 10.0;
 
-/// Size of the smallest reference in that rule \[rad\].
-const SMALLEST: f64 = 0.1;
+/// Least torque in that rule, as what bends the spring so far \[rad\].
+const LEAST: f64 = 0.1;
 
 /// Part of the accepted torque that is accepted as its change from one control instant to the next.
 const CHANGE: f64 = 0.1;
@@ -171,8 +171,8 @@ impl Criteria {
     }
 }
 
-/// The robot's limits; of joints without one, [`TIMES`] what the reference takes or what bends the spring by its size, whichever
-/// is more.
+/// The robot's limits; of joints without one, [`TIMES`] what the reference takes or what bends the spring by the distance to it at
+/// the start, whichever is more.
 fn default_torque(scenario: &Scenario) -> Result<(Vec<f64>, &'static str), Problems> {
     let limits = &scenario.robot.limits.torque;
     if scenario.accept.torque.is_some() || limits.iter().all(|limit| limit.is_finite()) {
@@ -181,10 +181,11 @@ fn default_torque(scenario: &Scenario) -> Result<(Vec<f64>, &'static str), Probl
     let stiffness = &scenario.robot.stiffness;
     let needed = peak_torque(scenario)?;
     let most = |i: usize| {
-        let (torque, size) = needed[i];
-        if limits[i].is_finite() { limits[i] } else { TIMES * torque.max(stiffness[i] * size.max(SMALLEST)) }
+        let (torque, distance) = needed[i];
+        let unlimited = (TIMES * torque.max(stiffness[i] * distance)).max(stiffness[i] * LEAST);
+        if limits[i].is_finite() { limits[i] } else { unlimited }
     };
-    let because = "where the robot has no limit, ten times what the reference takes, or what bends the spring by the \
-                   reference's size";
+    let because = "where the robot has no limit, ten times what the reference takes or what bends the spring by the \
+                   distance to it at the start, at least what bends it by 0.1 rad";
     Ok(((0..limits.len()).map(most).collect(), because))
 }

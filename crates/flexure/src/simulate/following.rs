@@ -175,7 +175,14 @@ impl Watch {
                 amount(limit),
                 bound.because
             );
-            Reason { joint: Some(joint.name.clone()), measure: Some(bound.measure), value, limit, time, words }
+            Reason {
+                joint: Some(joint.name.clone()),
+                measure: Some(bound.measure),
+                value,
+                limit,
+                time,
+                words,
+            }
         })
     }
 }
