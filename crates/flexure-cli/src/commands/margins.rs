@@ -2,6 +2,7 @@
 
 use flexure::compare::{Entrant, check_budget, entrants};
 use flexure::files::Problems;
+use flexure::files::number::significant;
 use flexure::margins::{Margins as Found, margins as measured};
 use flexure::progress::unwatched;
 use flexure::report::margins_table;
@@ -36,12 +37,12 @@ pub fn margins(options: &Margins, json: bool) -> Result<(), Failure> {
         print::line(&margins_table(&loops))?;
         for found in &loops {
             print::line(&format!(
-                "{} holds: it follows as a run must, with an rms error of at most {:.3} mrad, torques of at most {:.4} N m, \
-                 changing by at most {:.4} N m a control period, rms; {} runs",
+                "{} holds: it follows, with an rms error of at most {:.3} mrad and torques of at most {} N m\n\
+                 that change by at most {} N m (rms) a control period; {} runs",
                 found.law(),
                 1e3 * found.allowed_rms_e_l,
-                found.allowed_max_u_m,
-                found.allowed_rms_torque_change,
+                significant(found.allowed_max_u_m, 3),
+                significant(found.allowed_rms_torque_change, 3),
                 found.runs
             ))?;
         }

@@ -130,7 +130,7 @@ fn what_is_accepted_is_checked() {
         ("settling = 20.0", ["accept.settling is 20 s", "must be <= duration, 10 s"]),
         ("at_limit = 2.0", ["accept.at_limit", "2"]),
         ("errors = 0.1", ["unknown key 'errors' in [accept]", "did you mean 'error'?"]),
-        ("torque = [1.0, 2.0, 3.0]", ["accept.torque: 2 numbers expected", "got 3"]),
+        ("speed = [1.0, 2.0, 3.0]", ["accept.speed: 2 numbers expected", "got 3"]),
     ] {
         place.scenario("bad.toml", &[("error = 0.05", line)]);
         place.run(&["run", "bad.toml"]).refused(&fragments);

@@ -47,8 +47,8 @@ pub struct Summary {
     pub rms_torque_change: f64,
     /// Fraction of control periods in which a torque limit was active.
     pub saturated_fraction: f64,
-    /// Fraction of control periods in which no certificate of the law could hold: a limit was active, or the guard had
-    /// stopped the robot.
+    /// Fraction of control periods in which no certificate of the law could hold: the motors did not give what the law asked, or
+    /// the guard limited or stopped the robot.
     pub suspended_fraction: f64,
     /// Times that the guard stopped the robot.
     pub stops: u32,
