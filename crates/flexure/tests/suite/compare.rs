@@ -292,7 +292,7 @@ fn laws_that_are_late(unlimited: bool) {
     let mut scenario = load_scenario("task-delay-4ms").expect("built in");
     scenario.duration = 6.0;
     scenario.plant.unlimited = unlimited;
-    scenario.accept.error = Some(vec![0.3; 2]);
+    scenario.accept.error = Some(vec![0.6; 2]);
     for imperfection in &mut scenario.imperfections {
         if let Imperfection::Delay(delay) = imperfection {
             delay.computation = 0.1;
