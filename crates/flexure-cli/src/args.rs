@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use flexure::compare::BUDGET;
+use flexure::compare::{BUDGET, SEEDS};
 use flexure::files::Outside;
 
 /// Model, design, simulate and compare controllers for robots with elastic joints.
@@ -153,12 +153,15 @@ pub struct Compare {
     /// Laws: names of `flexure list controllers`, vcbc:tanh, vcbc:coupled-tanh; the first list and vcbc:tanh if left out.
     #[arg(long, value_name = "LAW", value_delimiter = ',')]
     pub controllers: Vec<String>,
-    /// Runs that the search for gains may simulate, for each law and task.
+    /// Runs that the search for gains may simulate, for each law, task and seed.
     #[arg(long, value_name = "RUNS", default_value_t = BUDGET)]
     pub budget: usize,
-    /// Seed of the search.
+    /// First seed of search and imperfections.
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
+    /// Number of seeds: what ranks is the median, and places that overlap are ties.
+    #[arg(long, value_name = "COUNT", default_value_t = SEEDS)]
+    pub seeds: usize,
     #[command(flatten)]
     pub output: Output,
 }

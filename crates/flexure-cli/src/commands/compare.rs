@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use flexure::compare::{Leaderboard, check_budget, compare as compared, entrants, tasks};
+use flexure::compare::{
+    Leaderboard, Search, check_budget, check_seeds, compare as compared, entrants, tasks,
+};
 use flexure::files::{Outside, prepare};
 use flexure::report::{leaderboard_table, write_leaderboard};
 use serde::Serialize;
@@ -22,6 +24,7 @@ struct Outcome<'a> {
 
 pub fn compare(options: &Compare, outside: Outside, json: bool) -> Result<(), Failure> {
     check_budget(options.budget)?;
+    check_seeds(options.seeds)?;
     let entrants = entrants(&options.controllers)?;
     let tasks = tasks(&options.scenarios, outside)?;
     say(tasks.iter().flat_map(|task| &task.scenario.warnings));
@@ -29,9 +32,8 @@ pub fn compare(options: &Compare, outside: Outside, json: bool) -> Result<(), Fa
     prepare(out)?;
     let leaderboard = {
         let progress = Progress::new("comparing", tasks.len() * entrants.len());
-        compared(&tasks, &entrants, options.budget, options.seed, &|pair, fraction| {
-            progress.set(pair, fraction)
-        })?
+        let search = Search { budget: options.budget, seed: options.seed, seeds: options.seeds };
+        compared(&tasks, &entrants, search, &|pair, fraction| progress.set(pair, fraction))?
     };
     let files = write_leaderboard(out, &leaderboard, &tasks)?;
     if json {
@@ -45,14 +47,14 @@ pub fn compare(options: &Compare, outside: Outside, json: bool) -> Result<(), Fa
     hopeless(&leaderboard)
 }
 
-/// The answer is no if every law diverges on a task.
+/// The answer is no if no law follows on a task.
 fn hopeless(leaderboard: &Leaderboard) -> Result<(), Failure> {
     let names: Vec<&str> = leaderboard.hopeless().map(|task| task.scenario.as_str()).collect();
     if names.is_empty() {
         return Ok(());
     }
-    let message = format!("every law diverges on {}", names.join(", "));
+    let message = format!("no law follows the reference on {}", names.join(", "));
     let hint =
         "raise --budget, add --controllers, or make the task easier: a shorter control_period, less delay";
-    Err(Failure::no("diverged", message, hint))
+    Err(Failure::no("lost", message, hint))
 }

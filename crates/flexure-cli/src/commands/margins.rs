@@ -1,6 +1,7 @@
 //! `flexure margins`: how much a loop bears.
 
 use flexure::compare::{Entrant, check_budget, entrants};
+use flexure::files::number::significant;
 use flexure::files::{Outside, Problems};
 use flexure::margins::{Margins as Found, margins as measured};
 use flexure::progress::unwatched;
@@ -36,9 +37,12 @@ pub fn margins(options: &Margins, outside: Outside, json: bool) -> Result<(), Fa
         print::line(&margins_table(&loops))?;
         for found in &loops {
             print::line(&format!(
-                "{} holds: it does not diverge, and its rms error is at most {:.3} mrad; {} runs",
+                "{} holds: it follows, with an rms error of at most {:.3} mrad and torques of at most {} N m\n\
+                 that change by at most {} N m (rms) a control period; {} runs",
                 found.law(),
                 1e3 * found.allowed_rms_e_l,
+                significant(found.allowed_max_u_m, 3),
+                significant(found.allowed_rms_torque_change, 3),
                 found.runs
             ))?;
         }

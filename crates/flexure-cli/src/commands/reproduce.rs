@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::print;
-use super::run::{Outcome, diverged};
+use super::run::{Outcome, objections};
 use crate::failure::Failure;
 use crate::progress::Progress;
 
@@ -52,6 +52,6 @@ pub fn reproduce(out: &Path, json: bool) -> Result<(), Failure> {
             report.display()
         ))?;
     }
-    let diverged: Vec<_> = experiments.iter().filter_map(diverged).map(Into::into).collect();
-    if diverged.is_empty() { Ok(()) } else { Err(Failure::No(diverged)) }
+    let objections: Vec<_> = experiments.iter().flat_map(objections).map(Into::into).collect();
+    if objections.is_empty() { Ok(()) } else { Err(Failure::No(objections)) }
 }

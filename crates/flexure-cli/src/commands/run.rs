@@ -8,7 +8,7 @@ use flexure::report::summary_table;
 use flexure::reproduce::{Experiment, write_experiment};
 use flexure::sampled::Sampled;
 use flexure::scenario::load_scenario_with;
-use flexure::simulate::{Cause, Summary, exceeded, preload};
+use flexure::simulate::{Cause, Following, Reason, Summary, exceeded, preload};
 use serde::Serialize;
 
 use super::print;
@@ -58,11 +58,12 @@ pub fn run(scenario: &str, outside: Outside, out: &Path, json: bool) -> Result<(
         if let Some(sampled) = &experiment.sampled {
             print::line(&sampled.line())?;
         }
+        print::line(&verdict(&experiment.run.summary.following))?;
         for file in &files {
             print::line(&format!("wrote {}", file.display()))?;
         }
     }
-    let answers: Vec<Problem> = diverged(&experiment).into_iter().chain(beyond).collect();
+    let answers: Vec<Problem> = objections(&experiment).into_iter().chain(beyond).collect();
     if answers.is_empty() {
         return Ok(());
     }
@@ -82,8 +83,30 @@ fn summary_line(summary: &Summary) -> Option<String> {
     })
 }
 
+/// Whether it follows, and what it was held to.
+fn verdict(following: &Following) -> String {
+    let answer = if following.follows { "yes" } else { "no" };
+    let accepted = following.accepted.words().into_iter().map(|words| format!("\n  {words}"));
+    format!("follows its reference: {answer}; accepted are{}", accepted.collect::<String>())
+}
+
+/// What to say of a loop that does not follow its reference.
+pub fn objections(experiment: &Experiment) -> Vec<Problem> {
+    if let Some(problem) = diverged(experiment) {
+        return vec![problem];
+    }
+    let Experiment { scenario, run, .. } = experiment;
+    let hint = "what is accepted stands in [accept], or follows from the robot's limits and the reference; slower references \
+                and smooth starts take less";
+    let problem = |reason: &Reason| {
+        let message = format!("{}: the loop does not follow: {}", scenario.name, reason.words);
+        scenario.places.problem("reference", "lost", message, hint)
+    };
+    run.summary.following.reasons.iter().map(problem).collect()
+}
+
 /// What to say of a loop that diverged.
-pub fn diverged(experiment: &Experiment) -> Option<Problem> {
+fn diverged(experiment: &Experiment) -> Option<Problem> {
     let Experiment { scenario, run, sampled, .. } = experiment;
     run.divergence.map(|divergence| {
         let code = match divergence.cause {

@@ -65,6 +65,7 @@ fn bad_questions_are_refused() {
     );
     refused(&["short.toml", "--controllers", ""], &["no controller is called ''"]);
     refused(&["short.toml", "--budget", "0"], &["budget is 0 runs"]);
+    refused(&["short.toml", "--seeds", "0"], &["number of seeds is 0"]);
     refused(&["short.toml", "bad.toml"], &["bad.toml:4:12", "duration is -1 s"]);
     refused(&["short.toml", "folder/short.toml"], &["two scenarios are called short"]);
     refused(&["task-ideal-trackin"], &["did you mean 'task-ideal-tracking'?"]);
@@ -84,7 +85,7 @@ fn a_task_that_no_law_survives_is_an_answer() {
     let outcome =
         place.run(&["compare", "late.toml", "--controllers", "backstepping,cascade", "--budget", "1"]);
     assert_eq!(outcome.code, Some(1), "{outcome:?}");
-    outcome.said(&["every law diverges on late"]);
+    outcome.said(&["no law follows the reference on late"]);
     assert!(outcome.stdout.contains('—'));
     assert!(place.names("out").contains(&"compare.html".to_owned()));
 }

@@ -87,3 +87,53 @@ fn a_later_run_replaces_the_files_of_an_earlier_one() {
     assert!(place.read("out/short.csv").starts_with("t,"));
     assert_eq!(place.names("out").len(), 3);
 }
+
+/// A loop that misses every deadline stays where it is, bounded and lost: the answer is no, with joint, value, limit and time.
+#[test]
+fn a_loop_that_does_not_follow_is_an_answer() {
+    let place = Place::new();
+    let late = "[[imperfection]]\nkind = \"deadline\"\nprobability = 1.0\n\n[sources]";
+    place.scenario("late.toml", &[("duration = 10.0", "duration = 2.0"), ("[sources]", late)]);
+    let outcome = place.run(&["run", "late.toml"]);
+    assert_eq!(outcome.code, Some(1), "{outcome:?}");
+    outcome.said(&[
+        "error[lost]",
+        "late: the loop does not follow: joint joint1: position error of",
+        "[accept]",
+    ]);
+    assert!(outcome.stdout.contains("follows its reference: no; accepted are"), "{}", outcome.stdout);
+    assert!(outcome.stdout.contains("from t = 1 s on (half of the run)"), "{}", outcome.stdout);
+
+    let outcome = place.run(&["run", "late.toml", "--json"]);
+    assert_eq!(outcome.code, Some(1));
+    let summary = outcome.json();
+    assert_summary(&summary);
+    assert_eq!((&summary["follows"], &summary["diverged_at"]), (&false.into(), &Value::Null));
+    let reason = &summary["reasons"][0];
+    assert_eq!((&reason["joint"], &reason["measure"]), (&"joint1".into(), &"error".into()));
+    assert_eq!(reason["limit"], 0.05);
+    assert!(reason["value"].as_f64().unwrap() > 0.8 && reason["time"].as_f64().unwrap() >= 1.0, "{reason}");
+    assert_eq!(summary["accepted"]["bounds"].as_array().unwrap().len(), 6);
+
+    place.scenario("sound.toml", &[("duration = 10.0", "duration = 0.5")]);
+    let outcome = place.run(&["run", "sound.toml", "--json"]).done();
+    assert_eq!(
+        (&outcome.json()["follows"], &outcome.json()["reasons"]),
+        (&true.into(), &Value::Array(vec![]))
+    );
+}
+
+#[test]
+fn what_is_accepted_is_checked() {
+    let place = Place::new();
+    for (line, fragments) in [
+        ("error = -0.1", ["accept.error", "must be > 0"]),
+        ("settling = 20.0", ["accept.settling is 20 s", "must be <= duration, 10 s"]),
+        ("at_limit = 2.0", ["accept.at_limit", "2"]),
+        ("errors = 0.1", ["unknown key 'errors' in [accept]", "did you mean 'error'?"]),
+        ("speed = [1.0, 2.0, 3.0]", ["accept.speed: 2 numbers expected", "got 3"]),
+    ] {
+        place.scenario("bad.toml", &[("error = 0.05", line)]);
+        place.run(&["run", "bad.toml"]).refused(&fragments);
+    }
+}

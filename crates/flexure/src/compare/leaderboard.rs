@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::compare::ranking::{Standing, TIE, ranks, standings};
+use crate::compare::ranking::{Spread, Standing, TIE, ranks, standings};
 use crate::compare::score::Score;
 use crate::compare::task::Task;
 
@@ -13,21 +13,22 @@ const VCBC: &str = "vcbc";
 ///
 /// ```
 /// use std::ops::ControlFlow;
-/// use flexure::compare::{Task, compare, entrants};
+/// use flexure::compare::{Search, Task, compare, entrants};
 ///
 /// let mut scenario = flexure::Scenario::load("pendulum-tanh")?;
 /// scenario.duration = 0.5; // s
 /// let laws = entrants(&["vcbc:tanh", "pd"].map(str::to_owned))?;
-/// // Two runs for each law, seed 0, nobody watches.
-/// let board = compare(&[Task::new(&scenario)?], &laws, 2, 0, &|_, _| ControlFlow::Continue(()))?;
+/// // Two runs for each law; nobody watches.
+/// let search = Search { budget: 2, ..Search::default() };
+/// let board = compare(&[Task::new(&scenario)?], &laws, search, &|_, _| ControlFlow::Continue(()))?;
 /// assert_eq!(board.ranking[0].law, "vcbc:tanh");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, Serialize)]
 pub struct Leaderboard {
-    /// Runs that each law might simulate on each task.
+    /// Runs that each law might simulate on each task, for each seed.
     pub budget: usize,
-    /// Seed of every search.
+    /// The first of the seeds.
     pub seed: u64,
     /// The laws by mean rank, the best first.
     pub ranking: Vec<Standing>,
@@ -42,6 +43,10 @@ pub struct TaskScores {
     pub task: String,
     /// Name of its scenario.
     pub scenario: String,
+    /// Whether its imperfections draw random numbers, so that seeds matter to its runs and not only to searches.
+    pub random: bool,
+    /// Seeds that each law was searched and run with: one where no seed can matter.
+    pub seeds: usize,
     /// Robot, control period and what stands between this loop and the ideal one.
     pub conditions: String,
     /// Root mean square of the motor torque that the reference takes by the model that the laws know, the largest over
@@ -58,7 +63,7 @@ pub struct Loss<'a> {
     pub task: &'a TaskScores,
     /// Score of the best law on it.
     pub winner: &'a Score,
-    /// The best v-CBC; none if no v-CBC finished.
+    /// The best v-CBC; none if no v-CBC follows.
     pub vcbc: Option<&'a Score>,
     /// Laws that are no v-CBC and better than the best one.
     pub better: usize,
@@ -75,7 +80,7 @@ impl Leaderboard {
         self.tasks.iter().take(1).flat_map(|task| task.scores.iter().map(|score| score.law.as_str()))
     }
 
-    /// Tasks on which no law ran to the end.
+    /// Tasks on which no law follows.
     pub fn hopeless(&self) -> impl Iterator<Item = &TaskScores> {
         self.tasks.iter().filter(|task| !task.scores.iter().any(Score::finished))
     }
@@ -96,24 +101,31 @@ impl TaskScores {
     pub fn new(task: &Task, scores: Vec<Score>) -> Self {
         let (name, scenario) = (task.name().to_owned(), task.scenario.name.clone());
         let conditions = task.conditions();
-        Self::ranked(Self { task: name, scenario, conditions, needed_torque: task.needed_torque, scores })
+        let seeds = scores.iter().map(|score| score.seeds.len()).max().unwrap_or(0);
+        let (random, needed_torque) = (task.is_random(), task.needed_torque);
+        Self::ranked(Self { task: name, scenario, random, seeds, conditions, needed_torque, scores })
     }
 
-    /// With the rank of each law filled in, 1 for the smallest penalised error.
+    /// With the rank of each law filled in, 1 for the smallest penalised error; loops that do not follow have the last one.
     pub fn ranked(mut self) -> Self {
-        let errors: Vec<f64> = self.scores.iter().map(|score| score.penalised_error).collect();
+        let errors: Vec<Spread> = self.scores.iter().map(Score::error).collect();
         self.scores.iter_mut().zip(ranks(&errors)).for_each(|(score, rank)| score.rank = rank);
         self
     }
 
-    /// The smallest penalised error in rad; infinite if no law finished.
+    /// The smallest median of the penalised error in rad; infinite if no law follows.
     pub fn smallest(&self) -> f64 {
-        self.scores.iter().map(|score| score.penalised_error).fold(f64::INFINITY, f64::min)
+        self.best().median
+    }
+
+    fn best(&self) -> Spread {
+        let errors = self.scores.iter().map(Score::error);
+        errors.min_by(|a, b| a.median.total_cmp(&b.median)).unwrap_or(Spread::of(&[]))
     }
 
     /// Whether a law of this task is the best on it, or ties with the best.
     pub fn is_best(&self, score: &Score) -> bool {
-        score.penalised_error <= TIE * self.smallest()
+        score.finished() && score.error().ties_with(&self.best())
     }
 
     fn loss(&self) -> Option<Loss<'_>> {
@@ -123,14 +135,14 @@ impl TaskScores {
         let vcbc = finished().filter(|score| is_vcbc(&score.law)).min_by(by_error);
         let took_part = self.scores.iter().any(|score| is_vcbc(&score.law));
         let lost = took_part && vcbc.is_none_or(|vcbc| !self.is_best(vcbc));
-        let own = vcbc.map_or(f64::INFINITY, |vcbc| vcbc.penalised_error);
-        let better = finished().filter(|score| score.penalised_error * TIE < own).count();
+        let own = vcbc.map_or(f64::INFINITY, |vcbc| vcbc.error().low);
+        let better = finished().filter(|score| score.error().high * TIE < own).count();
         lost.then_some(Loss { task: self, winner, vcbc, better })
     }
 }
 
 impl Loss<'_> {
-    /// How many times smaller the winner's penalised error is; infinite if no v-CBC finished.
+    /// How many times smaller the winner's penalised error is; infinite if no v-CBC follows.
     pub fn factor(&self) -> f64 {
         self.vcbc.map_or(f64::INFINITY, |vcbc| vcbc.penalised_error / self.winner.penalised_error)
     }

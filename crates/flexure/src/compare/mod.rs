@@ -1,9 +1,10 @@
 //! Control laws on the same bench: the same tasks, the same search for gains, one leaderboard.
 //!
 //! Every law starts each task from [`Controller::default_for`](crate::laws::Controller::default_for) and may simulate the
-//! same number of runs to find better gains ([`tune`]); random numbers of the search come from one
-//! seed, the same for every law and task. So a result depends on its task, its law, budget and seed, and on nothing else:
-//! not on what else is compared, nor on the number of threads. docs/comparison.md has the protocol and what came of it.
+//! same number of runs to find better gains ([`tune`](crate::tune::tune)), once for each of some seeds; random numbers of the search
+//! and of the imperfections come from the seed, the same for every law and task. So a result depends on its task, its law, budget
+//! and seeds, and on nothing else: not on what else is compared, nor on the number of threads. docs/comparison.md has the protocol
+//! and what came of it.
 
 mod entrant;
 mod leaderboard;
@@ -18,16 +19,36 @@ use rayon::prelude::*;
 use crate::files::{Problem, Problems};
 use crate::progress::{PartProgress, Progress};
 use crate::simulate::measure;
-use crate::tune::tune;
+use crate::tune::{Costs, has_random_points, tune_from};
 
 pub use entrant::{Entrant, entrants};
 pub use leaderboard::{Leaderboard, Loss, TaskScores, is_vcbc};
-pub use ranking::{Standing, TIE, ranks, standings};
-pub use score::{CHATTERS, Score, TunedGain};
+pub use ranking::{Spread, Standing, TIE, ranks, standings};
+pub use score::{CHATTERS, Score, SeedScore, TunedGain};
 pub use task::{Task, tasks};
 
-/// Runs that each law may simulate on each task.
+/// Runs that each law may simulate on each task with each seed.
 pub const BUDGET: usize = 40;
+
+/// Seeds that each law is searched and run with.
+pub const SEEDS: usize = 5;
+
+/// How hard gains are searched for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Search {
+    /// Runs that each law may simulate on each task with each seed.
+    pub budget: usize,
+    /// The first seed; the others are the numbers after it.
+    pub seed: u64,
+    /// How many seeds, at least 1.
+    pub seeds: usize,
+}
+
+impl Default for Search {
+    fn default() -> Self {
+        Self { budget: BUDGET, seed: 0, seeds: SEEDS }
+    }
+}
 
 /// Compares laws on tasks, on all cores. `progress` is told how far each pair of task and law is, by its number, task by task.
 ///
@@ -36,8 +57,7 @@ pub const BUDGET: usize = 40;
 pub fn compare(
     tasks: &[Task],
     entrants: &[Entrant],
-    budget: usize,
-    seed: u64,
+    search: Search,
     progress: PartProgress<'_>,
 ) -> Result<Leaderboard, Problems> {
     let pairs: Vec<(&Task, &Entrant)> =
@@ -46,7 +66,7 @@ pub fn compare(
         .par_iter()
         .enumerate()
         .map(|(number, (task, entrant))| {
-            let score = score(task, **entrant, budget, seed, &|fraction| progress(number, fraction));
+            let score = score(task, **entrant, search, &|fraction| progress(number, fraction));
             match progress(number, 1.0) {
                 ControlFlow::Continue(()) => score,
                 ControlFlow::Break(()) => Err(Problems::interrupted()),
@@ -64,27 +84,35 @@ pub fn compare(
             Ok(TaskScores::new(task, finished(entrants, of_task)?))
         })
         .collect();
-    Ok(Leaderboard::new(budget, seed, scored?))
+    Ok(Leaderboard::new(search.budget, search.seed, scored?))
 }
 
 fn is_interrupted(score: &Result<Score, Problems>) -> bool {
     score.as_ref().is_err_and(Problems::is_interrupted)
 }
 
-/// A law on a task, with the gains that the search finds.
-fn score(
-    task: &Task,
-    entrant: Entrant,
-    budget: usize,
-    seed: u64,
-    progress: Progress<'_>,
-) -> Result<Score, Problems> {
+/// A law on a task, with the gains that the search finds with each seed.
+fn score(task: &Task, entrant: Entrant, search: Search, progress: Progress<'_>) -> Result<Score, Problems> {
     let mut scenario = task.scenario.clone();
     scenario.controller = entrant.controller(&scenario.robot)?;
-    let tuned = tune(&scenario, budget, seed, progress)?;
-    scenario.controller = tuned.controller.clone();
-    let run = measure(&scenario)?;
-    Ok(Score::new(&entrant.name(), &tuned, &run))
+    let is_random = task.is_random();
+    // Where neither the run nor the search draws a number, every seed gives the same.
+    let seeds = if is_random || has_random_points(search.budget) { search.seeds.max(1) } else { 1 };
+    let mut costs = Costs::default();
+    let mut found = Vec::new();
+    for (number, seed) in (0..seeds).zip(search.seed..) {
+        if is_random {
+            // The same noise for every law; what is known of runs with another is of no use.
+            scenario.seed = task.scenario.seed.wrapping_add(seed - search.seed);
+            costs = Costs::default();
+        }
+        let part = |fraction: f64| progress((number as f64 + fraction) / seeds as f64);
+        let tuned = tune_from(&scenario, search.budget, seed, &costs, &part)?;
+        let mut best = scenario.clone();
+        best.controller = tuned.controller.clone();
+        found.push((seed, tuned, measure(&best)?));
+    }
+    Ok(Score::new(&entrant.name(), &found))
 }
 
 /// The scores of a task; why it has none if no law could run it.
@@ -95,6 +123,22 @@ fn finished(entrants: &[Entrant], tried: Vec<Result<Score, Problems>>) -> Result
         score => score,
     });
     scores.collect()
+}
+
+/// What is wrong with asking for no seeds.
+///
+/// # Errors
+/// If `seeds` is 0.
+pub fn check_seeds(seeds: usize) -> Result<(), Problem> {
+    if seeds > 0 {
+        return Ok(());
+    }
+    let message = "the number of seeds is 0, must be at least 1";
+    Err(Problem::new(
+        "range",
+        message,
+        format!("{SEEDS} is the default; with fewer nobody knows what is luck"),
+    ))
 }
 
 /// What is wrong with asking for no runs.

@@ -2,15 +2,16 @@
 
 use serde::Serialize;
 
+use crate::compare::ranking::Spread;
 use crate::simulate::Run;
-use crate::tune::Tuned;
+use crate::tune::{Tuned, penalised_error};
 
 /// Torque changes per control period above this part of the torque are chatter: there the [penalised
 /// error](Score::penalised_error) is √2 times the error.
 pub const CHATTERS: f64 = 0.05;
 
-/// A law with the gains that the search found, on a task. Numbers of a loop that diverged, or that could not be run, are
-/// NaN (null in JSON).
+/// A law with the gains that the search found, on a task. Numbers are those of the seed with the median penalised error; those of a
+/// loop that diverged, or that could not be run, are NaN (null in JSON).
 #[derive(Clone, Debug, Serialize)]
 pub struct Score {
     /// Name of the law.
@@ -31,6 +32,10 @@ pub struct Score {
     pub chatter: f64,
     /// Fraction of control periods in which a torque limit was active.
     pub saturated_fraction: f64,
+    /// Whether it follows its reference with every seed: only then is it ranked.
+    pub follows: bool,
+    /// Why not, in words.
+    pub reasons: Vec<String>,
     /// When the loop diverged, in s; none if it ran to the end.
     pub diverged_at: Option<f64>,
     /// Why the law could not be run; none if it could.
@@ -39,6 +44,21 @@ pub struct Score {
     pub evaluations: usize,
     /// The gains that it found.
     pub gains: Vec<TunedGain>,
+    /// What came of each seed, in their order; one where no seed can matter.
+    pub seeds: Vec<SeedScore>,
+}
+
+/// What a search with one seed found.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SeedScore {
+    /// The seed.
+    pub seed: u64,
+    /// Penalised error in rad.
+    pub penalised_error: f64,
+    /// Root mean square error of the links in rad.
+    pub rms_error: f64,
+    /// Whether the loop follows.
+    pub follows: bool,
 }
 
 /// A gain, one number per joint.
@@ -51,25 +71,40 @@ pub struct TunedGain {
 }
 
 impl Score {
-    /// Of a law that was tuned, and its run with the gains that were found.
-    pub(super) fn new(law: &str, tuned: &Tuned, run: &Run) -> Self {
+    /// Of a law that was tuned with some seeds, and its runs with the gains that were found.
+    pub(super) fn new(law: &str, found: &[(u64, Tuned, Run)]) -> Self {
+        let of_seed = |(seed, _, run): &(u64, Tuned, Run)| SeedScore {
+            seed: *seed,
+            penalised_error: penalised_error(&run.summary),
+            rms_error: run.summary.rms_e_l,
+            follows: run.summary.following.follows,
+        };
+        let seeds: Vec<SeedScore> = found.iter().map(of_seed).collect();
+        let follows = seeds.iter().all(|seed| seed.follows);
+        let median = Spread::of(&seeds.iter().map(|seed| seed.penalised_error).collect::<Vec<_>>()).median;
+        let shown = if follows {
+            seeds.iter().position(|seed| seed.penalised_error.to_bits() == median.to_bits())
+        } else {
+            seeds.iter().position(|seed| !seed.follows)
+        };
+        let Some((_, tuned, run)) = found.get(shown.unwrap_or(0)) else {
+            return Self::failed(law, "no seeds");
+        };
         let (summary, diverged_at) = (&run.summary, run.divergence.map(|divergence| divergence.time));
         let ended = |figure: f64| if diverged_at.is_none() { figure } else { f64::NAN };
-        // Costs of loops that diverged are far above the logarithm of any error.
-        let penalised = |cost: f64| cost.exp();
         let gains = tuned.controller.gains();
         Self {
             law: law.to_owned(),
             rank: f64::NAN,
-            penalised_error: ended(penalised(tuned.cost)),
-            penalised_error_at_start: Some(penalised(tuned.start_cost))
-                .filter(|error| *error < 1e10)
-                .unwrap_or(f64::NAN),
+            penalised_error: penalised_error(summary),
+            penalised_error_at_start: tuned.start_error,
             rms_error: summary.rms_e_l,
             max_error: summary.max_abs_e_l,
             rms_torque: ended(summary.rms_u_m),
             chatter: ended(summary.rms_torque_change / summary.rms_u_m.max(f64::MIN_POSITIVE)),
             saturated_fraction: ended(summary.saturated_fraction),
+            follows,
+            reasons: summary.following.reasons.iter().map(|reason| reason.words.clone()).collect(),
             diverged_at,
             failure: None,
             evaluations: tuned.evaluations,
@@ -77,6 +112,7 @@ impl Score {
                 .into_iter()
                 .map(|(key, values)| TunedGain { key, values: values.to_vec() })
                 .collect(),
+            seeds,
         }
     }
 
@@ -92,16 +128,32 @@ impl Score {
             rms_torque: f64::NAN,
             chatter: f64::NAN,
             saturated_fraction: f64::NAN,
+            follows: false,
+            reasons: Vec::new(),
             diverged_at: None,
             failure: Some(why.to_owned()),
             evaluations: 0,
             gains: Vec::new(),
+            seeds: Vec::new(),
         }
     }
 
-    /// Whether the loop ran to its end.
+    /// Whether the loop follows with every seed.
     pub fn finished(&self) -> bool {
-        self.diverged_at.is_none() && self.failure.is_none()
+        self.follows
+    }
+
+    /// What ranks: the penalised error over the seeds in rad; infinite for a loop that does not follow with every seed.
+    pub fn error(&self) -> Spread {
+        if !self.follows {
+            return Spread::of(&[]);
+        }
+        Spread::of(&self.seeds.iter().map(|seed| seed.penalised_error).collect::<Vec<_>>())
+    }
+
+    /// Root mean square error over the seeds in rad.
+    pub fn rms_errors(&self) -> Spread {
+        Spread::of(&self.seeds.iter().map(|seed| seed.rms_error).collect::<Vec<_>>())
     }
 
     /// Whether the torque jumps so much from one control instant to the next that it counts against the law.

@@ -3,6 +3,7 @@
 use crate::feasible::{effort, pinned};
 use crate::files::number::duration;
 use crate::files::{Outside, Problem, Problems, TASKS};
+use crate::imperfections::Imperfection;
 use crate::scenario::{Scenario, load_scenario_with};
 
 /// Names of built-in tasks begin with it; left out where only tasks are named.
@@ -31,6 +32,11 @@ impl Task {
     /// Name in tables and figures: that of the scenario without `task-`.
     pub fn name(&self) -> &str {
         self.scenario.name.strip_prefix(PREFIX).unwrap_or(&self.scenario.name)
+    }
+
+    /// Whether its imperfections draw random numbers.
+    pub fn is_random(&self) -> bool {
+        self.scenario.imperfections.iter().any(Imperfection::draws)
     }
 
     /// Robot, control period and what is not ideal, in words.

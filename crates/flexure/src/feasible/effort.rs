@@ -1,7 +1,7 @@
 //! How much torque a reference takes.
 
 use crate::feasible::search::speed;
-use crate::feasible::track::with_track;
+use crate::feasible::track::{Demand, with_track};
 use crate::files::Problems;
 use crate::scenario::Scenario;
 
@@ -12,22 +12,47 @@ use crate::scenario::Scenario;
 /// # Errors
 /// As [`speed`].
 pub fn effort(scenario: &Scenario) -> Result<f64, Problems> {
+    let squared = (0_u32, vec![0.0; scenario.robot.joint_count()]);
+    let (instants, squared) = fold(scenario, squared, |(instants, sums), demand| {
+        *instants += 1;
+        for (sum, torque) in sums.iter_mut().zip(&demand.torque) {
+            *sum += torque * torque;
+        }
+    })?;
+    Ok((squared.into_iter().fold(0.0, f64::max) / f64::from(instants)).sqrt())
+}
+
+/// Largest motor torque that the reference of `scenario` takes at the control instants [N m], and how far from where the links
+/// start it begins, in rad, a joint each.
+///
+/// # Errors
+/// As [`speed`].
+pub fn peak_torque(scenario: &Scenario) -> Result<Vec<(f64, f64)>, Problems> {
+    let start = &scenario.initial.q_l;
+    fold(scenario, Vec::new(), |peaks: &mut Vec<(f64, f64)>, demand| {
+        if peaks.is_empty() {
+            let begins = demand.position.iter().zip(start);
+            *peaks = begins.map(|(q_ld, start)| (0.0, (q_ld - start).abs())).collect();
+        }
+        for ((torque, _), u_m) in peaks.iter_mut().zip(&demand.torque) {
+            *torque = torque.max(u_m.abs());
+        }
+    })
+}
+
+/// What `each` makes of the demands at every control instant.
+fn fold<A: Clone>(scenario: &Scenario, from: A, each: impl Fn(&mut A, &Demand)) -> Result<A, Problems> {
     let speed = speed(scenario)?;
-    let joints = scenario.robot.joint_count();
     with_track(scenario, |track| {
         let demands = track.at_speed(speed);
-        let mut squared = vec![0.0; joints];
-        let mut instants = 0;
+        let (mut sum, mut instants) = (from.clone(), 0);
         loop {
             let t = f64::from(instants) * scenario.control_period;
             if t > scenario.duration {
-                break;
+                return sum;
             }
-            for (sum, torque) in squared.iter_mut().zip(&demands(t).torque) {
-                *sum += torque * torque;
-            }
+            each(&mut sum, &demands(t));
             instants += 1;
         }
-        (squared.into_iter().fold(0.0, f64::max) / f64::from(instants)).sqrt()
     })
 }

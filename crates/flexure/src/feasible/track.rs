@@ -25,7 +25,7 @@ pub struct Demand {
     torque_rate: Vec<f64>,
     velocity: Vec<f64>,
     deflection: Vec<f64>,
-    position: Vec<f64>,
+    pub(super) position: Vec<f64>,
 }
 
 impl Demand {

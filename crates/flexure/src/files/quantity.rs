@@ -205,6 +205,16 @@ pub(crate) const VELOCITY: Quantity =
 pub(crate) const TORQUE_RATE_LIMIT: Quantity =
     Quantity::positive("largest rate of the motor torque, link side of the gear", units::TORQUE_RATE)
         .plausible(1e-1, 1e9, "is it in N m/ms?");
+pub(crate) const ACCEPTED_ERROR: Quantity =
+    Quantity::positive("largest position error that still counts as following", units::ANGLE)
+        .plausible(TINY, FOUR_TURNS, DEGREES);
+pub(crate) const ACCEPTED_CHANGE: Quantity = Quantity::positive(
+    "largest root mean square change of the motor torque from one control instant to the next",
+    units::TORQUE,
+);
+pub(crate) const ACCEPTED_SHARE: Quantity =
+    Quantity::probability("part of the control instants at which the drive is at its torque limit");
+pub(crate) const SETTLING: Quantity = Quantity::non_negative("time from which errors count", units::TIME);
 pub(crate) const TORQUE_STEP: Quantity =
     Quantity::non_negative("step that the motor torque comes in, link side of the gear", units::TORQUE);
 pub(crate) const COUNTS: Quantity = Quantity::positive("counts per turn of the encoder's shaft", units::NONE)

@@ -55,6 +55,10 @@ impl Kind for Deadline {
         Some(Overlap::Whole)
     }
 
+    fn draws(&self) -> bool {
+        matches!(self, Self::Random { probability } if *probability > 0.0)
+    }
+
     fn effect(&self, setup: Setup) -> Effect<'_> {
         let last = vec![0.0; setup.joints];
         Effect::Actuating(Box::new(Keeping { deadline: *self, random: setup.random, last }))

@@ -93,6 +93,10 @@ impl Kind for Dropout {
         None
     }
 
+    fn draws(&self) -> bool {
+        matches!(self.outage, Outage::Random { probability, .. } if probability > 0.0)
+    }
+
     fn effect(&self, setup: Setup) -> Effect<'_> {
         let held = [(); 2].map(|()| Held::nothing(setup.joints));
         Effect::Sensing(Box::new(Silence { dropout: *self, random: setup.random, is_out: false, held }))

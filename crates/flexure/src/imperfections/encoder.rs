@@ -76,6 +76,10 @@ impl Kind for Encoder {
         Overlap::sides(|side| self.resolution(side).is_some() && earlier.resolution(side).is_some())
     }
 
+    fn draws(&self) -> bool {
+        self.dither
+    }
+
     fn effect(&self, setup: Setup) -> Effect<'_> {
         let dither = self.dither.then_some(setup.random);
         Effect::Sensing(Box::new(Rounding { encoder: self.clone(), dither }))

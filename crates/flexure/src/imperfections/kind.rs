@@ -7,7 +7,7 @@ use crate::imperfections::side::Side;
 use crate::imperfections::stages::Random;
 
 /// A kind of `[[imperfection]]`: everything about it is in the file that implements this for its data, and a line of the list
-/// in `imperfections/mod.rs` makes it known to files, loops and tests. Each item is required.
+/// in `imperfections/mod.rs` makes it known to files, loops and tests. Each item is required but `draws`, which a test watches.
 pub(crate) trait Kind: Sized + 'static {
     /// The name in files.
     const NAME: &'static str;
@@ -25,6 +25,11 @@ pub(crate) trait Kind: Sized + 'static {
 
     /// What it is about that an `earlier` entry of its kind is about, too; none if both can be meant.
     fn overlap(&self, earlier: &Self) -> Option<Overlap>;
+
+    /// Whether it draws random numbers, so that the seed matters.
+    fn draws(&self) -> bool {
+        false
+    }
 
     /// What it does to a loop that is set up as `setup`.
     fn effect(&self, setup: Setup) -> Effect<'_>;

@@ -58,6 +58,11 @@ impl Kind for Noise {
         Some(Overlap::Whole)
     }
 
+    fn draws(&self) -> bool {
+        let Self { link, motor, link_velocity, motor_velocity } = self;
+        [link, motor, link_velocity, motor_velocity].into_iter().flatten().any(|&deviation| deviation > 0.0)
+    }
+
     fn effect(&self, setup: Setup) -> Effect<'_> {
         let Self { link, motor, link_velocity, motor_velocity } = self.clone();
         let deviations = [[link, link_velocity], [motor, motor_velocity]];

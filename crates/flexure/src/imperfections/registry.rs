@@ -55,6 +55,13 @@ macro_rules! imperfections {
                 }
             }
 
+            /// Whether it draws random numbers: runs with other seeds are other runs.
+            pub fn draws(&self) -> bool {
+                match self {
+                    $($(#[$attribute])* Self::$Kind(data) => data.draws(),)*
+                }
+            }
+
             fn effect(&self, setup: Setup) -> Effect<'_> {
                 match self {
                     $($(#[$attribute])* Self::$Kind(data) => data.effect(setup),)*

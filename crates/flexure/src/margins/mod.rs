@@ -13,7 +13,7 @@ use crate::files::{Problem, Problems};
 use crate::progress::{Progress, tell};
 use crate::sampled::{Sampled, probe};
 use crate::scenario::{Hold, Scenario};
-use crate::simulate::{Run, measure};
+use crate::simulate::{Criteria, Run, measure_by};
 
 pub use change::Change;
 pub use edge::Edge;
@@ -40,8 +40,14 @@ pub struct Margins {
     pub phi: Option<String>,
     /// Root mean square link error of the scenario as it is, in rad; none if it diverges.
     pub rms_e_l: Option<f64>,
+    /// Why the scenario as it is does not follow; nothing if it does.
+    pub reasons: Vec<String>,
     /// Root mean square link error up to which the loop counts as holding, in rad.
     pub allowed_rms_e_l: f64,
+    /// Largest motor torque up to which it does [N m].
+    pub allowed_max_u_m: f64,
+    /// Root mean square change of the torque from one control instant to the next up to which it does [N m].
+    pub allowed_rms_torque_change: f64,
     /// Delay from command to torque that may be added, in s.
     pub delay: Edge,
     /// Factor by which the motor torque may be too small.
@@ -66,11 +72,18 @@ pub struct Margins {
     pub sampled: Option<Sampled>,
 }
 
-/// A loop holds if it does not diverge and its error is at most this many times what it is without the change …
+/// A loop holds if it follows, by the verdict on runs, and its error, torque and chatter are at most this many times what they are
+/// without the change …
 const TIMES: f64 = 10.0;
 
-/// … or larger by at most this, in rad.
+/// … or the error larger by at most this, in rad …
 const BY: f64 = 0.01;
+
+/// … but at most this, in rad …
+const MOST: f64 = 0.2;
+
+/// … or the chatter at most this part of the torque without the change.
+const CHATTER: f64 = 0.5;
 
 /// Part of the noise that the loop bears at which its answer to noise is measured: far from where it stops holding, and not below
 /// what encoders show.
@@ -81,9 +94,6 @@ const USUAL: f64 = 60.0;
 
 /// What is changed, and how far.
 type Search = (fn(f64) -> Change, edge::Way);
-
-/// A loop with a larger root mean square error, in rad, does not follow its reference: it has no margins.
-const LOST: f64 = 0.1;
 
 /// Measures the margins of a scenario's loop. Each is where the loop still holds on the way from the scenario as it is: loops that
 /// hold again farther out are not looked for.
@@ -100,17 +110,17 @@ pub fn margins(scenario: &Scenario, progress: Progress<'_>) -> Result<Margins, P
         return Err(scenario.places.problem("hold", "unsupported", message.to_owned(), help).into());
     }
     let scenario = feasible::pinned(scenario)?;
-    let nominal = measure(&scenario)?;
+    let criteria = Criteria::of(&scenario)?;
+    let nominal = measure_by(&scenario, &criteria)?;
     let rms = nominal.divergence.is_none().then_some(nominal.summary.rms_e_l);
-    let followed = rms.filter(|&rms| rms <= LOST);
-    let allowed = followed.map_or(BY, |rms| (TIMES * rms).max(rms + BY).min(2.0 * LOST));
-    let holds = |run: &Run| run.divergence.is_none() && run.summary.rms_e_l <= allowed;
+    let follows = nominal.summary.following.follows;
+    let allowed = Allowed::beside(&nominal);
     let tried = AtomicUsize::new(0);
     let try_change = |change: Change| {
         let done = tried.fetch_add(1, Ordering::Relaxed) as f64;
         // How many there will be is not known: the fraction grows ever slower.
         tell(progress, done / (done + USUAL))?;
-        Ok(holds(&measure(&change.of(&scenario))?))
+        Ok(allowed.holds(&measure_by(&change.of(&scenario), &criteria)?))
     };
     let period = scenario.control_period;
     let searches: [Search; 6] = [
@@ -121,13 +131,14 @@ pub fn margins(scenario: &Scenario, progress: Progress<'_>) -> Result<Margins, P
         (Change::Stiffness, edge::Way::inward(1.0, 100.0)),
         (Change::Noise, edge::Way::outward(0.0, 1e-6, 1.0)),
     ];
-    let found: Vec<Result<(Edge, usize), Problems>> =
-        searches
-            .par_iter()
-            .map(|(change, way)| {
-                if followed.is_some() { way.edge(&|x| try_change(change(x))) } else { Ok((Edge::Nowhere, 0)) }
-            })
-            .collect();
+    let found: Vec<Result<(Edge, usize), Problems>> = searches
+        .par_iter()
+        .map(
+            |(change, way)| {
+                if follows { way.edge(&|x| try_change(change(x))) } else { Ok((Edge::Nowhere, 0)) }
+            },
+        )
+        .collect();
     let mut edges = Vec::new();
     let mut runs = 1;
     for found in found {
@@ -138,7 +149,8 @@ pub fn margins(scenario: &Scenario, progress: Progress<'_>) -> Result<Margins, P
     let [delay, gain_low, gain_high, stiffness_low, stiffness_high, noise] =
         edges.try_into().expect("six searches");
     let little = noise.holds().map(|holds| LITTLE * holds);
-    let noisy = little.map(|little| measure(&Change::Noise(little).of(&scenario))).transpose()?;
+    let noisy =
+        little.map(|little| measure_by(&Change::Noise(little).of(&scenario), &criteria)).transpose()?;
     let per_noise = |of: fn(&Run) -> f64| {
         let (little, noisy) = little.zip(noisy.as_ref().filter(|run| run.divergence.is_none()))?;
         let excess = of(noisy).powi(2) - of(&nominal).powi(2);
@@ -149,7 +161,10 @@ pub fn margins(scenario: &Scenario, progress: Progress<'_>) -> Result<Margins, P
         controller: scenario.controller.kind().to_owned(),
         phi: scenario.controller.phi().map(str::to_owned),
         rms_e_l: rms,
-        allowed_rms_e_l: allowed,
+        reasons: nominal.summary.following.reasons.iter().map(|reason| reason.words.clone()).collect(),
+        allowed_rms_e_l: allowed.rms_e_l,
+        allowed_max_u_m: allowed.max_u_m,
+        allowed_rms_torque_change: allowed.rms_torque_change,
         delay,
         gain_low,
         gain_high,
@@ -163,6 +178,34 @@ pub fn margins(scenario: &Scenario, progress: Progress<'_>) -> Result<Margins, P
     })
 }
 
+/// What a loop may come to under a change and still hold.
+#[derive(Clone, Copy, Debug)]
+struct Allowed {
+    rms_e_l: f64,
+    max_u_m: f64,
+    rms_torque_change: f64,
+}
+
+impl Allowed {
+    /// Beside what it comes to as it is.
+    fn beside(nominal: &Run) -> Self {
+        let summary = &nominal.summary;
+        Self {
+            rms_e_l: (TIMES * summary.rms_e_l).max(summary.rms_e_l + BY).min(MOST),
+            max_u_m: TIMES * summary.max_abs_u_m,
+            rms_torque_change: (TIMES * summary.rms_torque_change).max(CHATTER * summary.rms_u_m),
+        }
+    }
+
+    fn holds(&self, run: &Run) -> bool {
+        let summary = &run.summary;
+        summary.following.follows
+            && summary.rms_e_l <= self.rms_e_l
+            && summary.max_abs_u_m <= self.max_u_m
+            && summary.rms_torque_change <= self.rms_torque_change
+    }
+}
+
 impl Margins {
     /// The law in words.
     pub fn law(&self) -> String {
@@ -174,7 +217,7 @@ impl Margins {
         (self.delay == Edge::Nowhere).then(|| {
             let how = match self.rms_e_l {
                 None => "diverges as it is".to_owned(),
-                Some(rms) => format!("does not follow its reference, rms error {rms:.3} rad"),
+                Some(_) => format!("does not follow its reference: {}", self.reasons.join("; ")),
             };
             let message = format!("{}, {}: the loop {how}: it has no margins", self.name, self.law());
             let help = self.sampled.as_ref().and_then(Sampled::help).unwrap_or_else(|| {

@@ -38,7 +38,7 @@ const CHATTER: Price = Price {
 };
 
 /// Error of the links against motor torque, both root mean squares, on logarithmic axes: a panel a task, a mark a law.
-/// Laws that diverged have their marks beside the panel's title.
+/// Laws that do not follow have their marks beside the panel's title.
 pub fn effort_figure(board: &Leaderboard) -> Scene {
     figure(board, &EFFORT)
 }
@@ -88,7 +88,7 @@ fn panel<'a>(
         points: shown.into_iter().map(point).collect(),
         line: (price.line)(task),
         aside: (
-            "diverged:",
+            "do not follow:",
             all().filter(|(_, score)| !score.finished()).map(|(law, _)| marker(law)).collect(),
         ),
     }

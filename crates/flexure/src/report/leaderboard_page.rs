@@ -6,6 +6,7 @@ use crate::compare::{Leaderboard, Loss, Score, TaskScores, is_vcbc};
 use crate::files::number::{NONE, engineering, short, significant};
 use crate::report::effort::{chatter_figure, effort_figure};
 use crate::report::html::{AssumedNumber, assumptions};
+use crate::report::leaderboard_table::{range, ranks_with_one};
 
 const TITLE: &str = "Control laws of flexible-joint robots on the same bench";
 
@@ -44,9 +45,10 @@ fn introduction(board: &Leaderboard) -> Markup {
         p {
             (counted(board.laws().count(), "law")) " on " (counted(board.tasks.len(), "task"))
             ". Each law starts each task from gains made by one rule from stiffness and inertias, and may simulate "
-            (counted(board.budget, "run")) " to find better ones. What the search makes small, and what ranks, is the "
+            (counted(board.budget, "run")) " to find better ones, with each of " (counted(seeds(board), "seed")) ". What the search makes small, and what ranks, is the "
             em { "penalised error" } ": the root mean square error of the links times √(1 + (c / 0.05)²), with c the change of \
-            the torque from one control instant to the next as a part of the torque. Chattering is no way to win."
+            the torque from one control instant to the next as a part of the torque. Chattering is no way to win. \
+            Only loops that follow their reference with every seed, by the verdict on runs, are ranked."
         }
     }
 }
@@ -68,19 +70,20 @@ fn ranking(board: &Leaderboard) -> Markup {
     markup! {
         div.scroll { table.numbers {
             thead { tr {
-                th { "law" } th { "place" } th { "mean rank" } th { "best on" br; span.unit { "tasks" } }
-                th { "median factor" br; span.unit { "to the best" } } th { "diverged on" br; span.unit { "tasks" } }
+                th { "law" } th { "place" } th { "mean rank" } th { "mean rank" br; span.unit { "with one seed" } } th { "best on" br; span.unit { "tasks" } }
+                th { "median factor" br; span.unit { "to the best" } } th { "does not follow on" br; span.unit { "tasks" } }
             } }
             tbody { @for standing in &board.ranking { tr {
                 th scope="row" { (name(&standing.law)) }
-                td { (standing.place) } td { (short(standing.mean_rank, 3)) } td { (standing.wins) }
+                td { (standing.place) } td { (short(standing.mean_rank, 3)) } td { (ranks_with_one(standing)) } td { (standing.wins) }
                 td { (finite(standing.median_factor)) } td { (standing.unfinished) }
             } } }
         } }
         p.note {
-            "Mean rank: over the tasks, 1 for the smallest penalised error; errors within 1 % of each other tie and share the \
-             mean of their ranks, and so do laws that diverge, at the end. Median factor: a law's penalised error over the best \
-             law's; — if the law diverges on half of the tasks."
+            "Mean rank: over the tasks, 1 for the smallest penalised error, the median over the seeds. Errors that overlap over the \
+             seeds with those of the best of a group, or are within 1 % of them, tie and share the mean of their ranks, and so do \
+             laws that do not follow, at the end. Laws whose mean ranks with one seed overlap share a place with the first of them. \
+             Median factor: a law's penalised error over the best law's; — if the law does not follow on half of the tasks."
         }
     }
 }
@@ -98,7 +101,7 @@ fn losses(board: &Leaderboard) -> Markup {
                 tbody { @for loss in &losses { tr {
                     th scope="row" { (loss.task.task) }
                     td { (named_error(loss.winner)) }
-                    td { @match loss.vcbc { Some(vcbc) => (named_error(vcbc)), None => "every v-CBC diverges" } }
+                    td { @match loss.vcbc { Some(vcbc) => (named_error(vcbc)), None => "no v-CBC follows" } }
                     td { (finite(loss.factor())) }
                     td { (ahead(loss)) }
                 } } }
@@ -134,7 +137,8 @@ fn errors(board: &Leaderboard) -> Markup {
         } }
         p.note {
             strong { "Bold" } ": best of the task by the penalised error, or tied with it. ~: the torque chatters, the penalised \
-            error is more than √2 times what stands here. —: the loop diverged."
+            error is more than √2 times what stands here. —: the loop does not follow. Small: the smallest and the largest over \
+            the seeds, where they differ by more than 1 %. " (seed_note(board))
         }
         div.scroll { table {
             thead { tr { th { "task" } th { "conditions" } th { "rms torque" br; span.unit { "of the reference [N m]" } } } }
@@ -144,6 +148,13 @@ fn errors(board: &Leaderboard) -> Markup {
         } }
         @for (task, score) in failures(board) {
             p { (score.law) " could not be run on " (task.task) ": " (score.failure.as_deref().unwrap_or_default()) }
+        }
+        @if lost(board).next().is_some() {
+            details { summary { "Why loops do not follow" }
+                ul { @for (task, score) in lost(board) {
+                    li { (task.task) ", " (score.law) ": " (score.reasons.join("; ")) }
+                } }
+            }
         }
     }
 }
@@ -158,9 +169,41 @@ fn cell(task: &TaskScores, law: &str) -> Markup {
                     @let error = significant(1e3 * score.rms_error, 3);
                     @if task.is_best(score) { strong { (error) } } @else { (error) }
                     @if score.chatters() { "\u{202f}~" }
+                    @if let Some(range) = range(&score.rms_errors()) { br; span.unit { (range) } }
                 }
             }
         }
+    }
+}
+
+/// Loops that ran and do not follow.
+fn lost(board: &Leaderboard) -> impl Iterator<Item = (&TaskScores, &Score)> {
+    let scores = board.tasks.iter().flat_map(|task| task.scores.iter().map(move |score| (task, score)));
+    scores.filter(|(_, score)| !score.follows && score.failure.is_none())
+}
+
+/// The most seeds that a law was run with.
+fn seeds(board: &Leaderboard) -> usize {
+    board.tasks.iter().map(|task| task.seeds).max().unwrap_or(0)
+}
+
+/// What seeds change.
+fn seed_note(board: &Leaderboard) -> String {
+    let names = |of: &dyn Fn(&TaskScores) -> bool| {
+        let names: Vec<&str> = board.tasks.iter().filter(|task| of(task)).map(|task| &*task.task).collect();
+        names.join(", ")
+    };
+    let (random, single) = (names(&|task| task.random), names(&|task| task.seeds < 2));
+    let random = match random.as_str() {
+        "" => {
+            "Seeds change the search alone: no imperfection of these tasks draws random numbers.".to_owned()
+        }
+        names => format!("Seeds change the search, and the random numbers of the imperfections of {names}."),
+    };
+    if single.is_empty() {
+        random
+    } else {
+        format!("{random} One seed is enough for {single}: no number is drawn there.")
     }
 }
 
@@ -184,7 +227,7 @@ fn figures(board: &Leaderboard) -> Markup {
 
 fn gains(board: &Leaderboard) -> Markup {
     markup! {
-        p { "One number per joint, in the units of scenario files. Start and end: penalised error with the gains that the \
+        p { "One number per joint, in the units of scenario files, of the seed with the median error. Start and end: penalised error with the gains that the \
              search began with, and with these." }
         @for task in &board.tasks {
             details { summary { (task.task) }
@@ -210,7 +253,7 @@ fn values(values: &[f64]) -> String {
 fn provenance(board: &Leaderboard) -> Markup {
     markup! { ul {
         li { "flexure " (env!("CARGO_PKG_VERSION")) }
-        li { "Budget " (board.budget) " runs for each law and task, seed " (board.seed) " for every search. The same build writes \
+        li { "Budget " (board.budget) " runs for each law, task and seed; " (counted(seeds(board), "seed")) " from " (board.seed) " on. The same build writes \
               the same page, byte for byte, on any number of threads." }
         li { "Protocol and what it leaves out: docs/comparison.md." }
     } }

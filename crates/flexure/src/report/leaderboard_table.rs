@@ -2,7 +2,7 @@
 
 use comfy_table::{Cell, Row};
 
-use crate::compare::{Leaderboard, Score, Standing, TaskScores};
+use crate::compare::{Leaderboard, Score, Spread, Standing, TIE, TaskScores};
 use crate::files::number::{NONE, short, significant};
 use crate::report::table::{headed, right};
 
@@ -13,12 +13,17 @@ const MOST_TASKS: usize = 7;
 pub fn leaderboard_table(board: &Leaderboard) -> String {
     let blocks = board.tasks.len().div_ceil(MOST_TASKS).max(1);
     let matrices = board.tasks.chunks(board.tasks.len().div_ceil(blocks).max(1));
-    let mut text = String::from("root mean square error of the links [mrad]\n");
+    let mut text =
+        String::from("root mean square error of the links [mrad]: median over seeds, smallest … largest\n");
     for tasks in matrices {
         text.push_str(&matrix(board, tasks));
         text.push('\n');
     }
-    text.push_str("* best of the task, ~ torque chatters (counts against the law), — diverged\n\n");
+    text.push_str(
+        "* best of the task or tied, ~ torque chatters (counts against the law), — does not follow\n",
+    );
+    text.push_str(&seeds(board));
+    text.push('\n');
     text.push_str(&ranking(&board.ranking));
     text
 }
@@ -43,17 +48,55 @@ fn error(task: &TaskScores, score: &Score) -> String {
     }
     let best = if task.is_best(score) { "*" } else { "" };
     let chatters = if score.chatters() { "~" } else { "" };
-    format!("{}{chatters}{best}", significant(1e3 * score.rms_error, 3))
+    let median = significant(1e3 * score.rms_error, 3);
+    let range = range(&score.rms_errors()).map_or_else(String::new, |range| format!("\n{range}"));
+    format!("{median}{chatters}{best}{range}")
+}
+
+/// From the smallest to the largest in mrad, where seeds matter.
+pub(super) fn range(errors: &Spread) -> Option<String> {
+    let matters = errors.high > TIE * errors.low;
+    let number = |error: f64| significant(1e3 * error, 2);
+    matters.then(|| format!("{}…{}", number(errors.low), number(errors.high)))
+}
+
+/// Over how many seeds.
+fn seeds(board: &Leaderboard) -> String {
+    let line = |task: &TaskScores| {
+        let what = match (task.seeds, task.random) {
+            (0 | 1, false) => "one seed: neither its runs nor the search draw a number",
+            (_, false) => return None,
+            (_, true) => "seeds change its noise as well as the search",
+        };
+        Some(format!("{}: {what}\n", task.task))
+    };
+    let most = board.tasks.iter().map(|task| task.seeds).max().unwrap_or(0);
+    let first = format!("{most} seed{} from {} on\n", if most == 1 { "" } else { "s" }, board.seed);
+    std::iter::once(first).chain(board.tasks.iter().filter_map(line)).collect()
+}
+
+/// Smallest and largest mean rank with a single seed.
+pub(super) fn ranks_with_one(standing: &Standing) -> String {
+    let [low, high] = [standing.mean_rank_low, standing.mean_rank_high].map(|rank| short(rank, 3));
+    if low == high { low } else { format!("{low} … {high}") }
 }
 
 fn ranking(ranking: &[Standing]) -> String {
-    let titles =
-        ["place", "law", "mean\nrank", "best on\ntasks", "median factor\nto the best", "diverged\non tasks"];
+    let titles = [
+        "place",
+        "law",
+        "mean\nrank",
+        "with one\nseed",
+        "best on\ntasks",
+        "median factor\nto the best",
+        "does not\nfollow on",
+    ];
     let mut table = headed(titles.into_iter());
     for standing in ranking {
         let factor = Some(standing.median_factor).filter(|factor| factor.is_finite());
         let numbers = [
             short(standing.mean_rank, 3),
+            ranks_with_one(standing),
             standing.wins.to_string(),
             factor.map_or(NONE.to_owned(), |factor| significant(factor, 3)),
             standing.unfinished.to_string(),

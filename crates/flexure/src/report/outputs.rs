@@ -44,11 +44,15 @@ pub fn write_figure(folder: &Path, name: &str, figure: &Scene) -> Result<[PathBu
 
 /// Writes the scores as CSV: a row a task and law; errors in rad, torques in N m, nothing for numbers that there are not.
 fn write_scores(path: &Path, board: &Leaderboard) -> Result<(), WriteError> {
-    const HEADER: [&str; 11] = [
+    const HEADER: [&str; 15] = [
         "task",
         "law",
         "rank",
         "penalised_error",
+        "penalised_error_low",
+        "penalised_error_high",
+        "seeds",
+        "follows",
         "rms_error",
         "max_error",
         "rms_torque",
@@ -66,6 +70,10 @@ fn write_scores(path: &Path, board: &Leaderboard) -> Result<(), WriteError> {
             let numbers = [
                 score.rank,
                 score.penalised_error,
+                score.error().low,
+                score.error().high,
+                score.seeds.len() as f64,
+                f64::from(u8::from(score.follows)),
                 score.rms_error,
                 score.max_error,
                 score.rms_torque,
@@ -74,7 +82,7 @@ fn write_scores(path: &Path, board: &Leaderboard) -> Result<(), WriteError> {
                 score.saturated_fraction,
                 score.diverged_at.unwrap_or(f64::NAN),
             ];
-            let text = |x: f64| if x.is_nan() { String::new() } else { x.to_string() };
+            let text = |x: f64| if x.is_finite() { x.to_string() } else { String::new() };
             csv.write_record(
                 [task.scenario.clone(), score.law.clone()].into_iter().chain(numbers.map(text)),
             )?;

@@ -15,7 +15,7 @@ use crate::report::{
 };
 use crate::sampled::{Sampled, probe};
 use crate::scenario::{Hold, Scenario, load_scenario};
-use crate::simulate::{Run, Summary, run};
+use crate::simulate::{Following, Run, Summary, run};
 
 pub use outputs::{write_certificates, write_experiment, write_report};
 
@@ -194,6 +194,16 @@ fn run_report(experiment: &Experiment) -> RunReport {
     }
 }
 
+/// Whether a run follows, why not, and what it was held to.
+fn verdict(following: &Following) -> String {
+    let reasons: Vec<&str> = following.reasons.iter().map(|reason| reason.words.as_str()).collect();
+    let answer = match reasons.as_slice() {
+        [] => "It follows its reference".to_owned(),
+        reasons => format!("It does not follow its reference: {}", reasons.join("; ")),
+    };
+    format!("{answer}. Accepted are {}.", following.accepted.words().join("; "))
+}
+
 /// What a run came to, in a sentence.
 fn outcome(summary: &Summary) -> String {
     let settled = match summary.settling_time {
@@ -206,8 +216,9 @@ fn outcome(summary: &Summary) -> String {
     let law = summary.phi.as_ref().map_or_else(|| summary.controller.clone(), |phi| format!("φ = {phi}"));
     let unknown = unknown(&summary.plant).map(|unknown| format!("; {unknown}")).unwrap_or_default();
     format!(
-        "{law}: {settled}; largest motor torque {} N m, root mean square {} N m{unknown}.",
+        "{law}: {settled}; largest motor torque {} N m, root mean square {} N m{unknown}. {}",
         engineering(summary.max_abs_u_m),
-        engineering(summary.rms_u_m)
+        engineering(summary.rms_u_m),
+        verdict(&summary.following)
     )
 }

@@ -13,11 +13,12 @@ use crate::files::source::Source;
 use crate::files::table::Table;
 use crate::files::{Assumption, Outside, Places, Problem, Problems, provenance, quantity};
 use crate::imperfections::document::Context;
-use crate::imperfections::{Imperfection, document as imperfection};
+use crate::imperfections::{Imperfection, Saturation, document as imperfection};
 use crate::laws::{Controller, VcbcGains, document as controller};
 use crate::references::document::Timed;
 use crate::references::{Reference, SmoothStart, TimeScaling, document as reference};
 use crate::robot::{self, Robot, links};
+use crate::scenario::accept::{self, Accept};
 use crate::scenario::agreement;
 use crate::scenario::guard::{self, GuardSettings};
 use crate::scenario::initial::{self, Initial};
@@ -73,6 +74,8 @@ pub struct Scenario {
     pub disturbance_observer: Option<DisturbanceObserver>,
     /// What the controller refuses to do.
     pub guard: Option<GuardSettings>,
+    /// What a run is held to, as far as the file says so.
+    pub accept: Accept,
     /// Seed of all random numbers: the same seed gives the same run, bit for bit.
     pub seed: u64,
     /// Numbers that no source vouches for: the robot's, then those of the scenario.
@@ -93,9 +96,12 @@ impl Scenario {
     }
 
     /// What is between this loop and the ideal one, in words: options of the plant, kinds of imperfections, `observer`,
-    /// `disturbance observer`, `guard`.
+    /// `disturbance observer`, `guard`; and that the limits of the robot's torques do not act, if it has some.
     pub fn conditions(&self) -> Vec<&'static str> {
         let mut conditions = self.plant.options();
+        if self.plant.unlimited && self.robot.limits.torque.iter().any(|limit| limit.is_finite()) {
+            conditions.push("torque limits off");
+        }
         for imperfection in &self.imperfections {
             if conditions.last() != Some(&imperfection.kind()) {
                 conditions.push(imperfection.kind());
@@ -108,6 +114,19 @@ impl Scenario {
         ];
         conditions.extend(parts.iter().filter(|(is_there, _)| *is_there).map(|(_, name)| name));
         conditions
+    }
+
+    /// Largest torques that the drives give, in the order of the joints, infinite where there is no limit [N m]: those of a
+    /// `saturation`, or else the robot's. None where neither acts: switched off by `[plant]`, or in continuous time, which has
+    /// no drives.
+    pub fn drive_limits(&self) -> Option<Vec<f64>> {
+        let explicit = self.imperfections.iter().find_map(|imperfection| imperfection.of::<Saturation>());
+        if let Some(saturation) = explicit {
+            return Some(saturation.limit.clone());
+        }
+        let limits = &self.robot.limits.torque;
+        let act = !self.plant.unlimited && self.hold == Hold::ZeroOrder;
+        (act && limits.iter().any(|limit| limit.is_finite())).then(|| limits.clone())
     }
 
     /// The gains of its v-CBC law: what certificates are about.
@@ -157,6 +176,7 @@ const FORM: Form = Form {
         "estimator",
         "disturbance_observer",
         "guard",
+        "accept",
         "seed",
     ],
     other: (
@@ -195,6 +215,7 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> 
     let plant = plant::read(root, &joints, robot.as_ref());
     let context = Context { joints: &joints, robot: robot.as_ref(), times, base };
     let real = real_loop(root, &context, hold, plant.as_ref());
+    let accept = accept::read(root, &joints, times);
     let own = provenance::assumptions(root, places);
     if let (Some(field), Some(timed), Some(initial)) = (reference_field, &timed, &initial)
         && timed.smooth_start.is_none()
@@ -221,6 +242,7 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> 
         estimator: real.estimator,
         disturbance_observer: real.disturbance_observer,
         guard: real.guard,
+        accept: accept?,
         seed: real.seed,
         assumptions: assumed,
         places: places.clone(),

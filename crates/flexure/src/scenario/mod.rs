@@ -12,6 +12,7 @@
 //! # Ok::<(), flexure::files::Problems>(())
 //! ```
 
+mod accept;
 mod agreement;
 mod any;
 mod document;
@@ -20,6 +21,7 @@ mod initial;
 mod load;
 mod plant;
 
+pub use accept::Accept;
 pub use any::{Checked, check};
 pub use document::{Hold, Scenario, scenario_from_text};
 pub use guard::GuardSettings;

@@ -10,6 +10,8 @@ use crate::robot::Robot;
 pub struct Plant {
     /// Gear ratios by which rotors couple to the links; none for the reduced model.
     pub rotor_coupling: Option<Vec<f64>>,
+    /// Whether the drives give more than the robot's torque limits; they saturate there by default.
+    pub unlimited: bool,
     /// k ≥ 0 in the spring torque K ζ + k ζ³; none for linear springs [N m/rad³].
     pub spring_hardening: Option<Vec<f64>>,
 }
@@ -26,11 +28,16 @@ impl Plant {
 /// Reads `[plant]` of a scenario; `robot` is none if its own file could not be read.
 pub(crate) fn read(root: &Table<'_>, joints: &Joints, robot: Option<&Robot>) -> Option<Plant> {
     let Some(field) = root.get("plant") else { return Some(Plant::default()) };
-    let table = field.table(&["rotor_coupling", "spring_hardening"])?;
+    let table = field.table(&["rotor_coupling", "spring_hardening", "torque_limits"])?;
+    let limited = table.optional("torque_limits", Field::boolean);
     let coupling = table.optional("rotor_coupling", |field| gears(field, robot));
     let hardening =
         table.optional("spring_hardening", |field| field.per_joint(joints, &quantity::SPRING_HARDENING));
-    Some(Plant { rotor_coupling: coupling?.flatten(), spring_hardening: hardening? })
+    Some(Plant {
+        rotor_coupling: coupling?.flatten(),
+        unlimited: !limited?.unwrap_or(true),
+        spring_hardening: hardening?,
+    })
 }
 
 /// The robot's gear ratios if the rotors shall couple.

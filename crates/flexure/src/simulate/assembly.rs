@@ -1,5 +1,7 @@
 //! From a scenario to what is simulated: plant, controller and everything in between.
 
+use std::borrow::Cow;
+
 use flexure_core::estimate::DisturbanceObserver;
 use flexure_core::guard::{Guard, Settings};
 use flexure_core::linalg::Vector;
@@ -43,7 +45,8 @@ pub(crate) fn columns<const N: usize>(scenario: &Scenario, law: &AnyLaw<f64, N>)
         devices: imperfections.iter().any(Imperfection::is_of_devices)
             || estimator.is_some()
             || disturbance_observer.is_some()
-            || guard.is_some(),
+            || guard.is_some()
+            || scenario.drive_limits().is_some(),
     }
 }
 
@@ -64,6 +67,18 @@ fn effects(scenario: &Scenario) -> Effects<'_> {
     Effects::of(imperfections, robot.joint_count(), *control_period, *seed)
 }
 
+/// The imperfections of the scenario, and drives that saturate at the robot's torque limits where it says nothing else of them.
+fn acting(scenario: &Scenario) -> Cow<'_, [Imperfection]> {
+    let own = &scenario.imperfections;
+    match scenario.drive_limits() {
+        Some(limit) if !own.iter().any(|imperfection| imperfection.of::<Saturation>().is_some()) => {
+            let implied = Imperfection::Saturation(Saturation { limit });
+            own.iter().cloned().chain([implied]).collect()
+        }
+        _ => Cow::Borrowed(own),
+    }
+}
+
 /// The robot that is simulated: the scenario's, but for its model errors.
 pub(crate) fn simulated(scenario: &Scenario) -> Robot {
     effects(scenario).simulated(&scenario.robot)
@@ -71,7 +86,7 @@ pub(crate) fn simulated(scenario: &Scenario) -> Robot {
 
 /// The simulated robot with what the law does not know of its joints.
 pub(crate) fn plant<L, const N: usize>(scenario: &Scenario, robot: Fjr<f64, L, N>) -> Plant<L, N> {
-    let scenario::Plant { rotor_coupling, spring_hardening } = &scenario.plant;
+    let scenario::Plant { rotor_coupling, spring_hardening, unlimited: _ } = &scenario.plant;
     let mut plant = Plant {
         spring_hardening: spring_hardening.as_deref().map_or(Vector::ZERO, vector),
         rotor_coupling: rotor_coupling
@@ -101,8 +116,10 @@ where
     R: Reference<f64, N>,
     F: Feedback<L, N>,
 {
-    let Effects { sensors, mut actuator, velocities, .. } = effects(scenario);
     let period = scenario.control_period;
+    let acting = acting(scenario);
+    let Effects { sensors, mut actuator, velocities, .. } =
+        Effects::of(&acting, scenario.robot.joint_count(), period, scenario.seed);
     // Until the first command arrives the motors are held where they are.
     let before = robot.spring_torque(&x.q_l, &x.q_m);
     let mut controller = Controller::new(robot, reference, law);
@@ -138,6 +155,14 @@ fn guard<const N: usize>(
     });
     let guard = guard.expect("the reader takes sound settings only").applying(&applied);
     Guarded { guard, rejoin: settings.rejoin_duration }
+}
+
+/// The torque limits that act, the guard's and the drives', infinite where there is none, per joint [N m].
+pub(crate) fn acting_limits(scenario: &Scenario) -> Vec<f64> {
+    let guard = scenario.guard.as_ref().map(|guard| guard.torque_limit.clone());
+    let acting = [guard, scenario.drive_limits()];
+    let least = |i: usize| acting.iter().flatten().fold(f64::INFINITY, |least, limit| least.min(limit[i]));
+    (0..scenario.robot.joint_count()).map(least).collect()
 }
 
 /// The smallest of the torque limits that are known, per joint [N m]: the robot's, the guard's, the drive's.

@@ -1,5 +1,7 @@
 //! What stands between the motion of the robot and the torque on its motors: sensors, estimator, law, guard and drive.
 
+use std::cell::Cell;
+
 use flexure_core::estimate::{DisturbanceObserver, Estimator, FilteredDifference};
 use flexure_core::guard::{Age, Certificate, Guard, Phase};
 use flexure_core::linalg::Vector;
@@ -116,7 +118,8 @@ pub struct Action<const N: usize> {
     /// Torque on the motors until the next instant [N m]: what the drive believes to give when it comes from
     /// [`step`](Controller::step), what the motors give when a loop shows it.
     pub applied: Pieces<N>,
-    /// Whether a certificate of the law can hold: not while the guard limits torques or stops the robot.
+    /// Whether a certificate of the law can hold: the motors give what the law asks of them at what it sees, no more, no less
+    /// and no later, and no guard limits torques or stops the robot.
     pub certificate: bool,
     /// Whether the guard has stopped the robot.
     pub stopped: bool,
@@ -188,7 +191,12 @@ where
             Some((torque, true)) => torque,
             _ => Vector::ZERO,
         };
-        let law = |x: &Motion<f64, N>| self.law.torque(&self.robot, tick.t, x, &reference) - compensated;
+        let asked = Cell::new(None);
+        let law = |x: &Motion<f64, N>| {
+            let torque = self.law.torque(&self.robot, tick.t, x, &reference);
+            asked.set(Some(torque));
+            torque - compensated
+        };
         let (u_m, status) = match &mut self.guard {
             None => (law(&seen), None),
             Some(Guarded { guard, .. }) => {
@@ -209,7 +217,9 @@ where
             disturbance,
             u_m,
             applied: pieces,
-            certificate: status.is_none_or(|status| status.certificate() == Certificate::Holds),
+            // What the drive gives over the period is what the law asks, to the bit; whoever decided.
+            certificate: asked.get().is_some_and(|torque| pieces.iter().all(|(_, given)| given == torque))
+                && status.is_none_or(|status| status.certificate() == Certificate::Holds),
             stopped: status.is_some_and(|status| status.phase != Phase::Following),
         }
     }

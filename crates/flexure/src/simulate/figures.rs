@@ -72,7 +72,7 @@ impl Figures {
         self.rate = self.rate.min(rate);
         let limited = instant.command.iter().zip(&self.torque_limit).any(|(u, limit)| u.abs() >= *limit);
         self.at_limit += u32::from(limited);
-        self.suspended += u32::from(limited || !instant.certificate);
+        self.suspended += u32::from(!instant.certificate);
         self.stops += u32::from(instant.stopped && !self.stopped);
         self.stopped = instant.stopped;
     }

@@ -166,7 +166,8 @@ pub struct Observed {
     pub command: Vec<f64>,
     /// Torque of the motors at the end of the period [N m], n numbers.
     pub applied: Vec<f64>,
-    /// Whether a certificate of the law can hold: not while the guard limits or stops.
+    /// Whether a certificate of the law can hold: the motors give what the law asks, over the whole period, and no guard limits
+    /// or stops.
     pub certificate: bool,
     /// Whether the guard has stopped the robot.
     pub stopped: bool,

@@ -2,7 +2,9 @@
 
 pub(crate) mod assembly;
 mod controller;
+mod criteria;
 mod figures;
+mod following;
 mod gauss;
 mod held;
 mod interface;
@@ -25,13 +27,15 @@ mod write_trace;
 
 pub use assembly::TOLERANCE;
 pub use controller::{Action, Compensation, Controller, Feedback, Guarded};
+pub use criteria::{Bound, Criteria, Measure};
 pub use figures::SETTLED;
+pub use following::{Accepted, Following, Reason};
 pub use gauss::{Integrator, StepFailure};
 pub use interface::{Commanded, Errors, Loop, Observed, Signal};
 pub use ledger::Ledger;
 pub use limits::exceeded;
 pub use preload::preload;
-pub use run::{Run, measure, run};
+pub use run::{Run, measure, measure_by, run};
 pub use simulation::{Cause, Divergence, Hold, Instant, Simulation, Timing};
 pub use stepper::Stepper;
 pub use stepping::Stepping;

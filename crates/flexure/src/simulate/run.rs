@@ -7,7 +7,9 @@ use crate::imperfections::Imperfection;
 use crate::progress::{Progress, tell, unwatched};
 use crate::scenario::Scenario;
 use crate::simulate::assembly;
+use crate::simulate::criteria::Criteria;
 use crate::simulate::figures::Figures;
+use crate::simulate::following::{Following, Watch};
 use crate::simulate::interface::{Loop, Observed};
 use crate::simulate::simulation::Divergence;
 use crate::simulate::summary::Summary;
@@ -39,7 +41,7 @@ impl Scenario {
 /// # Errors
 /// As [`Scenario::open`], and [`Problems::interrupted`] if it was broken off.
 pub fn run(scenario: &Scenario, progress: Progress<'_>) -> Result<Run, Problems> {
-    simulate(scenario, progress, true)
+    simulate(scenario, &Criteria::of(scenario)?, progress, true)
 }
 
 /// Simulates a scenario for its figures alone: no trace, no rates. Faster, for many runs.
@@ -47,14 +49,28 @@ pub fn run(scenario: &Scenario, progress: Progress<'_>) -> Result<Run, Problems>
 /// # Errors
 /// As [`Scenario::open`].
 pub fn measure(scenario: &Scenario) -> Result<Run, Problems> {
-    simulate(scenario, &unwatched, false)
+    measure_by(scenario, &Criteria::of(scenario)?)
 }
 
-fn simulate(scenario: &Scenario, progress: Progress<'_>, traced: bool) -> Result<Run, Problems> {
+/// As [`measure`], held to `criteria`: for many runs that are held to the same ones.
+///
+/// # Errors
+/// As [`Scenario::open`].
+pub fn measure_by(scenario: &Scenario, criteria: &Criteria) -> Result<Run, Problems> {
+    simulate(scenario, criteria, &unwatched, false)
+}
+
+fn simulate(
+    scenario: &Scenario,
+    criteria: &Criteria,
+    progress: Progress<'_>,
+    traced: bool,
+) -> Result<Run, Problems> {
     let started = Clock::now();
     let mut held = scenario.open()?;
     let mut observed = Observed::new(held.joints());
     let mut figures = Figures::new(assembly::torque_limit(scenario));
+    let mut watch = Watch::new(criteria.clone(), assembly::acting_limits(scenario));
     let mut recorder = traced.then(|| Recorder::new(&*held));
     let mut divergence = None;
     for _ in 0..=periods(scenario) {
@@ -65,10 +81,12 @@ fn simulate(scenario: &Scenario, progress: Progress<'_>, traced: bool) -> Result
         held.observe(&mut observed).expect("made for it");
         let rate = recorder.as_mut().map_or(f64::NAN, |recorder| recorder.record(&*held));
         figures.record(&observed, rate);
+        watch.record(&observed);
         tell(progress, observed.t / scenario.duration)?;
     }
     let seconds = started.elapsed().as_secs_f64();
-    let summary = summary(scenario, &figures, &*held, divergence.is_some(), seconds);
+    let following = watch.verdict(&scenario.robot.joints, divergence.as_ref());
+    let summary = summary(scenario, &figures, following, &*held, divergence.is_some(), seconds);
     Ok(Run { summary, trace: recorder.map(|recorder| recorder.trace).unwrap_or_default(), divergence })
 }
 
@@ -107,6 +125,7 @@ impl Recorder {
 fn summary(
     scenario: &Scenario,
     figures: &Figures,
+    following: Following,
     held: &dyn Loop,
     diverged: bool,
     wall_seconds: f64,
@@ -120,6 +139,7 @@ fn summary(
         phi: scenario.controller.phi().map(str::to_owned),
         plant: scenario.plant.options(),
         imperfections: scenario.imperfections.iter().map(Imperfection::kind).collect(),
+        following,
         max_abs_e_l: ended(figures.max_abs_e_l),
         rms_e_l: ended(figures.rms_e_l()),
         final_abs_e_l: ended(figures.final_abs_e_l),

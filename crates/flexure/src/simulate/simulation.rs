@@ -175,7 +175,10 @@ where
             }
         };
         let mut action = self.controller.step(&tick, &self.motion);
-        action.applied = action.applied.map(|torque| self.world.plant.torque_gain.diag_mul(&torque));
+        let given = action.applied.map(|torque| self.world.plant.torque_gain.diag_mul(&torque));
+        // A drive that does not give what it believes voids what is proved of the law.
+        action.certificate &= given == action.applied;
+        action.applied = given;
         let (energy, ledger) = (self.world.energy(&self.motion), self.world.ledger);
         let residual = energy - self.balance.start - ledger.supplied + ledger.dissipated;
         self.balance.scale =

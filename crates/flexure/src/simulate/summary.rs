@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::simulate::following::Following;
+
 /// The figures of one closed-loop run: the contract of `run --json` and `reproduce --json`.
 ///
 /// ```
@@ -24,6 +26,9 @@ pub struct Summary {
     pub plant: Vec<&'static str>,
     /// What stands between the ideal loop and this one, as kinds of `[[imperfection]]` in the scenario file.
     pub imperfections: Vec<&'static str>,
+    /// Whether the run follows its reference, why not, and what it was held to.
+    #[serde(flatten)]
+    pub following: Following,
     /// Largest |q_l − q_ld| over all joints and the whole run, in rad. Like the next two NaN (null in JSON) for a run
     /// that diverged.
     pub max_abs_e_l: f64,
@@ -42,8 +47,8 @@ pub struct Summary {
     pub rms_torque_change: f64,
     /// Fraction of control periods in which a torque limit was active.
     pub saturated_fraction: f64,
-    /// Fraction of control periods in which no certificate of the law could hold: a limit was active, or the guard had
-    /// stopped the robot.
+    /// Fraction of control periods in which no certificate of the law could hold: the motors did not give what the law asked, or
+    /// the guard limited or stopped the robot.
     pub suspended_fraction: f64,
     /// Times that the guard stopped the robot.
     pub stops: u32,

@@ -2,16 +2,17 @@
 
 mod search;
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
+use std::collections::HashMap;
 
-pub use search::{BestPoint, search};
+pub use search::{BestPoint, has_random_points, search};
 
 use crate::feasible;
 use crate::files::Problems;
 use crate::laws::Controller;
 use crate::progress::Progress;
 use crate::scenario::Scenario;
-use crate::simulate::{Run, measure};
+use crate::simulate::{Criteria, Run, Summary, measure_by};
 
 /// Gains that were searched for, and what they cost.
 #[derive(Clone, Debug)]
@@ -22,6 +23,8 @@ pub struct Tuned {
     pub cost: f64,
     /// [`cost`] of a run with the gains of the scenario.
     pub start_cost: f64,
+    /// Its [penalised error](penalised_error); NaN if it diverges.
+    pub start_error: f64,
     /// Runs that were simulated.
     pub evaluations: usize,
 }
@@ -52,9 +55,39 @@ pub fn tune(
     seed: u64,
     progress: Progress<'_>,
 ) -> Result<Tuned, Problems> {
+    tune_from(scenario, budget, seed, &Costs::default(), progress)
+}
+
+/// What runs of one scenario cost, by the exponents of their gains: searches with other seeds begin with the same runs.
+#[derive(Debug, Default)]
+pub(crate) struct Costs(RefCell<HashMap<Vec<u64>, f64>>);
+
+impl Costs {
+    /// The cost at `exponents`, computed the first time.
+    fn at(&self, exponents: &[f64], compute: impl FnOnce() -> f64) -> f64 {
+        let key: Vec<u64> = exponents.iter().map(|x| x.to_bits()).collect();
+        let known = self.0.borrow().get(&key).copied();
+        known.unwrap_or_else(|| {
+            let cost = compute();
+            self.0.borrow_mut().insert(key, cost);
+            cost
+        })
+    }
+}
+
+/// As [`tune`], with what is known of the `costs` of this very scenario.
+pub(crate) fn tune_from(
+    scenario: &Scenario,
+    budget: usize,
+    seed: u64,
+    costs: &Costs,
+    progress: Progress<'_>,
+) -> Result<Tuned, Problems> {
     let mut trial = feasible::pinned(scenario)?;
+    let criteria = Criteria::of(&trial)?;
     // Whatever is wrong with the scenario is so for all gains.
-    let start_cost = cost(&measure(&trial)?);
+    let start = measure_by(&trial, &criteria)?;
+    let (start_cost, start_error) = (cost(&start), penalised_error(&start.summary));
     let gains: Vec<Vec<f64>> =
         scenario.controller.gains().into_iter().map(|(_, values)| values.to_vec()).collect();
     let powers = scenario.controller.speed_powers();
@@ -64,7 +97,7 @@ pub fn tune(
         let scaled = gains.iter().zip(factors).map(|(gain, x)| gain.iter().map(|g| g * x).collect());
         scenario.controller.with_gains(&scaled.collect::<Vec<Vec<f64>>>())
     };
-    let trials = std::cell::RefCell::new(&mut trial);
+    let trials = RefCell::new(&mut trial);
     let (tried, broken) = (Cell::new(0_usize), Cell::new(false));
     let at = |exponents: &[f64]| {
         let mut trial = trials.borrow_mut();
@@ -77,23 +110,43 @@ pub fn tune(
             return f64::INFINITY;
         }
         trial.controller = scaled(exponents);
-        measure(&trial).map_or(f64::INFINITY, |run| cost(&run))
+        costs.at(exponents, || measure_by(&trial, &criteria).map_or(f64::INFINITY, |run| cost(&run)))
     };
     let best = search(1 + gains.len(), HALF_WIDTH, budget, seed, &at);
     if broken.get() {
         return Err(Problems::interrupted());
     }
-    Ok(Tuned { controller: scaled(&best.at), cost: best.cost, start_cost, evaluations: best.evaluations })
+    Ok(Tuned {
+        controller: scaled(&best.at),
+        cost: best.cost,
+        start_cost,
+        start_error,
+        evaluations: best.evaluations,
+    })
 }
 
-/// What a run costs: ln(e √(1 + (c / 0.05)²)), with e the root mean square error of the links in rad and c how much the torque
-/// changes from one control instant to the next, as a part of the torque: gains that track well by chattering are no
-/// good gains. A loop that diverges costs more than any that does not, the more the earlier.
+/// What it costs not to follow: more than loops that do can, whose logarithm lies between those of 10⁻¹² and 10¹² rad.
+const LOST: f64 = 100.0;
+
+/// What it costs to diverge: more than any logarithm of finite numbers, which are below 710, and [`LOST`].
+const DIVERGED: f64 = 1e4;
+
+/// What a run costs: the logarithm of its [penalised error](penalised_error). A loop that does not
+/// [follow](crate::simulate::Following) costs more than any that does, and one that diverges more than any that does not, the
+/// more the earlier.
 pub fn cost(run: &Run) -> f64 {
-    let summary = &run.summary;
     if let Some(divergence) = run.divergence {
-        return 1e3 / (1.0 + divergence.time);
+        return DIVERGED + 1e3 / (1.0 + divergence.time);
     }
+    let lost = if run.summary.following.follows { 0.0 } else { LOST };
+    penalised_error(&run.summary).ln() + lost
+}
+
+/// e √(1 + (c / 0.05)²) in rad, with e the root mean square error of the links and c how much the torque changes from one control
+/// instant to the next, as a part of the torque: gains that track well by chattering are no good gains. At least 10⁻¹² rad; NaN
+/// for a run that diverged.
+pub fn penalised_error(summary: &Summary) -> f64 {
     let chatter = summary.rms_torque_change / summary.rms_u_m.max(f64::MIN_POSITIVE) / CHATTER;
-    summary.rms_e_l.max(1e-12).ln() + 0.5 * (1.0 + chatter * chatter).ln()
+    let error = if summary.rms_e_l.is_nan() { f64::NAN } else { summary.rms_e_l.max(1e-12) };
+    error * (1.0 + chatter * chatter).sqrt()
 }

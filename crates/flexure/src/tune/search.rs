@@ -81,6 +81,11 @@ pub fn search(
     tried.into_inner()
 }
 
+/// Whether a search with this budget tries points at random.
+pub fn has_random_points(budget: usize) -> bool {
+    1 + budget / 4 < budget.div_ceil(2)
+}
+
 impl BestPoint {
     fn consider(&mut self, at: &[f64], cost: f64) {
         self.evaluations += 1;

@@ -4,11 +4,13 @@
 use flexure::compare::Entrant;
 use flexure::compare::Leaderboard;
 use flexure::compare::Score;
+use flexure::compare::Search;
+use flexure::compare::SeedScore;
+use flexure::compare::Spread;
 use flexure::compare::TIE;
 use flexure::compare::Task;
 use flexure::compare::TaskScores;
 use flexure::compare::entrants;
-use flexure::compare::ranks;
 use flexure::compare::tasks;
 use flexure::compare::{check_budget, compare};
 use flexure::files::{Outside, TASKS};
@@ -37,20 +39,45 @@ fn score(law: &str, error: f64) -> Score {
     let mut score = Score::failed(law, "");
     score.failure = None;
     score.diverged_at = error.is_nan().then_some(0.5);
+    score.follows = !error.is_nan();
+    score.seeds = vec![seed(0, error)];
     (score.penalised_error, score.rms_error, score.rms_torque, score.chatter) = (error, error, 1.0, 0.01);
     score
 }
 
-/// A task with made-up errors of the laws `vcbc`, `pd` and `cascade`.
-fn made_up(name: &str, errors: [f64; 3]) -> TaskScores {
+fn seed(seed: u64, error: f64) -> SeedScore {
+    SeedScore { seed, penalised_error: error, rms_error: error, follows: !error.is_nan() }
+}
+
+/// A score with made-up errors of some seeds.
+fn seeded(law: &str, errors: &[f64]) -> Score {
+    let mut score = score(law, Spread::of(errors).median);
+    score.seeds = (0..).zip(errors).map(|(k, error)| seed(k, *error)).collect();
+    score.follows = errors.iter().all(|error| error.is_finite());
+    score
+}
+
+fn task(name: &str, scores: Vec<Score>) -> TaskScores {
     TaskScores {
         task: name.to_owned(),
         scenario: name.to_owned(),
+        random: false,
+        seeds: scores.iter().map(|score| score.seeds.len()).max().unwrap_or(0),
         conditions: String::new(),
         needed_torque: 1.0,
-        scores: ["vcbc", "pd", "cascade"].into_iter().zip(errors).map(|(law, e)| score(law, e)).collect(),
+        scores,
     }
     .ranked()
+}
+
+/// A task with made-up errors of the laws `vcbc`, `pd` and `cascade`.
+fn made_up(name: &str, errors: [f64; 3]) -> TaskScores {
+    task(name, ["vcbc", "pd", "cascade"].into_iter().zip(errors).map(|(law, e)| score(law, e)).collect())
+}
+
+/// Of one seed.
+fn ranks(errors: &[f64]) -> Vec<f64> {
+    flexure::compare::ranks(&errors.iter().map(|error| Spread::of(&[*error])).collect::<Vec<_>>())
 }
 
 #[test]
@@ -97,6 +124,58 @@ fn standings_are_means_of_ranks() {
         board.losses().iter().map(|l| (l.task.task.as_str(), l.factor(), l.better)).collect();
     assert_eq!(losses, [("b", 4.0, 2), ("c", f64::INFINITY, 2), ("d", f64::INFINITY, 2)]);
     assert_eq!(board.hopeless().count(), 0);
+}
+
+/// What overlaps with the best over the seeds is not worse; a law that does not follow with one of them is not ranked.
+#[test]
+fn errors_that_overlap_over_the_seeds_are_ties() {
+    let [lucky, steady, apart, lost] = [
+        seeded("lucky", &[3.0, 1.0, 2.0, 1.5, 9.0]),
+        seeded("steady", &[4.0, 4.1, 4.2, 4.3, 4.4]),
+        seeded("apart", &[10.0, 11.0, 12.0, 13.0, 14.0]),
+        seeded("lost", &[0.1, 0.1, 0.1, 0.1, f64::NAN]),
+    ];
+    assert_eq!(lucky.error(), Spread { low: 1.0, median: 2.0, high: 9.0 });
+    let board = Leaderboard::new(1, 0, vec![task("a", vec![apart, lost, steady, lucky])]);
+    let rank = |law: &str| board.tasks[0].scores.iter().find(|score| score.law == law).expect("there").rank;
+    assert_eq!(["lucky", "steady", "apart", "lost"].map(rank), [1.5, 1.5, 3.0, 4.0]);
+    let standing = |law: &str| board.ranking.iter().find(|standing| standing.law == law).expect("there");
+    // With the last seed alone steady is ahead: the two share the first place.
+    assert_eq!((standing("lucky").mean_rank_low, standing("lucky").mean_rank_high), (1.0, 2.0));
+    assert_eq!(["lucky", "steady", "apart", "lost"].map(|law| standing(law).place), [1, 1, 3, 4]);
+    assert_eq!(["lucky", "steady", "lost"].map(|law| standing(law).wins), [1, 1, 0]);
+    assert_eq!(standing("lost").unfinished, 1);
+    let table = leaderboard_table(&board);
+    assert!(table.contains("1000…9000") && table.contains("5 seeds"), "{table}");
+    assert!(leaderboard_page(&board, &[]).contains("1000…9000"));
+}
+
+/// Where nothing draws a number every seed is the same, and one is enough; where only the search does, it begins with the same
+/// runs; noise is another with every seed.
+#[test]
+fn seeds_matter_where_numbers_are_drawn() {
+    let laws = named(&["vcbc", "pd"]);
+    let of = |names: &[&str], budget: usize| {
+        let search = Search { budget, seed: 3, seeds: 5 };
+        let board = compare(&short(names), &laws, search, &|_, _| std::ops::ControlFlow::Continue(()));
+        board.expect("good tasks").tasks.remove(0)
+    };
+    let seeds = |task: &TaskScores| task.scores[0].seeds.iter().map(|seed| seed.seed).collect::<Vec<_>>();
+    let start = of(&["task-ideal-tracking"], 1);
+    assert_eq!((seeds(&start), start.seeds, start.random), (vec![3], 1, false));
+    let searched = of(&["task-ideal-tracking"], 8);
+    assert_eq!((seeds(&searched), searched.random), (vec![3, 4, 5, 6, 7], false));
+    let noisy = of(&["two-link-everything"], 1);
+    assert_eq!((seeds(&noisy), noisy.random), (vec![3, 4, 5, 6, 7], true));
+    let errors = noisy.scores[0].seeds.iter().map(|seed| seed.penalised_error.to_bits());
+    assert_eq!(errors.collect::<std::collections::HashSet<_>>().len(), 5);
+    // A search alone is the search among five.
+    let search = Search { budget: 8, seed: 5, seeds: 1 };
+    let alone =
+        compare(&short(&["task-ideal-tracking"]), &laws, search, &|_, _| std::ops::ControlFlow::Continue(()))
+            .expect("a good task");
+    let (one, third) = (&alone.tasks[0].scores[0].seeds[0], &searched.scores[0].seeds[2]);
+    assert_eq!(one.penalised_error.to_bits(), third.penalised_error.to_bits());
 }
 
 #[test]
@@ -156,7 +235,8 @@ fn the_suite_has_tasks_of_every_sort() {
 fn compared(threads: usize, tasks: &[Task], laws: &[Entrant], budget: usize) -> Leaderboard {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
     pool.install(|| {
-        compare(tasks, laws, budget, 5, &|_, _| std::ops::ControlFlow::Continue(())).expect("good tasks")
+        let search = Search { budget, seed: 5, seeds: 2 };
+        compare(tasks, laws, search, &|_, _| std::ops::ControlFlow::Continue(())).expect("good tasks")
     })
 }
 
@@ -182,7 +262,8 @@ fn results_depend_on_task_law_budget_and_seed_alone() {
 #[test]
 fn scores_are_what_they_say() {
     let tasks = short(&["two-link-tanh-smooth"]);
-    let board = compare(&tasks, &named(&["pd", "vcbc", "vcbc:tanh"]), 8, 1, &|_, _| {
+    let search = Search { budget: 8, seed: 1, seeds: 1 };
+    let board = compare(&tasks, &named(&["pd", "vcbc", "vcbc:tanh"]), search, &|_, _| {
         std::ops::ControlFlow::Continue(())
     })
     .expect("good tasks");
@@ -199,27 +280,40 @@ fn scores_are_what_they_say() {
     assert!(best.is_some_and(|best| board.tasks[0].is_best(best) && best.rank < 2.0 + TIE));
 }
 
-/// Torque that acts a tenth of a second late throws v-CBC off; springs on the motors stay.
+/// Torque that acts a tenth of a second late throws v-CBC off, with drives without limits beyond all bounds and with those of the
+/// arm to and fro between them; springs on the motors stay.
 #[test]
-fn laws_that_diverge_come_last() {
+fn laws_that_do_not_follow_come_last() {
+    for unlimited in [false, true] {
+        laws_that_are_late(unlimited);
+    }
+}
+
+fn laws_that_are_late(unlimited: bool) {
     let mut scenario = load_scenario("task-delay-4ms").expect("built in");
     scenario.duration = 6.0;
+    scenario.plant.unlimited = unlimited;
+    scenario.accept.error = Some(vec![0.6; 2]);
     for imperfection in &mut scenario.imperfections {
         if let Imperfection::Delay(delay) = imperfection {
             delay.computation = 0.1;
         }
     }
     let tasks = [Task::new(&scenario).expect("a good task")];
-    let board = compare(&tasks, &named(&["vcbc", "pd"]), 1, 0, &|_, _| std::ops::ControlFlow::Continue(()))
+    let search = Search { budget: 1, ..Search::default() };
+    let board = compare(&tasks, &named(&["vcbc", "pd"]), search, &|_, _| std::ops::ControlFlow::Continue(()))
         .expect("a good task");
     let [vcbc, pd] = &board.tasks[0].scores[..] else { panic!("{board:?}") };
     assert!(!vcbc.finished() && pd.finished(), "{board:?}");
-    assert!(vcbc.rms_error.is_nan() && vcbc.diverged_at.is_some_and(|t| t < 6.0));
+    assert_eq!(vcbc.diverged_at.is_some_and(|t| t < 6.0), unlimited, "{vcbc:?}");
+    assert!(!vcbc.reasons.is_empty() && vcbc.error().median.is_infinite());
     assert_eq!([vcbc.rank, pd.rank], [2.0, 1.0]);
     assert_eq!(board.ranking[1].law, "vcbc");
     let json = serde_json::to_value(&board).expect("JSON");
-    assert!(json["tasks"][0]["scores"][0]["rms_error"].is_null());
-    assert!(leaderboard_table(&board).contains('—') && effort_figure(&board).svg().contains("diverged:"));
+    assert_eq!(json["tasks"][0]["scores"][0]["rms_error"].is_null(), unlimited);
+    assert!(
+        leaderboard_table(&board).contains('—') && effort_figure(&board).svg().contains("do not follow:")
+    );
 }
 
 /// Numbers that there are not leave no trace in figures.

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use flexure::compare::{compare, entrants, tasks};
+use flexure::compare::{Search, compare, entrants, tasks};
 use flexure::core::scalar::{Interval, Scalar};
 use flexure::files::{Outside, ROBOTS, SCENARIOS};
 use flexure::margins::margins;
@@ -260,7 +260,8 @@ fn long_jobs_can_be_broken_off() {
     let (tasks, laws) =
         (tasks(&[], Outside::Refused), entrants(&["pd".to_owned(), "vcbc".to_owned()]).expect("laws"));
     let tasks = &tasks.expect("built in")[..2];
-    let broken = compare(tasks, &laws, 1000, 0, &|_, fraction| watched(fraction)).expect_err("broken off");
+    let search = Search { budget: 1000, ..Search::default() };
+    let broken = compare(tasks, &laws, search, &|_, fraction| watched(fraction)).expect_err("broken off");
     assert!(broken.is_interrupted(), "{broken}");
     assert!(reproduce(&|_, _| ControlFlow::Break(())).expect_err("broken off").is_interrupted());
     assert!(run(&scenario, &unwatched).is_ok());

@@ -19,6 +19,7 @@ mod examples;
 mod experiments;
 mod feasible;
 mod feed_forward;
+mod following;
 mod golden_panda;
 mod golden_two_link;
 mod held;

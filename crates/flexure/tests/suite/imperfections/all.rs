@@ -240,3 +240,20 @@ fn streams_are_told_apart_and_stay_as_they_are() {
         assert_eq!(random.uniform().to_bits(), f64::to_bits(expected));
     }
 }
+
+/// What says that it draws random numbers gives something else with another seed, and what does not never does.
+#[test]
+fn seeds_matter_to_what_draws() {
+    let mut drawing = 0;
+    for (kind, strengths) in registered() {
+        for imperfection in strengths.into_iter().flatten() {
+            let of = |seed: u64| {
+                let alone = [imperfection.clone()];
+                (format!("{:?}", readings(&alone, seed, 2000)), format!("{:?}", torques(&alone, seed, 2000)))
+            };
+            assert_eq!(of(1) != of(2), imperfection.draws(), "{kind}: {imperfection:?}");
+            drawing += usize::from(imperfection.draws());
+        }
+    }
+    assert!(drawing >= 6, "{drawing}");
+}

@@ -1,5 +1,6 @@
 //! A trace like that of a closed loop: a torque peak of a few milliseconds, then decaying errors on a sine.
 
+use flexure::simulate::Following;
 use flexure::simulate::Summary;
 use flexure::simulate::Trace;
 
@@ -52,6 +53,7 @@ pub fn summary(name: &str) -> Summary {
         phi: Some("tanh".to_owned()),
         plant: Vec::new(),
         imperfections: vec![],
+        following: Following::default(),
         max_abs_e_l: 0.0312,
         rms_e_l: 1.234e-3,
         final_abs_e_l: 1.23e-7,

@@ -1,0 +1,217 @@
+//! Whether a run follows its reference, and if not, why.
+
+use serde::Serialize;
+
+use crate::files::number::short;
+use crate::robot::MovingJoint;
+use crate::simulate::criteria::{Bound, Criteria, Measure};
+use crate::simulate::interface::Observed;
+use crate::simulate::simulation::Divergence;
+
+/// The verdict on a run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Following {
+    /// Whether it follows its reference: it ran to its end, inside every limit, and no guard has stopped the robot there.
+    pub follows: bool,
+    /// Why not; nothing for a run that follows.
+    pub reasons: Vec<Reason>,
+    /// What it was held to.
+    pub accepted: Accepted,
+}
+
+/// What a run was held to.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Accepted {
+    /// Time from which errors, torque changes and time at the limit count \[s\].
+    pub settling: f64,
+    /// Where that is from.
+    pub because: &'static str,
+    /// The limits, in the order of [`Measure::ALL`].
+    pub bounds: Vec<Bound>,
+}
+
+/// Something that keeps a run from following.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Reason {
+    /// Name of the joint; none for what concerns the whole robot.
+    pub joint: Option<String>,
+    /// What is beyond its limit; none for loops that diverged and robots that were stopped.
+    pub measure: Option<Measure>,
+    /// Its largest value; NaN (null in JSON) without a measure.
+    pub value: f64,
+    /// The limit.
+    pub limit: f64,
+    /// When that was, or when the run ended \[s\]; none for figures of the whole run.
+    pub time: Option<f64>,
+    /// All of that in words.
+    pub words: String,
+}
+
+/// The largest value of a measure so far.
+#[derive(Clone, Copy, Debug)]
+struct Worst {
+    value: f64,
+    time: f64,
+}
+
+/// A run as it goes on, held to criteria.
+pub(crate) struct Watch {
+    criteria: Criteria,
+    /// Torque limits that act, infinite where there is none [N m].
+    limits: Vec<f64>,
+    /// Link positions at the first instant.
+    start: Vec<f64>,
+    /// Farthest that the reference is from there.
+    size: Vec<f64>,
+    /// Of error, torque, speed, deflection.
+    worst: [Vec<Worst>; 4],
+    last: Vec<f64>,
+    squared_change: Vec<f64>,
+    at_limit: Vec<u32>,
+    /// Instants from settling on.
+    settled: u32,
+    stopped_since: Option<f64>,
+}
+
+impl Watch {
+    /// Of nothing yet; `limits` are the torque limits that act [N m].
+    pub(crate) fn new(criteria: Criteria, limits: Vec<f64>) -> Self {
+        let n = limits.len();
+        let none = || vec![Worst { value: 0.0, time: 0.0 }; n];
+        Self {
+            criteria,
+            limits,
+            start: Vec::new(),
+            size: vec![0.0; n],
+            worst: [none(), none(), none(), none()],
+            last: Vec::with_capacity(n),
+            squared_change: vec![0.0; n],
+            at_limit: vec![0; n],
+            settled: 0,
+            stopped_since: None,
+        }
+    }
+
+    /// Takes in an instant.
+    pub(crate) fn record(&mut self, instant: &Observed) {
+        let n = self.limits.len();
+        let t = instant.t;
+        let (q_l, rest) = instant.motion.split_at(n);
+        let (q_m, v_l) = rest.split_at(n);
+        if self.start.is_empty() {
+            self.start = q_l.to_vec();
+        }
+        let settled = t >= self.criteria.settling;
+        self.settled += u32::from(settled);
+        for i in 0..n {
+            let (reference, torque) = (instant.reference[i], instant.applied[i]);
+            self.size[i] = self.size[i].max((reference - self.start[i]).abs());
+            let error = if settled { q_l[i] - reference } else { 0.0 };
+            for (worst, value) in self.worst.iter_mut().zip([error, torque, v_l[i], q_m[i] - q_l[i]]) {
+                let value = value.abs();
+                // What is no number stays the worst.
+                if value > worst[i].value || value.is_nan() {
+                    worst[i] = Worst { value, time: t };
+                }
+            }
+            if settled {
+                let change = self.last.get(i).map_or(0.0, |last| torque - last);
+                self.squared_change[i] += change * change;
+                self.at_limit[i] += u32::from(instant.command[i].abs() >= self.limits[i]);
+            }
+        }
+        self.last.clone_from(&instant.applied);
+        self.stopped_since = instant.stopped.then(|| self.stopped_since.unwrap_or(t));
+    }
+
+    /// The verdict on the run that ends here, of a robot with these `joints`.
+    pub(crate) fn verdict(&self, joints: &[MovingJoint], divergence: Option<&Divergence>) -> Following {
+        let bounds = self.criteria.bounds(&self.size);
+        let mut reasons = Vec::new();
+        match (divergence, self.stopped_since) {
+            (Some(divergence), _) => reasons.push(Reason::whole(divergence.time, divergence.to_string())),
+            (None, Some(since)) => {
+                let words = format!("the guard has stopped the robot since t = {} s", short(since, 4));
+                reasons.push(Reason::whole(since, words));
+            }
+            (None, None) => {}
+        }
+        for bound in &bounds {
+            // What comes after a divergence nobody knows: it is the reason.
+            let found = joints.iter().enumerate().filter(|_| divergence.is_none());
+            reasons.extend(found.filter_map(|(i, joint)| self.objection(bound, i, joint)));
+        }
+        let Criteria { settling, settling_because: because, .. } = self.criteria;
+        let accepted = Accepted { settling, because, bounds };
+        Following { follows: reasons.is_empty(), reasons, accepted }
+    }
+
+    /// What joint `i` did beyond a limit.
+    fn objection(&self, bound: &Bound, i: usize, joint: &MovingJoint) -> Option<Reason> {
+        let mean = |sum: f64| sum / f64::from(self.settled.max(1));
+        let worst = |k: usize| (self.worst[k][i].value, Some(self.worst[k][i].time));
+        let (value, time) = match bound.measure {
+            Measure::Error => worst(0),
+            Measure::Torque => worst(1),
+            Measure::Speed => worst(2),
+            Measure::Deflection => worst(3),
+            Measure::TorqueChange => (mean(self.squared_change[i]).sqrt(), None),
+            Measure::AtLimit => (mean(f64::from(self.at_limit[i])), None),
+        };
+        let limit = bound.limit[i];
+        let is_inside = value <= limit;
+        (!is_inside).then(|| {
+            let unit = bound.measure.unit(joint.kind);
+            let amount = |x: f64| format!("{}{}{unit}", short(x, 4), if unit.is_empty() { "" } else { " " });
+            let when = match time {
+                Some(time) => format!(" at t = {} s", short(time, 4)),
+                None => format!(" from t = {} s on", short(self.criteria.settling, 4)),
+            };
+            let words = format!(
+                "joint {}: {} of {}{when}, accepted are {} ({})",
+                joint.name,
+                bound.measure.what(),
+                amount(value),
+                amount(limit),
+                bound.because
+            );
+            Reason {
+                joint: Some(joint.name.clone()),
+                measure: Some(bound.measure),
+                value,
+                limit,
+                time,
+                words,
+            }
+        })
+    }
+}
+
+impl Reason {
+    fn whole(time: f64, words: String) -> Self {
+        Self { joint: None, measure: None, value: f64::NAN, limit: f64::NAN, time: Some(time), words }
+    }
+}
+
+impl Accepted {
+    /// In words, a limit each: what is accepted and where that is from.
+    pub fn words(&self) -> Vec<String> {
+        let from = format!("from t = {} s on ({})", short(self.settling, 4), self.because);
+        let limited = self.bounds.iter().filter(|bound| bound.limit.iter().any(|limit| limit.is_finite()));
+        let bound = |bound: &Bound| {
+            let mut limits: Vec<String> = bound.limit.iter().map(|limit| number(*limit)).collect();
+            if limits.windows(2).all(|pair| pair[0] == pair[1]) {
+                limits.truncate(1);
+            }
+            let unit = bound.measure.unit(crate::robot::JointKind::Revolute);
+            let from = if bound.measure.is_settled() { format!(" {from}") } else { String::new() };
+            let what = bound.measure.what().trim_end_matches(',');
+            format!("{what} up to {} {unit}{from}: {}", limits.join(", "), bound.because).replace("  ", " ")
+        };
+        limited.map(bound).collect()
+    }
+}
+
+fn number(limit: f64) -> String {
+    if limit.is_finite() { short(limit, 4) } else { "any".to_owned() }
+}
