@@ -22,7 +22,7 @@ mod plant;
 
 pub use any::{Checked, check};
 pub use document::{Hold, Scenario, scenario_from_text};
-pub use guard::GuardSettings;
+pub use guard::{Believed, Collision, GuardSettings, Reaction, Rejoin};
 pub use initial::Initial;
 pub use load::load_scenario;
 pub use plant::Plant;

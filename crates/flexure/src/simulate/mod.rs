@@ -2,8 +2,11 @@
 
 pub(crate) mod assembly;
 mod controller;
+mod fault_log;
 mod figures;
 mod gauss;
+mod guard_settings;
+mod guarded;
 mod held;
 mod interface;
 mod ledger;
@@ -24,9 +27,11 @@ mod trace;
 mod write_trace;
 
 pub use assembly::TOLERANCE;
-pub use controller::{Action, Compensation, Controller, Feedback, Guarded};
+pub use controller::{Action, Compensation, Controller, Feedback, Said};
+pub use fault_log::{FaultLog, LoggedStep, Stopped};
 pub use figures::SETTLED;
 pub use gauss::{Integrator, StepFailure};
+pub use guarded::Guarded;
 pub use interface::{Commanded, Errors, Loop, Observed, Signal};
 pub use ledger::Ledger;
 pub use limits::exceeded;

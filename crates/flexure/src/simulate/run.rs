@@ -7,6 +7,7 @@ use crate::imperfections::Imperfection;
 use crate::progress::{Progress, tell, unwatched};
 use crate::scenario::Scenario;
 use crate::simulate::assembly;
+use crate::simulate::fault_log::FaultLog;
 use crate::simulate::figures::Figures;
 use crate::simulate::interface::{Loop, Observed};
 use crate::simulate::simulation::Divergence;
@@ -22,6 +23,8 @@ pub struct Run {
     pub trace: Trace,
     /// Set if the loop diverged before the end; trace and summary then end there.
     pub divergence: Option<Divergence>,
+    /// What the guard kept of its stops; none without a guard.
+    pub faults: Option<FaultLog>,
 }
 
 impl Scenario {
@@ -69,7 +72,8 @@ fn simulate(scenario: &Scenario, progress: Progress<'_>, traced: bool) -> Result
     }
     let seconds = started.elapsed().as_secs_f64();
     let summary = summary(scenario, &figures, &*held, divergence.is_some(), seconds);
-    Ok(Run { summary, trace: recorder.map(|recorder| recorder.trace).unwrap_or_default(), divergence })
+    let trace = recorder.map(|recorder| recorder.trace).unwrap_or_default();
+    Ok(Run { summary, trace, divergence, faults: held.faults() })
 }
 
 /// Number of control periods in the run.
