@@ -133,23 +133,22 @@ pub enum Place {
 }
 
 impl Place {
-    /// Shows a fault and its place to `port`: the number of the `cause`, 0 for none, the `side` (0 the controller, 1 links, 2
-    /// motors) and the index of the `joint`.
+    /// Shows a fault and its place to `port`: the number of the `cause`, 0 for none, and that of the `place`: 0 for the controller,
+    /// then joint by joint its link and its motor.
     #[inline]
     pub fn walk<S>(fault: &mut Option<(Fault, Self)>, port: &mut dyn Port<S>) {
         let (mut cause, place) = fault.map_or((0, Self::Controller), |(cause, place)| (cause.code(), place));
-        let (mut side, mut joint) = match place {
-            Self::Controller => (0, 0),
-            Self::Link(joint) => (1, joint),
-            Self::Motor(joint) => (2, joint),
+        let mut code = match place {
+            Self::Controller => 0,
+            Self::Link(joint) => joint.saturating_mul(2).saturating_add(1),
+            Self::Motor(joint) => joint.saturating_mul(2).saturating_add(2),
         };
         port.word("cause", &mut cause);
-        port.word("side", &mut side);
-        port.word("joint", &mut joint);
-        let place = match side {
-            1 => Self::Link(joint),
-            2 => Self::Motor(joint),
-            _ => Self::Controller,
+        port.word("place", &mut code);
+        let place = match code.checked_sub(1) {
+            None => Self::Controller,
+            Some(code) if code % 2 == 0 => Self::Link(code / 2),
+            Some(code) => Self::Motor(code / 2),
         };
         *fault = Fault::of_code(cause).map(|cause| (cause, place));
     }

@@ -116,7 +116,7 @@ fn oldest_first<T: Copy, const LENGTH: usize>(ring: &[T; LENGTH], count: u32) ->
 const NAMES: [&str; ENTRIES] =
     ["0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11", "12", "13", "14", "15"];
 
-/// `stops` and `steps`, how many there were; each stop with its `time`, the code of its `cause` and of its `place`; each step with its
+/// `stops` and `steps`, how many there were; each stop with its `time`, the numbers of its `cause` and `place`; each step with its
 /// `time`, `phase`, motion and `torque`.
 impl<C: Scalar, const N: usize> Memory<C> for Log<C, N> {
     #[inline]

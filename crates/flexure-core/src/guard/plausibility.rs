@@ -166,6 +166,7 @@ impl<C: Float, const N: usize> Side<C, N> {
             C::ZERO
         };
         let frozen = self.is_frozen(plausible.frozen, i, now);
+        self.last[i] = q;
         let [least, most] = plausible.position.map(|bound| bound[i]);
         // Comparisons with what is not a number are false.
         if q < least || q > most {
@@ -187,9 +188,7 @@ impl<C: Float, const N: usize> Side<C, N> {
     #[inline]
     fn is_frozen(&mut self, frozen: Option<Frozen<C>>, i: usize, now: &Now<C>) -> bool {
         let Some(Frozen { periods, travel }) = frozen else { return false };
-        let same = now.q == self.last[i];
-        self.last[i] = now.q;
-        if !same {
+        if now.q != self.last[i] {
             (self.same[i], self.frozen[i]) = (C::ZERO, C::ZERO);
             (self.other[i], self.target[i]) = (now.other, now.target);
             return false;
@@ -221,10 +220,10 @@ impl<C: Float, const N: usize> Memory<C> for Side<C, N> {
         let Self { believed, last, same, other, target, frozen, gap } = self;
         port.joints("believed", "rad", &mut believed.0);
         port.joints("last", "rad", &mut last.0);
-        port.joints("same", "", &mut same.0);
+        port.joints("same", "control periods", &mut same.0);
         port.joints("other", "rad", &mut other.0);
         port.joints("target", "rad", &mut target.0);
-        port.joints("frozen", "", &mut frozen.0);
+        port.joints("frozen", "0 or 1", &mut frozen.0);
         port.joints("gap", "rad/s", &mut gap.0);
     }
 }

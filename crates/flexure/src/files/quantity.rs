@@ -269,3 +269,5 @@ pub(crate) const DISTANCE: Quantity =
     Quantity::positive("distance of two joint positions", units::ANGLE).plausible(TINY, FOUR_TURNS, DEGREES);
 pub(crate) const RESIDUAL: Quantity =
     Quantity::positive("torque that the model does not know", units::TORQUE);
+pub(crate) const OFFSET: Quantity =
+    Quantity::any("what is added to measured positions", units::ANGLE).plausible(TINY, FOUR_TURNS, DEGREES);
