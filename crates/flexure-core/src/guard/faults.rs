@@ -202,6 +202,8 @@ impl<const N: usize> Faults<N> {
             })
         };
         let controller = controller.map(|fault| (fault, Place::Controller));
-        controller.or_else(|| find(|fault| !fault.is_of_both_sides())).or_else(|| find(Fault::is_of_both_sides))
+        controller
+            .or_else(|| find(|fault| !fault.is_of_both_sides()))
+            .or_else(|| find(Fault::is_of_both_sides))
     }
 }

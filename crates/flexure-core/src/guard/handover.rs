@@ -23,11 +23,7 @@ impl<C: Float, const N: usize> Handover<C, N> {
     /// From `acting` to `asked` [N m]; none where the law asks for what is no number or beyond the torque limit, or the rate limit
     /// would not allow it to get there.
     #[inline]
-    pub fn between(
-        settings: &Settings<C, N>,
-        acting: &Vector<C, N>,
-        asked: &Vector<C, N>,
-    ) -> Option<Self> {
+    pub fn between(settings: &Settings<C, N>, acting: &Vector<C, N>, asked: &Vector<C, N>) -> Option<Self> {
         let offset = *acting - *asked;
         let is_smooth = (0..N).all(|i| {
             let way = settings.torque_rate_limit[i] * settings.period * periods::<C>(PERIODS);

@@ -106,7 +106,10 @@ fn put<T, const LENGTH: usize>(ring: &mut [T; LENGTH], count: &mut u32, item: T)
 }
 
 #[inline]
-fn oldest_first<T: Copy, const LENGTH: usize>(ring: &[T; LENGTH], count: u32) -> impl Iterator<Item = T> + '_ {
+fn oldest_first<T: Copy, const LENGTH: usize>(
+    ring: &[T; LENGTH],
+    count: u32,
+) -> impl Iterator<Item = T> + '_ {
     let length = LENGTH as u32;
     let first = count.saturating_sub(length);
     (first..count).filter_map(move |at| ring.get((at % length) as usize).copied())

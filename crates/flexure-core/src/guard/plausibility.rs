@@ -15,7 +15,8 @@ pub struct Plausible<C, const N: usize> {
     pub speed: Vector<C, N>,
     /// Largest deflection of the springs.
     pub deflection: Vector<C, N>,
-    /// Farthest that a reading may be from the last one of its joint and side that was believed.
+    /// Farthest that a reading may be from the last one of its joint and side that was believed, beside what the robot has gone on
+    /// since: at the speed that it had then, for a quarter of a second at most.
     pub jump: Vector<C, N>,
     /// When a reading that stays the same to the bit is no reading.
     pub frozen: Option<Frozen<C>>,
@@ -35,6 +36,9 @@ pub struct Frozen<C> {
     /// In rad.
     pub travel: C,
 }
+
+/// Longest time in s for which a robot is thought to go on as fast as when it was last believed.
+const GOING_ON: (i32, i32) = (1, 4);
 
 /// Share of the difference of velocities that a period brings in.
 const SHARE: (i32, i32) = (1, 10);
@@ -73,8 +77,10 @@ pub(super) struct Watch<C, const N: usize> {
 /// Of the encoders of one side; NaN where there was no reading yet.
 #[derive(Clone, Copy, Debug)]
 struct Side<C, const N: usize> {
-    /// The last position that was believed in rad.
+    /// The last position that was believed in rad, the speed then [rad/s], and control periods since.
     believed: Vector<C, N>,
+    speed: Vector<C, N>,
+    since: Vector<C, N>,
     /// The last position in rad.
     last: Vector<C, N>,
     /// Control periods since it changed.
@@ -94,6 +100,8 @@ impl<C: Float, const N: usize> Watch<C, N> {
         let zero = Vector::ZERO;
         let side = Side {
             believed: none,
+            speed: zero,
+            since: zero,
             last: none,
             same: zero,
             other: none,
@@ -138,7 +146,8 @@ impl<C: Float, const N: usize> Watch<C, N> {
                 };
                 faults[i] = faults[i].or(doubt).or(both);
                 if faults[i].is_none() && now.q.is_finite() {
-                    side.believed[i] = now.q;
+                    (side.believed[i], side.speed[i], side.since[i]) =
+                        (now.q, Piecewise::abs(now.v), C::ZERO);
                 }
             }
         }
@@ -165,6 +174,9 @@ impl<C: Float, const N: usize> Side<C, N> {
         } else {
             C::ZERO
         };
+        self.since[i] += C::ONE;
+        let passed = Piecewise::min(self.since[i] * period, C::from_ratio(GOING_ON.0, GOING_ON.1));
+        let far = plausible.jump[i] + self.speed[i] * passed;
         let frozen = self.is_frozen(plausible.frozen, i, now);
         self.last[i] = q;
         let [least, most] = plausible.position.map(|bound| bound[i]);
@@ -173,7 +185,7 @@ impl<C: Float, const N: usize> Side<C, N> {
             Some(Fault::Position)
         } else if Piecewise::abs(v) > plausible.speed[i] {
             Some(Fault::Speed)
-        } else if Piecewise::abs(q - self.believed[i]) > plausible.jump[i] {
+        } else if Piecewise::abs(q - self.believed[i]) > far {
             Some(Fault::Jump)
         } else if frozen {
             Some(Fault::Frozen)
@@ -212,13 +224,15 @@ impl<C: Float, const N: usize> Memory<C> for Watch<C, N> {
     }
 }
 
-/// `believed`, `last`, of the last change `other` and `target` in rad and `same`, the control periods since; whether it is
+/// `believed` in rad, the `speed` then [rad/s] and control periods `since`, `last`, of the last change `other` and `target` in rad and `same`, the control periods since; whether it is
 /// `frozen`, 0 or 1; `gap` [rad/s].
 impl<C: Float, const N: usize> Memory<C> for Side<C, N> {
     #[inline]
     fn memory(&mut self, port: &mut dyn Port<C>) {
-        let Self { believed, last, same, other, target, frozen, gap } = self;
+        let Self { believed, speed, since, last, same, other, target, frozen, gap } = self;
         port.joints("believed", "rad", &mut believed.0);
+        port.joints("speed", "rad/s", &mut speed.0);
+        port.joints("since", "control periods", &mut since.0);
         port.joints("last", "rad", &mut last.0);
         port.joints("same", "control periods", &mut same.0);
         port.joints("other", "rad", &mut other.0);

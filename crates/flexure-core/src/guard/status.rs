@@ -76,10 +76,6 @@ impl<const N: usize> Status<N> {
             joining: self.joining,
             stopped: !self.phase.is_law_s(),
         };
-        if suspension == Suspension::NONE {
-            Certificate::Holds
-        } else {
-            Certificate::Suspended(suspension)
-        }
+        if suspension == Suspension::NONE { Certificate::Holds } else { Certificate::Suspended(suspension) }
     }
 }

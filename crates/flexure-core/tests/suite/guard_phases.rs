@@ -235,6 +235,15 @@ fn what_cannot_be_is_not_believed() {
         assert_eq!(doubt(&mut jumping, 0.4 + std::f64::consts::TAU, 0.4, 0.0), [Some(Fault::Jump), None]);
     }
     assert_eq!(doubt(&mut jumping, 0.5, 0.4, 0.0), fine);
+    // A robot that was moving goes on while nobody sees it: by 2 rad/s for at most a quarter of a second.
+    for (after, far, doubted) in
+        [(100, 0.69, false), (100, 0.71, true), (900, 0.99, false), (900, 1.01, true)]
+    {
+        let mut jumping = doubting(Plausible { jump: all(0.5), ..any });
+        assert_eq!(doubt(&mut jumping, 0.0, 0.0, 2.0), fine);
+        (1..after).for_each(|_| drop(doubt(&mut jumping, f64::NAN, f64::NAN, 0.0)));
+        assert_eq!(doubt(&mut jumping, far, 0.0, 0.0)[0], doubted.then_some(Fault::Jump), "{after}: {far}");
+    }
 }
 
 /// A velocity that is not the rate of the position shows after some periods; noise of one reading does not.

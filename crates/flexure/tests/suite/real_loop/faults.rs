@@ -215,11 +215,11 @@ fn fast(chance: &mut Chance) -> String {
             .unwrap();
     }
     if chance.happens(0.5) {
-        let (a, b) = (chance.between(-1.0, 1.0), chance.between(-0.5, 0.5));
+        let (a, b) = (chance.between(-0.2, 0.2), chance.between(-0.1, 0.1));
         push(&mut text, chance, [a, b]);
     }
     if chance.happens(0.5) {
-        noise(&mut text, chance.between(0.0, 2e-5));
+        noise(&mut text, chance.between(0.0, 1e-5));
     }
     text
 }
