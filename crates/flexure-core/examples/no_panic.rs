@@ -102,19 +102,19 @@ fn rotors(
 }
 
 /// Encoder readings in rad and the torque that was applied [N m].
-type Seen = [V<f64, 7>; 3];
+type Read = [V<f64, 7>; 3];
 
 #[cfg_attr(not(debug_assertions), no_panic)]
 fn difference(
     estimator: &mut FilteredDifference<f64, 7>,
     robot: &Chain,
-    [q_l, q_m, u]: &Seen,
+    [q_l, q_m, u]: &Read,
 ) -> Motion<f64, 7> {
     estimator.update(robot, q_l, q_m, u)
 }
 
 #[cfg_attr(not(debug_assertions), no_panic)]
-fn observer(estimator: &mut Observer<f64, 7>, robot: &Chain, [q_l, q_m, u]: &Seen) -> Motion<f64, 7> {
+fn observer(estimator: &mut Observer<f64, 7>, robot: &Chain, [q_l, q_m, u]: &Read) -> Motion<f64, 7> {
     estimator.update(robot, q_l, q_m, u)
 }
 
@@ -122,7 +122,7 @@ fn observer(estimator: &mut Observer<f64, 7>, robot: &Chain, [q_l, q_m, u]: &See
 fn motor_observer(
     estimator: &mut MotorObserver<f64, 7>,
     robot: &Chain,
-    [q_l, q_m, u]: &Seen,
+    [q_l, q_m, u]: &Read,
 ) -> Motion<f64, 7> {
     estimator.update(robot, q_l, q_m, u)
 }

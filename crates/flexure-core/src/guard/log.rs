@@ -98,7 +98,7 @@ impl<C: Scalar, const N: usize> Log<C, N> {
 /// Puts `item` at its place in the ring; a count that is full starts over where the ring does.
 #[inline]
 fn put<T, const LENGTH: usize>(ring: &mut [T; LENGTH], count: &mut u32, item: T) {
-    let length = LENGTH as u32;
+    let length = u32::try_from(LENGTH).unwrap_or(u32::MAX);
     if let Some(slot) = ring.get_mut((*count % length) as usize) {
         *slot = item;
     }
@@ -110,7 +110,7 @@ fn oldest_first<T: Copy, const LENGTH: usize>(
     ring: &[T; LENGTH],
     count: u32,
 ) -> impl Iterator<Item = T> + '_ {
-    let length = LENGTH as u32;
+    let length = u32::try_from(LENGTH).unwrap_or(u32::MAX);
     let first = count.saturating_sub(length);
     (first..count).filter_map(move |at| ring.get((at % length) as usize).copied())
 }

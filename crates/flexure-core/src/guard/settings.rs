@@ -1,5 +1,6 @@
 //! What a guard allows.
 
+use super::log::ENTRIES;
 use super::{Collision, Plausible};
 use crate::estimate::positive;
 use crate::linalg::Vector;
@@ -84,6 +85,6 @@ impl<C: Float, const N: usize> Settings<C, N> {
             && error.iter().all(above_zero)
             && self.plausible.is_sound()
             && self.collision.is_none_or(|collision| collision.threshold.iter().all(above_zero))
-            && self.latch.is_none_or(|latch| (1..=super::log::ENTRIES as u32).contains(&latch.stops))
+            && self.latch.is_none_or(|latch| (1..=ENTRIES).contains(&(latch.stops as usize)))
     }
 }

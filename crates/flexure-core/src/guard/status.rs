@@ -38,6 +38,7 @@ pub enum Certificate {
 
 /// Why a certificate does not hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "reasons that do not exclude each other")]
 pub struct Suspension {
     /// A joint is at its torque limit.
     pub torque_limited: bool,

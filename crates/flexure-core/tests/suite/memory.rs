@@ -123,7 +123,7 @@ impl Step for Guard<f64, N> {
         numbers.extend(stops.chain(steps).flatten());
         let status = decision.status;
         let faults = status.link_fault.iter().chain(status.motor_fault.iter());
-        numbers.extend(faults.map(|fault| f64::from(fault.map_or(0, |fault| fault.code()))));
+        numbers.extend(faults.map(|fault| f64::from(fault.map_or(0, flexure_core::guard::Fault::code))));
         numbers.extend([f64::from(status.phase.code()), f64::from(u8::from(status.latched))]);
         numbers
     }
@@ -170,9 +170,9 @@ fn saved<S: Copy + Into<f64>>(it: &mut dyn Memory<S>) -> Vec<f64> {
 }
 
 /// When something is saved: the guard loses its readings at 26, where the posture matters, waits for good ones at 28, doubts a jump at
-/// 33, hands over at 35, doubts velocities from 39 on, answers a collision at 60, finds readings frozen from 92 on, waits for readings
+/// 33, hands over at 35, doubts velocities from 39 on, answers a collision at 60 and 61, finds readings frozen from 92 on, waits for readings
 /// at 108, and is about to go off at 118.
-const THEN: [u32; 10] = [26, 28, 33, 35, 38, 60, 86, 95, 108, 118];
+const THEN: [u32; 11] = [26, 28, 33, 35, 38, 60, 61, 86, 95, 108, 118];
 
 /// What is remembered at `then`, and what happens in the next hundred steps.
 fn ahead<M: Step + Memory<f64>>(mut it: M, then: u32) -> (Vec<f64>, Vec<u64>) {
