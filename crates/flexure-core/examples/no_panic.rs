@@ -14,7 +14,7 @@ use flexure_core::control::{
 use flexure_core::estimate::{
     Disturbance, DisturbanceObserver, Estimator, FilteredDifference, MotorObserver, Observer,
 };
-use flexure_core::guard::{Age, Decision, Guard};
+use flexure_core::guard::{Age, Coasting, Decision, Guard, Seen, Watchdog};
 use flexure_core::linalg::Vector as V;
 use flexure_core::memory::{Memory, Port, Unfit, restore, save};
 use flexure_core::model::{FeedForward, Fjr, Links, Motion, RotorCoupling, State};
@@ -102,19 +102,19 @@ fn rotors(
 }
 
 /// Encoder readings in rad and the torque that was applied [N m].
-type Seen = [V<f64, 7>; 3];
+type Read = [V<f64, 7>; 3];
 
 #[cfg_attr(not(debug_assertions), no_panic)]
 fn difference(
     estimator: &mut FilteredDifference<f64, 7>,
     robot: &Chain,
-    [q_l, q_m, u]: &Seen,
+    [q_l, q_m, u]: &Read,
 ) -> Motion<f64, 7> {
     estimator.update(robot, q_l, q_m, u)
 }
 
 #[cfg_attr(not(debug_assertions), no_panic)]
-fn observer(estimator: &mut Observer<f64, 7>, robot: &Chain, [q_l, q_m, u]: &Seen) -> Motion<f64, 7> {
+fn observer(estimator: &mut Observer<f64, 7>, robot: &Chain, [q_l, q_m, u]: &Read) -> Motion<f64, 7> {
     estimator.update(robot, q_l, q_m, u)
 }
 
@@ -122,7 +122,7 @@ fn observer(estimator: &mut Observer<f64, 7>, robot: &Chain, [q_l, q_m, u]: &See
 fn motor_observer(
     estimator: &mut MotorObserver<f64, 7>,
     robot: &Chain,
-    [q_l, q_m, u]: &Seen,
+    [q_l, q_m, u]: &Read,
 ) -> Motion<f64, 7> {
     estimator.update(robot, q_l, q_m, u)
 }
@@ -138,8 +138,26 @@ fn disturbance(
 }
 
 #[cfg_attr(not(debug_assertions), no_panic)]
-fn guarded(guard: &mut Guard<f64, 7>, robot: &Chain, x: &Motion<f64, 7>, age: Age) -> Decision<f64, 7> {
-    guard.step(x, age, |x| robot.link_torque(x), |q| robot.links.gravity_torque(q))
+fn guarded(guard: &mut Guard<f64, 7>, robot: &Chain, seen: &Seen<f64, 7>) -> Decision<f64, 7> {
+    let law = |x: &Motion<f64, 7>| robot.link_torque(x);
+    guard.step(seen, &mut (law, |q: &V<f64, 7>| robot.links.gravity_torque(q)))
+}
+
+#[cfg_attr(not(debug_assertions), no_panic)]
+fn coasting(
+    coasting: &mut Coasting<f64, 7>,
+    robot: &Chain,
+    readings: &Motion<f64, 7>,
+    age: Age,
+    u: &V<f64, 7>,
+) -> (Motion<f64, 7>, Age) {
+    coasting.saw(readings);
+    coasting.fill(robot, readings, age, [true; 2], u)
+}
+
+#[cfg_attr(not(debug_assertions), no_panic)]
+fn watched(watchdog: &mut Watchdog<f64, 7>, command: Option<V<f64, 7>>) -> V<f64, 7> {
+    watchdog.step(command)
 }
 
 #[cfg_attr(not(debug_assertions), no_panic)]
@@ -171,8 +189,15 @@ impl Port<f64> for Zeros {
 }
 
 #[cfg_attr(not(debug_assertions), no_panic)]
-fn guard_forgets(guard: &mut Guard<f64, 7>) {
+fn guard_forgets(
+    guard: &mut Guard<f64, 7>,
+    coasting: &mut Coasting<f64, 7>,
+    watchdog: &mut Watchdog<f64, 7>,
+) {
     guard.memory(&mut Zeros);
+    guard.reset();
+    coasting.memory(&mut Zeros);
+    watchdog.memory(&mut Zeros);
 }
 
 #[cfg_attr(not(debug_assertions), no_panic)]
@@ -208,10 +233,12 @@ fn main() {
         observer as fn(&mut _, &_, &_) -> _,
         motor_observer as fn(&mut _, &_, &_) -> _,
         disturbance as fn(&mut _, &_, &_, &_) -> _,
-        guarded as fn(&mut _, &_, &_, _) -> _,
+        guarded as fn(&mut _, &_, &_) -> _,
+        coasting as fn(&mut _, &_, &_, _, &_) -> _,
+        watched as fn(&mut _, _) -> _,
         saved as fn(&mut _, _, &mut _) -> _,
         restored as fn(&mut _, _, &_) -> _,
-        guard_forgets as fn(&mut _),
+        guard_forgets as fn(&mut _, &mut _, &mut _),
         estimators_forget as fn(&mut _, &mut _, &mut _),
     ));
     black_box((

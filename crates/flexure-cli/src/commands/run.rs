@@ -8,7 +8,7 @@ use flexure::report::summary_table;
 use flexure::reproduce::{Experiment, write_experiment};
 use flexure::sampled::Sampled;
 use flexure::scenario::load_scenario_with;
-use flexure::simulate::{Cause, Following, Reason, Summary, exceeded, preload};
+use flexure::simulate::{Cause, FaultLog, Following, Reason, Summary, exceeded, preload};
 use serde::Serialize;
 
 use super::print;
@@ -24,13 +24,23 @@ pub struct Outcome<'a> {
     pub diverged_at: Option<f64>,
     /// Whether the loop is stable that holds its torque for a control period; none for laws in continuous time.
     pub sampled: Option<&'a Sampled>,
+    /// What the guard kept of its stops; not there without a guard.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub faults: Option<&'a FaultLog>,
     pub files: Vec<PathBuf>,
 }
 
 impl<'a> Outcome<'a> {
     pub fn new(experiment: &'a Experiment, files: Vec<PathBuf>) -> Self {
         let diverged_at = experiment.run.divergence.map(|divergence| divergence.time);
-        Self { summary: &experiment.run.summary, diverged_at, sampled: experiment.sampled.as_ref(), files }
+        let run = &experiment.run;
+        Self {
+            summary: &run.summary,
+            diverged_at,
+            sampled: experiment.sampled.as_ref(),
+            faults: run.faults.as_ref(),
+            files,
+        }
     }
 }
 

@@ -41,6 +41,18 @@ pub trait Estimator<C: Float, const N: usize> {
     ) -> Motion<C, N>;
 }
 
+/// The robot a control period of `period` in s after it moved as `x`, under the motor torque `u_m` [N m]: by the trapezoidal rule, as
+/// the observers predict, with an error of the third order in the period.
+#[inline]
+pub fn ahead<C: Float, L: Links<C, N>, const N: usize>(
+    robot: &Fjr<C, L, N>,
+    x: &Motion<C, N>,
+    u_m: &Vector<C, N>,
+    period: C,
+) -> Motion<C, N> {
+    prediction::predict(robot, x, u_m, period, None)
+}
+
 /// Whether `x` is a finite number above 0.
 #[inline]
 pub(crate) fn positive<C: Float>(x: C) -> bool {

@@ -1,19 +1,8 @@
 //! What a guard says of a control instant.
 
-use super::Fault;
+use super::faults::Faults;
+use super::{Fault, Phase, Place};
 use crate::linalg::Vector;
-
-/// Who decides the motor torque of a control instant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Phase {
-    /// The law decides.
-    Following,
-    /// The guard decides: the robot is being stopped.
-    Stopped,
-    /// The guard decides for the last time: from the next instant on it is the law again. Now is when the loop starts its
-    /// estimator over and joins the reference smoothly from where the robot is.
-    Rejoined,
-}
 
 /// What a guard reports of a control instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,8 +17,12 @@ pub struct Status<const N: usize> {
     pub link_fault: Vector<Option<Fault>, N>,
     /// What is wrong with the readings of the motors.
     pub motor_fault: Vector<Option<Fault>, N>,
-    /// Whether the law gave a torque that is not finite.
-    pub law_failed: bool,
+    /// What is wrong with the controller: its law, or its time.
+    pub controller_fault: Option<Fault>,
+    /// Whether the torque goes over from that of a stop to the law's.
+    pub joining: bool,
+    /// Whether the stop lasts until [`reset`](super::Guard::reset).
+    pub latched: bool,
 }
 
 /// Whether what is proved of the closed loop can hold at this instant. A certificate speaks of the law without limits, on
@@ -45,16 +38,34 @@ pub enum Certificate {
 
 /// Why a certificate does not hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "reasons that do not exclude each other")]
 pub struct Suspension {
     /// A joint is at its torque limit.
     pub torque_limited: bool,
     /// A joint is at its torque-rate limit.
     pub rate_limited: bool,
+    /// The law went by a motion that in part was predicted.
+    pub coasting: bool,
+    /// The torque goes over from that of a stop to the law's.
+    pub joining: bool,
     /// The guard decides the torque, not the law.
     pub stopped: bool,
 }
 
+impl Suspension {
+    /// No reason.
+    pub const NONE: Self =
+        Self { torque_limited: false, rate_limited: false, coasting: false, joining: false, stopped: false };
+}
+
 impl<const N: usize> Status<N> {
+    /// The first thing that is wrong, and where; none if nothing is.
+    #[inline]
+    pub fn fault(&self) -> Option<(Fault, Place)> {
+        let Self { link_fault: link, motor_fault: motor, controller_fault: controller, .. } = *self;
+        Faults { link, motor, controller }.first()
+    }
+
     /// Whether a certificate of the closed loop can hold at this instant.
     #[inline]
     pub fn certificate(&self) -> Certificate {
@@ -62,12 +73,10 @@ impl<const N: usize> Status<N> {
         let suspension = Suspension {
             torque_limited: any(&self.torque_limited),
             rate_limited: any(&self.rate_limited),
-            stopped: self.phase != Phase::Following,
+            coasting: self.phase == Phase::Coasting,
+            joining: self.joining,
+            stopped: !self.phase.is_law_s(),
         };
-        if suspension == (Suspension { torque_limited: false, rate_limited: false, stopped: false }) {
-            Certificate::Holds
-        } else {
-            Certificate::Suspended(suspension)
-        }
+        if suspension == Suspension::NONE { Certificate::Holds } else { Certificate::Suspended(suspension) }
     }
 }

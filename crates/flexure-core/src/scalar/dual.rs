@@ -178,6 +178,10 @@ pub type Tangent = Dual<f64, 1>;
 leaf!([] Tangent);
 
 impl Float for Tangent {
+    const INFINITY: Self = Self { value: f64::INFINITY, gradient: [0.0] };
+    const NEG_INFINITY: Self = Self { value: f64::NEG_INFINITY, gradient: [0.0] };
+    const NAN: Self = Self { value: f64::NAN, gradient: [f64::NAN] };
+
     #[inline]
     fn is_finite(self) -> bool {
         self.value.is_finite() && self.gradient[0].is_finite()

@@ -5,6 +5,13 @@ use super::{Over, Piecewise, Scalar, leaf};
 /// A plain number that code may decide on: what estimators and guards run on: `f64`, `f32` and
 /// [`Tangent`](super::Tangent), on which the value decides.
 pub trait Float: Piecewise + Over<Self> + PartialOrd {
+    /// ∞.
+    const INFINITY: Self;
+    /// −∞.
+    const NEG_INFINITY: Self;
+    /// Not a number.
+    const NAN: Self;
+
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
 }
@@ -80,6 +87,10 @@ macro_rules! float {
         }
 
         impl Float for $t {
+            const INFINITY: Self = Self::INFINITY;
+            const NEG_INFINITY: Self = Self::NEG_INFINITY;
+            const NAN: Self = Self::NAN;
+
             #[inline]
             fn is_finite(self) -> bool {
                 Self::is_finite(self)

@@ -5,10 +5,10 @@ use flexure_core::control::{Input, RigidVcbc};
 use flexure_core::estimate::{
     DisturbanceObserver, Estimator, FilteredDifference, LowPass, MotorObserver, Observer,
 };
-use flexure_core::guard::{Age, Guard, Settings};
+use flexure_core::guard::{Age, Coasting, Guard, Seen, Settings, Watchdog};
 use flexure_core::linalg::Vector;
 use flexure_core::memory::{restore, save};
-use flexure_core::model::{FeedForward, LinkMatrices, Links, MassFactor};
+use flexure_core::model::{FeedForward, LinkMatrices, Links, MassFactor, Motion};
 use flexure_core::reference::{
     Clock, Multisine, PointToPoint, Reference, Retimed, Sine, SmoothStart, Smoothstep, Term,
 };
@@ -103,14 +103,10 @@ fn estimators_and_guard() {
         let mut motor = MotorObserver::new(&one, period)?;
         let mut disturbance = DisturbanceObserver::new(&one, period)?;
         let mut guard = Guard::new(Settings {
-            period,
             torque_limit: one,
             torque_rate_limit: one,
             stop_damping: one,
-            allowed_age: 0,
-            rejoin_after: 1,
-            position_bound: one,
-            speed_bound: one,
+            ..Settings::open(period)
         })?;
         difference.start(&x);
         both.start(&x);
@@ -123,8 +119,15 @@ fn estimators_and_guard() {
         let found = [disturbance.update(&robot, &x, &u), disturbance.update(&robot, &x, &u)];
         let mut numbers = [0.0; 4 * 7];
         let memory = (save(&mut both, 7, &mut numbers), restore(&mut both, 7, &numbers));
-        let decisions = [0, 1].map(|age| guard.step(&x, Age { link: age, motor: 0 }, |_| u, |_| u));
-        Some((estimates, found, memory, decisions))
+        let decisions = [0, 1].map(|age| {
+            let seen = Seen { age: Age { link: age, motor: 0 }, ..Seen::fresh(&x) };
+            guard.step(&seen, &mut (|_: &Motion<f64, 7>| u, |_: &Vector<f64, 7>| u))
+        });
+        let mut coasting = Coasting::new(3, period)?;
+        coasting.saw(&x);
+        let filled = coasting.fill(&robot, &x, Age { link: 1, motor: 0 }, [true; 2], &u);
+        let given = Watchdog::new(1, one)?.step(Some(u));
+        Some((estimates, found, memory, decisions, filled, given))
     });
     assert_eq!(count, 0);
 }

@@ -13,6 +13,7 @@ mod enclosed_trees;
 mod encoders;
 mod filtered_difference;
 mod guard;
+mod guard_phases;
 mod inverse_dynamics;
 #[cfg(all(feature = "interval", feature = "lanes"))]
 mod law_bounds_and_batches;

@@ -1,9 +1,13 @@
 //! What is remembered is all that matters: save, run, restore, run again.
 
+use flexure_core::estimate::Disturbance;
 use flexure_core::estimate::{
     DisturbanceObserver, Estimator, FilteredDifference, LowPass, MotorObserver, Observer,
 };
-use flexure_core::guard::{Age, Guard, Settings};
+use flexure_core::guard::{
+    Age, Coasting, Collision, Frozen, Guard, Latch, Plausible, Reaction, Rejoin, Seen, Settings, Torques,
+    Watchdog,
+};
 use flexure_core::linalg::Vector;
 use flexure_core::memory::{Memory, Port, Unfit, length, restore, save};
 use flexure_core::model::{Fjr, Links, Motion};
@@ -49,14 +53,97 @@ impl Step for DisturbanceObserver<f64, N> {
     }
 }
 
-/// Stops now and then, so that postures and waits matter.
+/// A law that takes over with a jump, if it is let.
+struct Jumping<'a>(&'a Robot, Vector<f64, N>);
+
+impl Torques<f64, N> for Jumping<'_> {
+    fn law(&mut self, _: &Motion<f64, N>) -> Vector<f64, N> {
+        self.1
+    }
+    fn holding(&mut self, q_l: &Vector<f64, N>) -> Vector<f64, N> {
+        self.0.links.gravity_torque(q_l)
+    }
+    fn joining(&mut self, _: &Motion<f64, N>, acting: &Vector<f64, N>) -> Vector<f64, N> {
+        acting.scaled(0.9)
+    }
+}
+
+/// Stops now and then, so that postures and waits matter: readings are stale every 17 instants and for good from 115 on, time jumps at
+/// 26, something collides at 59, and velocities are not those of the readings from 36 to 40. Readings move slowly, and not
+/// at all from 52 to 74, where nothing else does either, and from 80 to 97, where they freeze; they are off at 28, which cannot
+/// be, at 33, which can at the speed of the instant before, and at 112, after some that did not come.
 impl Step for Guard<f64, N> {
     fn step(&mut self, robot: &Robot, x: &Motion<f64, N>, u: &Vector<f64, N>, k: u32) -> Vec<f64> {
-        let age = Age { link: u32::from(k % 17 == 9), motor: 0 };
-        let decision = Guard::step(self, x, age, |_| u.scaled(20.0), |q| robot.links.gravity_torque(q));
+        let still = match k {
+            52..75 => 52,
+            80..98 => 80,
+            k => k,
+        };
+        let off = match k {
+            28 => 0.01,
+            33 => 0.006,
+            105..112 => f64::NAN,
+            112 => 0.025,
+            _ => 0.0,
+        };
+        let at = Vector([1e-4 * f64::from(still) + off; N]);
+        let more = match k {
+            27 | 31..34 | 104 => 3.0,
+            36..41 => 10.0,
+            _ => 0.0,
+        };
+        let faster = |v: Vector<f64, N>| v.map(|v| v + more);
+        let x = &Motion { v_l: faster(x.v_l), v_m: faster(x.v_m), ..*x };
+        let pushed = if k == 59 { Vector([60.0; N]) } else { Vector::ZERO };
+        let seen = Seen {
+            read: [at; 2],
+            age: Age { link: u32::from(k % 17 == 9 || k >= 115), motor: 0 },
+            stamp: Some(u64::from(k + u32::from(k >= 26))),
+            target: Some(Vector([f64::from(k.min(40) + k.saturating_sub(80)); N])),
+            residual: Disturbance { link: pushed, motor: Vector::ZERO },
+            ..Seen::fresh(x)
+        };
+        let decision = Guard::step(self, &seen, &mut Jumping(robot, u.scaled(20.0)));
         let mut numbers = decision.torque.0.to_vec();
-        numbers.push(f64::from(decision.status.phase as u8));
+        let log = self.log();
+        let stops = log.entries().map(|entry| {
+            let cause = f64::from(entry.cause.code());
+            let place = match entry.place {
+                flexure_core::guard::Place::Controller => 0,
+                flexure_core::guard::Place::Link(joint) => 1 + joint,
+                flexure_core::guard::Place::Motor(joint) => 101 + joint,
+            };
+            vec![entry.time as f64, cause, f64::from(place)]
+        });
+        let steps = log.steps().map(|step| {
+            let x = step.x;
+            let motion = [x.q_l, x.q_m, x.v_l, x.v_m, step.torque].into_iter().flat_map(|v| v.0);
+            [step.time as f64, f64::from(step.phase.code())].into_iter().chain(motion).collect()
+        });
+        numbers.extend(stops.chain(steps).flatten());
+        let status = decision.status;
+        let faults = status.link_fault.iter().chain(status.motor_fault.iter());
+        numbers.extend(faults.map(|fault| f64::from(fault.map_or(0, flexure_core::guard::Fault::code))));
+        numbers.extend([f64::from(status.phase.code()), f64::from(u8::from(status.latched))]);
         numbers
+    }
+}
+
+/// Silent for three instants of seven.
+impl Step for Coasting<f64, N> {
+    fn step(&mut self, robot: &Robot, x: &Motion<f64, N>, u: &Vector<f64, N>, k: u32) -> Vec<f64> {
+        let age = if k % 7 > 3 { Age { link: 1, motor: 1 } } else { Age::FRESH };
+        let (seen, lost) = self.fill(robot, x, age, [true; 2], u);
+        self.saw(&seen);
+        let motion = [seen.q_l, seen.q_m, seen.v_l, seen.v_m].into_iter().flat_map(|v| v.0);
+        motion.chain([lost.link, lost.motor].map(f64::from)).collect()
+    }
+}
+
+/// Without a command in three periods of seven.
+impl Step for Watchdog<f64, N> {
+    fn step(&mut self, _: &Robot, _: &Motion<f64, N>, u: &Vector<f64, N>, k: u32) -> Vec<f64> {
+        Watchdog::step(self, (k % 7 < 4).then_some(*u)).0.to_vec()
     }
 }
 
@@ -82,14 +169,17 @@ fn saved<S: Copy + Into<f64>>(it: &mut dyn Memory<S>) -> Vec<f64> {
     numbers
 }
 
-/// When something is saved: the guard loses its readings at 26, where the posture matters, and waits for good ones at 28.
-const THEN: [u32; 2] = [26, 28];
+/// When something is saved: the guard loses its readings at 26, where the posture matters, waits for good ones at 28, doubts a jump at
+/// 33, hands over at 35, doubts velocities from 39 on, answers a collision at 60 and 61, finds readings frozen from 92 on, waits for readings
+/// at 108, and is about to go off at 118.
+const THEN: [u32; 11] = [26, 28, 33, 35, 38, 60, 61, 86, 95, 108, 118];
 
 /// What is remembered at `then`, and what happens in the next hundred steps.
 fn ahead<M: Step + Memory<f64>>(mut it: M, then: u32) -> (Vec<f64>, Vec<u64>) {
     run(&mut it, 0, then);
     let numbers = saved(&mut it);
-    assert_eq!(saved(&mut it), numbers, "saving changes nothing");
+    let bits = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+    assert_eq!(bits(&saved(&mut it)), bits(&numbers), "saving changes nothing");
     (numbers, run(&mut it, then, 100))
 }
 
@@ -110,17 +200,27 @@ fn goes_on<M: Step + Memory<f64>>(make: impl Fn() -> M, then: u32) -> bool {
 /// Saved and restored it goes on as it did, and every number that is saved matters.
 fn goes_on_from_what_was_saved<M: Step + Memory<f64>>(make: impl Fn() -> M) {
     assert!(THEN.iter().all(|&then| goes_on(&make, then)));
-    let matters = |i: usize, then: u32| {
+    let matters = |i: usize, then: u32, value: f64| {
         let (mut numbers, first) = ahead(make(), then);
-        let was = core::mem::replace(&mut numbers[i], 10.0);
+        let was = core::mem::replace(&mut numbers[i], value);
         if restore(&mut make(), N, &numbers).is_err() {
             numbers[i] = 1.0 - was; // a flag
         }
         after(make(), &numbers, then) != first
     };
-    for i in 0..length(&mut make(), N) {
-        assert!(THEN.iter().any(|&then| matters(i, then)), "number {i} of {:?}", saved(&mut make()));
+    // 10 means nothing where a number stands for one of a few things.
+    let moments = || THEN.iter().flat_map(|&then| [10.0, 1.0, 2.0].map(|value| (then, value)));
+    let names = each_name(&mut make());
+    assert_eq!(names.len(), length(&mut make(), N));
+    for (i, name) in names.iter().enumerate().filter(|(_, name)| !is_unused(name)) {
+        assert!(moments().any(|(then, value)| matters(i, then, value)), "{name}, number {i}");
     }
+}
+
+/// Whether it is a place of the log that no stop has come to yet when things are saved: at most four have at first.
+fn is_unused(name: &str) -> bool {
+    let place = name.strip_prefix("log.stop.").and_then(|rest| rest.split('.').next());
+    place.is_some_and(|place| place.parse::<u32>().expect("a number") > 3)
 }
 
 fn observer() -> Estimating<Observer<f64, N>> {
@@ -141,17 +241,32 @@ fn disturbance() -> DisturbanceObserver<f64, N> {
 
 fn guard() -> Guard<f64, N> {
     let all = |x| Vector([x; N]);
+    let open = Settings::open(PERIOD);
     Guard::new(Settings {
-        period: PERIOD,
         torque_limit: all(30.0),
         torque_rate_limit: all(4e3),
         stop_damping: all(0.5),
-        allowed_age: 0,
-        rejoin_after: 5,
-        position_bound: all(10.0),
-        speed_bound: all(10.0),
+        rejoin: Rejoin { after: 5, ..open.rejoin },
+        plausible: Plausible {
+            jump: all(0.005),
+            frozen: Some(Frozen { periods: 12, travel: 0.5 }),
+            velocity: all(3.0),
+            ..Plausible::ANYTHING
+        },
+        collision: Some(Collision { threshold: all(50.0), reaction: Reaction::Retract(3) }),
+        off_after: Some(24),
+        latch: Some(Latch { stops: 16, within: 1000 }),
+        ..open
     })
     .expect("sound")
+}
+
+fn coasting() -> Coasting<f64, N> {
+    Coasting::new(2, PERIOD).expect("positive")
+}
+
+fn watchdog() -> Watchdog<f64, N> {
+    Watchdog::new(1, Vector([0.1; N])).expect("positive")
 }
 
 #[test]
@@ -177,6 +292,16 @@ fn a_disturbance_observer() {
 #[test]
 fn a_guard() {
     goes_on_from_what_was_saved(guard);
+}
+
+#[test]
+fn a_coasting_loop() {
+    goes_on_from_what_was_saved(coasting);
+}
+
+#[test]
+fn a_watchdog() {
+    goes_on_from_what_was_saved(watchdog);
 }
 
 /// What has not begun is restored as that.
@@ -227,6 +352,16 @@ impl Port<f64> for Names {
     }
 }
 
+/// The name of every number.
+fn each_name(it: &mut dyn Memory<f64>) -> Vec<String> {
+    let each = |name: String| {
+        let (name, unit) = name.split_once(" [").expect("a unit");
+        // Words and flags have none; numbers that are no joint's are none of theirs.
+        vec![name.to_owned(); if unit == "]" { 1 } else { N }]
+    };
+    names(it).into_iter().flat_map(each).collect()
+}
+
 fn names(it: &mut dyn Memory<f64>) -> Vec<String> {
     let mut port = Names { within: Vec::new(), names: Vec::new() };
     it.memory(&mut port);
@@ -236,7 +371,7 @@ fn names(it: &mut dyn Memory<f64>) -> Vec<String> {
 /// Two devices side by side, as a loop has them, with integers.
 struct Loop {
     observer: Estimating<Observer<f64, N>>,
-    guard: Guard<f64, N>,
+    watchdog: Watchdog<f64, N>,
     noise: u64,
     on: bool,
     gain: f64,
@@ -245,7 +380,7 @@ struct Loop {
 impl Memory<f64> for Loop {
     fn memory(&mut self, port: &mut dyn Port<f64>) {
         port.part("observer", &mut self.observer);
-        port.part("guard", &mut self.guard);
+        port.part("watchdog", &mut self.watchdog);
         port.long("noise", &mut self.noise);
         port.flag("on", &mut self.on);
         port.number("gain", "N m/rad", &mut self.gain);
@@ -254,17 +389,15 @@ impl Memory<f64> for Loop {
 
 #[test]
 fn parts_integers_and_their_names() {
-    let make = |noise, on| Loop { observer: observer(), guard: guard(), noise, on, gain: 0.1 };
+    let make = |noise, on| Loop { observer: observer(), watchdog: watchdog(), noise, on, gain: 0.1 };
     let mut whole = make(0xfedc_ba98_7654_3210, true);
     let expected = [
         "observer.q_l [rad]",
         "observer.q_m [rad]",
         "observer.dq_l [rad/s]",
         "observer.dq_m [rad/s]",
-        "guard.torque [N m]",
-        "guard.good []",
-        "guard.posture [rad]",
-        "guard.awaited []",
+        "watchdog.torque [N m]",
+        "watchdog.age []",
         "noise.low []",
         "noise.high []",
         "on []",
@@ -273,7 +406,7 @@ fn parts_integers_and_their_names() {
     assert_eq!(names(&mut whole), expected);
     let mut other = make(0, false);
     let numbers = saved(&mut make(0xfedc_ba98_7654_3210, true));
-    assert_eq!(numbers.len(), 12 + 3 + 1 + 3 + 1 + 2 + 1 + 1);
+    assert_eq!(numbers.len(), 12 + 3 + 1 + 2 + 1 + 1);
     restore(&mut other, N, &numbers).expect("fits");
     assert_eq!((other.noise, other.on), (0xfedc_ba98_7654_3210, true));
 }
@@ -341,7 +474,10 @@ impl<M: Step> Step for Forgetful<M> {
 #[test]
 fn a_piece_left_out_shows() {
     fn shows<M: Step + Memory<f64>>(make: impl Fn() -> M) {
-        for (piece, name) in names(&mut make()).iter().enumerate() {
+        // Nobody waits for 2³² control periods; and of the two motions that tell what is frozen either is enough.
+        let spared = [".high []", ".other [rad]", ".target [rad]"];
+        let matters = |name: &String| !is_unused(name) && !spared.iter().any(|end| name.ends_with(end));
+        for (piece, name) in names(&mut make()).iter().enumerate().filter(|(_, name)| matters(name)) {
             let unnoticed = THEN.iter().all(|&then| goes_on(|| Forgetful { it: make(), piece }, then));
             assert!(!unnoticed, "{name}");
         }
@@ -351,6 +487,8 @@ fn a_piece_left_out_shows() {
     shows(difference);
     shows(disturbance);
     shows(guard);
+    shows(coasting);
+    shows(watchdog);
 }
 
 /// Phantoms are not saved.
@@ -386,6 +524,9 @@ fn narrow_floats() {
     assert_eq!(walk::<f64>(0.1).0[..1], [0.1]);
 }
 
+/// The place of the readings that a guard waits for: after its torque, posture and clock, and whether it is stopped.
+const AWAITED: usize = N + 1 + N + 2 + 3 + 1;
+
 #[test]
 fn what_does_not_fit() {
     let mut it = guard();
@@ -394,10 +535,8 @@ fn what_does_not_fit() {
     let needs = numbers.len();
     assert_eq!(save(&mut it, N, &mut [0.0; 2]), Err(Unfit::Length { has: 2, needs }));
     assert_eq!(restore(&mut it, N, &numbers[1..]), Err(Unfit::Length { has: needs - 1, needs }));
-    let flag = N;
-    for (at, value) in
-        [(flag, 2.0), (flag, 0.5), (needs - 1, -1.0), (needs - 1, 1.5), (needs - 1, 4_294_967_296.0)]
-    {
+    let (flag, word) = (N, AWAITED);
+    for (at, value) in [(flag, 2.0), (flag, 0.5), (word, -1.0), (word, 1.5), (word, 4_294_967_296.0)] {
         let mut wrong = vec![1.0; needs];
         wrong[at] = value;
         assert_eq!(restore(&mut it, N, &wrong), Err(Unfit::Entry { at, value }));
@@ -412,17 +551,19 @@ fn what_does_not_fit() {
 fn a_guard_keeps_its_promise() {
     let mut it = guard();
     let (x, nan) = (Motion::at_rest(Vector::ZERO), f64::NAN);
+    let mut resting = (|_: &Motion<f64, N>| Vector::ZERO, |q: &Vector<f64, N>| *q);
     for torque in [nan, f64::INFINITY, 1e6, -1e6] {
-        let mut numbers = [nan; 2 * N + 2];
+        let mut numbers = saved(&mut guard());
         numbers[..N].fill(torque);
+        numbers[N..=2 * N].fill(nan);
         numbers[N] = 1.0;
-        numbers[2 * N + 1] = 1000.0;
+        (numbers[AWAITED - 1], numbers[AWAITED]) = (1.0, 1000.0);
         restore(&mut it, N, &numbers).expect("fits");
         for _ in 0..5 {
-            let decision = Guard::step(&mut it, &x, Age::FRESH, |_| Vector::ZERO, |q| *q);
+            let decision = Guard::step(&mut it, &Seen::fresh(&x), &mut resting);
             assert!(decision.torque.iter().all(|u| u.abs() <= 30.0));
         }
-        let phase = Guard::step(&mut it, &x, Age::FRESH, |_| Vector::ZERO, |q| *q).status.phase;
+        let phase = Guard::step(&mut it, &Seen::fresh(&x), &mut resting).status.phase;
         assert_eq!(phase, flexure_core::guard::Phase::Following, "no longer a wait than settings ask");
     }
 }

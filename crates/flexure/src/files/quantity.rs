@@ -275,3 +275,9 @@ pub(crate) const BANDWIDTH: Quantity = Quantity::positive("bandwidth, 2π times 
     .plausible(0.1, 1e5, "observers lie between 10 and 10000 rad/s");
 pub(crate) const STOP_DAMPING: Quantity =
     Quantity::non_negative("damping of the motor while stopped, link side of the gear", units::DAMPING);
+pub(crate) const DISTANCE: Quantity =
+    Quantity::positive("distance of two joint positions", units::ANGLE).plausible(TINY, FOUR_TURNS, DEGREES);
+pub(crate) const RESIDUAL: Quantity =
+    Quantity::positive("torque that the model does not know", units::TORQUE);
+pub(crate) const OFFSET: Quantity =
+    Quantity::any("what is added to measured positions", units::ANGLE).plausible(TINY, FOUR_TURNS, DEGREES);

@@ -45,6 +45,25 @@ impl Context<'_> {
     }
 }
 
+impl Context<'_> {
+    /// Notes an error if what `name`s from `from` until `until` \[s\] is over before it begins, and doubt if it begins after the run.
+    pub fn begins_before_it_ends(&self, table: &Table<'_>, name: &str, from: f64, until: f64) -> Option<()> {
+        if from >= until {
+            let message = format!("{name}: from is {from} s and until {until} s, must be from < until");
+            table.get("until")?.error("range", message, "the readings of [from, until) are concerned");
+            return None;
+        }
+        if let Some((duration, _)) = self.times
+            && from > duration
+        {
+            let field = table.get("from")?;
+            let message = format!("{} is {from} s, after the end of the run at {duration} s", field.path);
+            field.warn("unused", message, "it never happens");
+        }
+        Some(())
+    }
+}
+
 /// Reads an entry, whose kind was read before.
 pub(crate) type Reader = fn(&Table<'_>, &Context<'_>) -> Option<Imperfection>;
 

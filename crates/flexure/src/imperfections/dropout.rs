@@ -107,18 +107,7 @@ fn window(table: &Table<'_>, context: &Context<'_>) -> Option<Outage> {
     let from = table.number("from", &quantity::FROM);
     let until = table.number("until", &quantity::UNTIL);
     let (from, until) = (from?, until?);
-    if from >= until {
-        let message = format!("dropout: from is {from} s and until {until} s, must be from < until");
-        table.get("until")?.error("range", message, "the readings of [from, until) are missing");
-        return None;
-    }
-    if let Some((duration, _)) = context.times
-        && from > duration
-    {
-        let field = table.get("from")?;
-        let message = format!("{} is {from} s, after the end of the run at {duration} s", field.path);
-        field.warn("unused", message, "it never drops out");
-    }
+    context.begins_before_it_ends(table, Dropout::NAME, from, until)?;
     Some(Outage::Window { from, until })
 }
 
@@ -130,17 +119,11 @@ struct Silence {
     held: PerSide<Held>,
 }
 
-/// Part of a control period by which an instant may be early: times of instants are products, and rounded.
-const EARLY: f64 = 1e-9;
-
 impl Outage {
     /// Whether nothing comes now, if at the last control instant that `was_out`.
     fn goes_on(self, instant: &Tick, was_out: bool, random: &mut Random) -> bool {
         match self {
-            Self::Window { from, until } => {
-                let t = instant.t + EARLY * instant.period;
-                from <= t && t < until
-            }
+            Self::Window { from, until } => instant.is_within(from, until),
             Self::Random { probability, mean_length } => {
                 let chance = random.uniform();
                 if was_out { chance >= 1.0 / mean_length } else { chance < probability }

@@ -28,8 +28,11 @@ pub use side::{Side, Sides};
 
 // In the order of things in a loop: sensors, what is made of them, computer, drives, joints, the world.
 imperfections! {
+    bias::Bias,
     noise::Noise,
     encoder::Encoder,
+    jump::Jump,
+    freeze::Freeze,
     sampling::Sampling,
     dropout::Dropout,
     velocity_filter::VelocityFilter,

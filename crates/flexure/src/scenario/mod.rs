@@ -24,7 +24,7 @@ mod plant;
 pub use accept::Accept;
 pub use any::{Checked, check};
 pub use document::{Hold, Scenario, scenario_from_text};
-pub use guard::GuardSettings;
+pub use guard::{Believed, Collision, GuardSettings, Reaction, Rejoin};
 pub use initial::Initial;
 pub use load::{load_scenario, load_scenario_with};
 pub use plant::Plant;

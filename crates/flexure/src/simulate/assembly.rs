@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 
 use flexure_core::estimate::DisturbanceObserver;
-use flexure_core::guard::{Guard, Settings};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion, RotorCoupling};
 use flexure_core::reference::Reference;
@@ -14,7 +13,8 @@ use crate::laws::AnyLaw;
 use crate::plant::{Plant, Push};
 use crate::robot::{Robot, padded, vector};
 use crate::scenario::{self, Scenario};
-use crate::simulate::controller::{Compensation, Controller, Feedback, Guarded};
+use crate::simulate::controller::{Compensation, Controller, Feedback};
+use crate::simulate::guard_settings::guarded;
 use crate::simulate::signals::Columns;
 use crate::simulate::simulation::{Hold, Timing};
 
@@ -47,6 +47,7 @@ pub(crate) fn columns<const N: usize>(scenario: &Scenario, law: &AnyLaw<f64, N>)
             || disturbance_observer.is_some()
             || guard.is_some()
             || scenario.drive_limits().is_some(),
+        guard: guard.is_some(),
     }
 }
 
@@ -132,29 +133,9 @@ where
             .expect("bandwidths are above 0"),
         compensate: settings.compensate,
     });
-    controller.guard = scenario.guard.as_ref().map(|settings| guard(settings, period, before));
+    controller.guard = scenario.guard.as_ref().map(|settings| guarded(settings, period, before));
     controller.start(x, before);
     controller
-}
-
-fn guard<const N: usize>(
-    settings: &scenario::GuardSettings,
-    period: f64,
-    applied: Vector<f64, N>,
-) -> Guarded<N> {
-    let unbounded = Vector([f64::INFINITY; N]);
-    let guard = Guard::new(Settings {
-        period,
-        torque_limit: padded(&settings.torque_limit, f64::INFINITY),
-        torque_rate_limit: padded(&settings.torque_rate_limit, f64::INFINITY),
-        stop_damping: vector(&settings.stop_damping),
-        allowed_age: settings.max_age,
-        rejoin_after: settings.rejoin_after,
-        position_bound: unbounded,
-        speed_bound: unbounded,
-    });
-    let guard = guard.expect("the reader takes sound settings only").applying(&applied);
-    Guarded { guard, rejoin: settings.rejoin_duration }
 }
 
 /// The torque limits that act, the guard's and the drives', infinite where there is none, per joint [N m].

@@ -3,14 +3,15 @@
 use std::cell::Cell;
 
 use flexure_core::estimate::{DisturbanceObserver, Estimator, FilteredDifference};
-use flexure_core::guard::{Age, Certificate, Guard, Phase};
+use flexure_core::guard::{Age, Certificate, Fault, Phase, Place, Status};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion};
-use flexure_core::reference::{Reference, SmoothStart, Stop};
+use flexure_core::reference::{Reference, Stop};
 use flexure_core::scalar::Jet;
 
-use crate::imperfections::stages::{Actuator, Measured, Pieces, Sensors, Tick};
+use crate::imperfections::stages::{Actuator, Pieces, Sensors, Tick};
 use crate::laws::{self, AnyLaw};
+use crate::simulate::guarded::{Asked, Guarded};
 
 /// A law with everything between it and the robot; without any of that, an ideal loop.
 ///
@@ -85,22 +86,13 @@ pub struct Compensation<const N: usize> {
     pub compensate: bool,
 }
 
-/// A guard and how the reference is joined again after a stop.
-#[derive(Clone, Debug)]
-pub struct Guarded<const N: usize> {
-    /// The guard.
-    pub guard: Guard<f64, N>,
-    /// Time in which the reference is joined in s.
-    pub rejoin: f64,
-}
-
 /// What the controller remembers from one instant to the next.
 #[derive(Clone, Debug)]
 pub(crate) struct State<const N: usize> {
     /// Mean motor torque since the last instant, as the drive reports it: after its delays and limits, with the torque constant that
     /// it believes in [N m].
     pub(crate) applied: Vector<f64, N>,
-    /// Where the robot was when the law took over from the guard.
+    /// How the robot moved when the law took over from the guard, and how it would have come to rest.
     pub(crate) rejoined: Option<Stop<f64, N>>,
 }
 
@@ -123,6 +115,17 @@ pub struct Action<const N: usize> {
     pub certificate: bool,
     /// Whether the guard has stopped the robot.
     pub stopped: bool,
+    /// What the guard says, if there is one.
+    pub guard: Option<Said>,
+}
+
+/// What a guard says of an instant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Said {
+    /// Who decides.
+    pub phase: Phase,
+    /// The first thing that is wrong, and where.
+    pub fault: Option<(Fault, Place)>,
 }
 
 impl<L, R, F, const N: usize> Controller<L, R, F, FilteredDifference<f64, N>, N>
@@ -171,17 +174,22 @@ where
         if let Some(disturbance) = &mut self.disturbance {
             disturbance.observer.restart();
         }
+        if let Some(guarded) = &mut self.guard {
+            guarded.coasting.saw(x);
+        }
     }
 
     /// What happens at a control instant at which the robot moves as `x`. Nothing is allocated.
     pub fn step(&mut self, tick: &Tick, x: &Motion<f64, N>) -> Action<N> {
         let measured = self.sensors.sense(tick, x);
         let applied = self.state.applied;
+        let (read, age) = match &mut self.guard {
+            None => (measured.motion, Age::FRESH),
+            Some(guarded) => guarded.fill(&self.robot, &measured, &applied),
+        };
         let seen = match &mut self.estimator {
-            None => measured.motion,
-            Some(estimator) => {
-                estimator.update(&self.robot, &measured.motion.q_l, &measured.motion.q_m, &applied)
-            }
+            None => read,
+            Some(estimator) => estimator.update(&self.robot, &read.q_l, &read.q_m, &applied),
         };
         let disturbance = self.disturbance.as_mut().map(|disturbance| {
             (disturbance.observer.update(&self.robot, &seen, &applied).motor, disturbance.compensate)
@@ -191,22 +199,26 @@ where
             Some((torque, true)) => torque,
             _ => Vector::ZERO,
         };
-        let asked = Cell::new(None);
-        let law = |x: &Motion<f64, N>| {
-            let torque = self.law.torque(&self.robot, tick.t, x, &reference);
-            asked.set(Some(torque));
-            torque - compensated
+        let Self { robot, reference: path, law, guard, .. } = self;
+        let mut asked = Asked {
+            robot,
+            path,
+            law,
+            t: tick.t,
+            reference: &reference,
+            compensated,
+            wanted: Cell::new(None),
         };
-        let (u_m, status) = match &mut self.guard {
-            None => (law(&seen), None),
-            Some(Guarded { guard, .. }) => {
-                let links = &self.robot.links;
-                let decision = guard.step(&seen, age(&measured), law, |q_l| links.gravity_torque(q_l));
+        let (u_m, status) = match guard {
+            None => (asked.follow(&seen), None),
+            Some(guarded) => {
+                let decision = guarded.decide(tick, &measured, age, &seen, &applied, &mut asked);
                 (decision.torque, Some(decision.status))
             }
         };
-        if status.is_some_and(|status| status.phase == Phase::Rejoined) {
-            self.rejoin(tick.t, &seen);
+        let wanted = asked.wanted.get();
+        if let (Some(Status { phase: Phase::Rejoined, .. }), Some(guarded)) = (status, &self.guard) {
+            self.state.rejoined = Some(guarded.joined(&self.robot, tick.t, &seen));
         }
         let pieces = self.actuator.actuate(tick, u_m);
         self.state.applied = pieces.mean(tick.period);
@@ -218,9 +230,10 @@ where
             u_m,
             applied: pieces,
             // What the drive gives over the period is what the law asks, to the bit; whoever decided.
-            certificate: asked.get().is_some_and(|torque| pieces.iter().all(|(_, given)| given == torque))
+            certificate: wanted.is_some_and(|torque| pieces.iter().all(|(_, given)| given == torque))
                 && status.is_none_or(|status| status.certificate() == Certificate::Holds),
-            stopped: status.is_some_and(|status| status.phase != Phase::Following),
+            stopped: status.is_some_and(|status| !status.phase.is_law_s()),
+            guard: status.map(|status| Said { phase: status.phase, fault: status.fault() }),
         }
     }
 
@@ -229,27 +242,11 @@ where
         self.law.torque(&self.robot, t, x, &self.reference.at(t))
     }
 
-    /// The reference; after a stop it is joined from where the robot was left.
+    /// The reference; after a stop it is joined from how the robot moved when the law took over.
     fn reference_at(&self, t: f64) -> Vector<Jet<f64, 5>, N> {
         match (&self.state.rejoined, &self.guard) {
-            (Some(from), Some(guarded)) => {
-                SmoothStart { from: *from, duration: guarded.rejoin, then: &self.reference }.at(t)
-            }
+            (Some(from), Some(guarded)) => guarded.join(*from, &self.reference).at(t),
             _ => self.reference.at(t),
         }
     }
-
-    /// The law takes over from the next instant on: from rest at the posture that is seen now.
-    fn rejoin(&mut self, t: f64, seen: &Motion<f64, N>) {
-        if let Some(Guarded { rejoin, .. }) = self.guard {
-            let from = seen.q_l.map(Jet::value);
-            self.state.rejoined = Some(Stop { from, start: t, duration: rejoin });
-        }
-    }
-}
-
-/// How old the readings are; what no encoder delivers never grows old.
-fn age<const N: usize>(measured: &Measured<N>) -> Age {
-    let [link, motor] = [0, 1].map(|side| if measured.placed[side] { measured.age[side] } else { 0 });
-    Age { link, motor }
 }

@@ -18,6 +18,7 @@ use crate::robot::sized::{pair, sized};
 use crate::robot::slices::{check, read, read_motion, write, write_motion};
 use crate::scenario::Scenario;
 use crate::simulate::assembly;
+use crate::simulate::fault_log::FaultLog;
 use crate::simulate::interface::{Commanded, Errors, Loop, Observed, Signal};
 use crate::simulate::names::Names;
 use crate::simulate::signals::Columns;
@@ -217,6 +218,11 @@ where
         write(&action.applied.last(), &mut observed.applied);
         (observed.certificate, observed.stopped) = (action.certificate, action.stopped);
         Ok(())
+    }
+
+    fn faults(&self) -> Option<FaultLog> {
+        let guarded = self.simulation.controller().guard.as_ref()?;
+        Some(FaultLog::new(guarded.guard.log(), self.joints(), self.period()))
     }
 
     fn steps(&self) -> u64 {

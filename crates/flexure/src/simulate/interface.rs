@@ -3,6 +3,7 @@
 use flexure_core::memory::Unfit;
 
 use crate::robot::Mismatch;
+use crate::simulate::fault_log::FaultLog;
 use crate::simulate::simulation::Divergence;
 
 /// A closed loop that a caller holds and moves, made from a scenario by [`Scenario::open`](crate::scenario::Scenario::open).
@@ -87,6 +88,9 @@ pub trait Loop: Send + Sync {
     /// # Errors
     /// If `instant` was made for another number of joints.
     fn observe(&self, instant: &mut Observed) -> Result<(), Mismatch>;
+
+    /// What the guard kept of the stops so far; none without a guard.
+    fn faults(&self) -> Option<FaultLog>;
 
     /// Integration steps so far.
     fn steps(&self) -> u64;

@@ -1,5 +1,6 @@
 //! What a running loop remembers, piece by piece.
 
+use flexure_core::guard::{Phase, Place};
 use flexure_core::linalg::Vector;
 use flexure_core::memory::{Memory, Port};
 use flexure_core::model::Motion;
@@ -7,8 +8,9 @@ use flexure_core::reference::Stop;
 use flexure_core::scalar::Jet;
 
 use crate::imperfections::stages::{Pieces, Tick};
-use crate::simulate::controller::{Action, Compensation, Controller, Guarded};
+use crate::simulate::controller::{Action, Compensation, Controller, Said};
 use crate::simulate::gauss::Integrator;
+use crate::simulate::guarded::Guarded;
 use crate::simulate::ledger::Ledger;
 use crate::simulate::simulation::{Balance, Cause, Divergence, Happened, Simulation, World};
 use crate::simulate::stepper::Stepper;
@@ -59,8 +61,12 @@ impl<L, R, F, E: Memory<f64>, const N: usize> Memory<f64> for Controller<L, R, F
         if let Some(Compensation { observer, compensate: _ }) = disturbance {
             port.part("disturbance_observer", observer);
         }
-        if let Some(Guarded { guard, rejoin: _ }) = guard {
+        if let Some(Guarded { guard, coasting, residual, rejoin: _, settle: _ }) = guard {
             port.part("guard", guard);
+            port.part("coasting", coasting);
+            if let Some(residual) = residual {
+                port.part("residual", residual);
+            }
         }
         port.part("drive", actuator);
         port.joints("u_reported", "N m", &mut state.applied.0);
@@ -87,6 +93,7 @@ impl<const N: usize> Happened<N> {
             applied: Pieces::constant(zero),
             certificate: true,
             stopped: false,
+            guard: None,
         };
         Self { tick: Tick::new(0, period), action, energy: 0.0, residual: 0.0 }
     }
@@ -95,7 +102,7 @@ impl<const N: usize> Happened<N> {
         let Self { tick, action, energy, residual } = self;
         port.long("number", &mut tick.k);
         *tick = Tick::new(tick.k, tick.period);
-        let Action { reference, seen, disturbance, u_m, applied, certificate, stopped } = action;
+        let Action { reference, seen, disturbance, u_m, applied, certificate, stopped, guard } = action;
         series("q_ld", reference, port);
         port.part("seen", seen);
         port.joints("disturbance_m", "N m", &mut disturbance.0);
@@ -103,6 +110,11 @@ impl<const N: usize> Happened<N> {
         port.part("u_m", applied);
         port.flag("certificate", certificate);
         port.flag("stopped", stopped);
+        let nothing = Said { phase: Phase::Following, fault: None };
+        port.optional("guarded", guard, nothing, |Said { phase, fault }, port| {
+            phase.walk(port);
+            Place::walk(fault, port);
+        });
         port.number("hamiltonian", "J", energy);
         port.number("energy_residual", "J", residual);
     }

@@ -3,9 +3,12 @@
 pub(crate) mod assembly;
 mod controller;
 mod criteria;
+mod fault_log;
 mod figures;
 mod following;
 mod gauss;
+mod guard_settings;
+mod guarded;
 mod held;
 mod interface;
 mod ledger;
@@ -26,11 +29,13 @@ mod trace;
 mod write_trace;
 
 pub use assembly::TOLERANCE;
-pub use controller::{Action, Compensation, Controller, Feedback, Guarded};
+pub use controller::{Action, Compensation, Controller, Feedback, Said};
 pub use criteria::{Bound, Criteria, Measure};
+pub use fault_log::{FaultLog, LoggedStep, Stopped};
 pub use figures::SETTLED;
 pub use following::{Accepted, Following, Reason};
 pub use gauss::{Integrator, StepFailure};
+pub use guarded::Guarded;
 pub use interface::{Commanded, Errors, Loop, Observed, Signal};
 pub use ledger::Ledger;
 pub use limits::exceeded;

@@ -8,6 +8,7 @@ use crate::progress::{Progress, tell, unwatched};
 use crate::scenario::Scenario;
 use crate::simulate::assembly;
 use crate::simulate::criteria::Criteria;
+use crate::simulate::fault_log::FaultLog;
 use crate::simulate::figures::Figures;
 use crate::simulate::following::{Following, Watch};
 use crate::simulate::interface::{Loop, Observed};
@@ -24,6 +25,8 @@ pub struct Run {
     pub trace: Trace,
     /// Set if the loop diverged before the end; trace and summary then end there.
     pub divergence: Option<Divergence>,
+    /// What the guard kept of its stops; none without a guard.
+    pub faults: Option<FaultLog>,
 }
 
 impl Scenario {
@@ -87,7 +90,8 @@ fn simulate(
     let seconds = started.elapsed().as_secs_f64();
     let following = watch.verdict(&scenario.robot.joints, divergence.as_ref());
     let summary = summary(scenario, &figures, following, &*held, divergence.is_some(), seconds);
-    Ok(Run { summary, trace: recorder.map(|recorder| recorder.trace).unwrap_or_default(), divergence })
+    let trace = recorder.map(|recorder| recorder.trace).unwrap_or_default();
+    Ok(Run { summary, trace, divergence, faults: held.faults() })
 }
 
 /// Number of control periods in the run.

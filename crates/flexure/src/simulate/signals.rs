@@ -3,6 +3,7 @@
 use flexure_core::control::Command;
 use flexure_core::model::{Fjr, Links, Motion};
 
+use crate::simulate::controller::Said;
 use crate::simulate::interface::Signal;
 use crate::simulate::simulation::Instant;
 use crate::units::{self, Unit};
@@ -14,6 +15,8 @@ pub(crate) struct Columns {
     pub(crate) errors: bool,
     /// What the law sees, what it commands, what the guard says.
     pub(crate) devices: bool,
+    /// What its guard does, and why.
+    pub(crate) guard: bool,
 }
 
 /// Name and unit of a signal; vectors have one number per joint.
@@ -54,6 +57,8 @@ const ENERGY: [Kind; 4] = [
 const RATE: Kind = ("rate", units::RATE);
 /// 1 or 0: whether a certificate can hold, and whether the guard has stopped the robot.
 const STATUS: [Kind; 2] = [("certificate", units::NONE), ("stopped", units::NONE)];
+/// Codes: who decides the torque, and the first thing that is wrong.
+const GUARD: [Kind; 2] = [("phase", units::NONE), ("fault", units::NONE)];
 
 impl Columns {
     /// Name and unit of each column for a robot of `joints` joints.
@@ -68,6 +73,7 @@ impl Columns {
         let vectors = vectors.chain(&DEVICES[..DEVICES.len() * devices]).flat_map(per_joint);
         let scalars =
             ENERGY.iter().chain([RATE].iter().take(errors)).chain(&STATUS[..STATUS.len() * devices]);
+        let scalars = scalars.chain(&GUARD[..GUARD.len() * usize::from(self.guard)]);
         scalar(&("t", units::TIME)).into_iter().chain(vectors).chain(scalars.flat_map(scalar)).collect()
     }
 
@@ -112,6 +118,10 @@ impl Columns {
         if self.devices {
             let flag = |holds: bool| f64::from(u8::from(holds));
             push(&mut [flag(action.certificate), flag(action.stopped)].into_iter());
+        }
+        if let Some(Said { phase, fault }) = action.guard {
+            let fault = fault.map_or(0, |(fault, _)| fault.code());
+            push(&mut [phase.code(), fault].into_iter().map(f64::from));
         }
     }
 }

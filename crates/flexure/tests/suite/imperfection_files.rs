@@ -14,7 +14,7 @@ use flexure::imperfections::{
 use flexure::plant::Shape;
 use flexure::robot::load_robot;
 use flexure::robot::{Links, Robot};
-use flexure::scenario::{Scenario, scenario_from_text};
+use flexure::scenario::{Believed, Collision, Reaction, Rejoin, Scenario, scenario_from_text};
 use miette::Diagnostic;
 use tempfile::TempDir;
 
@@ -109,6 +109,19 @@ torque = [1.0, -0.5]
 from = 1.0
 duration = 0.1
 shape = "half-sine"
+[[imperfection]]
+kind = "bias"
+motor = [0.01, -0.02]
+[[imperfection]]
+kind = "jump"
+side = "motor"
+size = [0.0, 6.283]
+from = 1.0
+[[imperfection]]
+kind = "freeze"
+side = "link"
+from = 1.5
+until = 1.6
 [estimator]
 kind = "observer"
 encoders = "both"
@@ -119,6 +132,24 @@ bandwidth = 50.0
 max_age = 1
 torque_limit = [8.0, 1.5]
 stop_damping = [4.0, 1.0]
+rejoin_speed = 0.1
+rejoin_error = [0.3, 0.2]
+rejoin_duration = 0.2
+off_after = 5.0
+latch_stops = 3
+latch_within = 10.0
+position = [3.0, 2.0]
+speed = 6.0
+deflection = 0.4
+jump = 0.05
+frozen_after = 5
+frozen_travel = 0.01
+velocity_gap = [2.0, 3.0]
+motor_residual = 1.0
+collision = [2.0, 0.5]
+reaction = "retract"
+retract_duration = 0.1
+residual_bandwidth = 30.0
 "#;
 
 /// A folder with the paper's arm and data of its drives, and its sister in the laboratory's drawings.
@@ -170,6 +201,9 @@ fn everything_is_read() {
         spring,
         model,
         push,
+        bias,
+        jump,
+        freeze,
     ] = scenario.imperfections.as_slice()
     else {
         panic!("{kinds:?}")
@@ -219,6 +253,12 @@ fn everything_is_read() {
     );
     let Imperfection::Push(push) = push else { panic!() };
     assert_eq!((push.torque[1], push.from, push.duration, push.shape), (-0.5, 1.0, 0.1, Shape::HalfSine));
+    assert!(matches!(bias, Imperfection::Bias(bias) if bias.link == [0.0; 2] && bias.motor == [0.01, -0.02]));
+    let Imperfection::Jump(jump) = jump else { panic!() };
+    assert_eq!((jump.sides, jump.size[1], jump.from), (Sides::One(Side::Motor), 6.283, 1.0));
+    assert!(jump.until.is_infinite(), "for good");
+    let Imperfection::Freeze(freeze) = freeze else { panic!() };
+    assert_eq!((freeze.sides, freeze.from, freeze.until), (Sides::One(Side::Link), 1.5, 1.6));
     let Some(Estimator::Observer { encoders: Encoders::Both, bandwidth }) = scenario.estimator else {
         panic!()
     };
@@ -226,7 +266,27 @@ fn everything_is_read() {
     assert!(scenario.disturbance_observer.is_some_and(|o| o.compensate && o.bandwidth == [50.0; 2]));
     let guard = scenario.guard.unwrap();
     assert_eq!((guard.torque_limit.as_slice(), guard.torque_rate_limit[0]), (&[8.0, 1.5][..], 4000.0));
-    assert_eq!((guard.max_age, guard.rejoin_after, guard.rejoin_duration), (1, 10, 1.0));
+    let rejoin = Rejoin {
+        after: 10,
+        speed: vec![0.1; 2],
+        error: vec![0.3, 0.2],
+        duration: 0.2,
+        settle: 0.2, // no longer than the reference takes
+    };
+    assert_eq!((guard.max_age, guard.rejoin), (1, rejoin));
+    assert_eq!((guard.off_after, guard.latch), (Some(5.0), Some((3, 10.0))));
+    let believed = Believed {
+        position: [vec![-3.0, -2.0], vec![3.0, 2.0]],
+        speed: vec![6.0; 2],
+        deflection: vec![0.4; 2],
+        jump: vec![0.05; 2],
+        frozen: (5, 0.01),
+        velocity_gap: vec![2.0, 3.0],
+        motor_residual: vec![1.0; 2],
+    };
+    assert_eq!(guard.believed, believed);
+    let collision = Collision { threshold: vec![2.0, 0.5], reaction: Reaction::Retract, retract: 0.1 };
+    assert_eq!((guard.collision, guard.residual_bandwidth), (Some(collision), 30.0));
 }
 
 /// Nothing is there unless asked for.
@@ -396,6 +456,16 @@ const ENTRIES: &[(&str, &str, &str, &str, &str)] = &[
         "unused",
         "the order is 1, which has no damping",
     ),
+    ("bias", "", ENTRY, "missing-key", "neither link nor motor"),
+    ("jump", "from = 1", ENTRY, "missing-key", "missing key imperfection[0].size"),
+    (
+        "jump",
+        "size = 1\nfrom = 1\nuntil = 0.75",
+        "0.75",
+        "range",
+        "from is 1 s and until 0.75 s, must be from",
+    ),
+    ("freeze", "from = 1\nuntil = 0.5", "0.5", "range", "from is 1 s and until 0.5 s, must be from < until"),
     ("delay", "", ENTRY, "missing-key", "neither computation nor actuation"),
     ("delay", "computation = -0.001", "-0.001", "range", "computation is -0.001 s, must be >= 0"),
     (
@@ -511,6 +581,21 @@ const CASES: &[Case] = &[
         "range",
         "rejoin_after is 0, must be a whole number from 1",
     ),
+    (
+        "[guard]\nstop_damping = 1\nlatch_stops = 3",
+        "[guard]",
+        "missing-key",
+        "latch_stops and latch_within must both be given",
+    ),
+    (
+        "[guard]\nstop_damping = 1\nlatch_stops = 17\nlatch_within = 1",
+        "17",
+        "range",
+        "latch_stops is 17, must be a whole number from 1 to 16",
+    ),
+    ("[guard]\nstop_damping = 1\njump = 0", "0\n", "range", "jump is 0 rad, must be > 0"),
+    ("[guard]\nstop_damping = 1\ncollision = [1, -1]", "-1", "range", "collision[1] is -1 N m, must be > 0"),
+    ("[guard]\nstop_damping = 1\nreaction = \"flee\"", "\"flee\"", "unknown-name", "reaction is 'flee'"),
     (
         "[guard]\nstop_damping = 1\nmax_age = 0.5",
         "0.5",

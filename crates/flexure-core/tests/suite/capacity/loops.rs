@@ -4,7 +4,7 @@ use flexure_core::control::{ControlLaw, Tanh};
 use flexure_core::estimate::{
     DisturbanceObserver, Estimator, FilteredDifference, LowPass, MotorObserver, Observer,
 };
-use flexure_core::guard::{Age, Guard, Settings};
+use flexure_core::guard::{Age, Guard, Plausible, Rejoin, Seen, Settings};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Links, Motion};
 use flexure_core::reference::{Reference, Sine};
@@ -37,14 +37,12 @@ fn course<E: Estimator<f64, N>, const N: usize>(
     let mut estimator = make(&three(r, 1.0));
     let mut residual = DisturbanceObserver::new(&ones, PERIOD).expect("positive");
     let mut guard = Guard::new(Settings {
-        period: PERIOD,
         torque_limit: ones.scaled(50.0),
         torque_rate_limit: ones.scaled(1e4),
         stop_damping: ones,
-        allowed_age: 0,
-        rejoin_after: 3,
-        position_bound: ones.scaled(10.0),
-        speed_bound: ones.scaled(100.0),
+        rejoin: Rejoin { after: 3, ..Settings::open(PERIOD).rejoin },
+        plausible: Plausible { speed: ones.scaled(100.0), ..Plausible::ANYTHING },
+        ..Settings::open(PERIOD)
     })
     .expect("sound");
     let start = fit::<f64, JOINTS, N>(&r.vector(0.1), 0.0);
@@ -60,7 +58,8 @@ fn course<E: Estimator<f64, N>, const N: usize>(
         let age = Age { link: u32::from(k == 50), motor: 0 };
         let q_ld: Vector<Jet<f64, 5>, N> = path.at(t);
         let torque = |x: &Motion<f64, N>| law.torque(&robot, x, &q_ld);
-        u = guard.step(&hat, age, torque, |q| robot.links.gravity_torque(q)).torque;
+        let holding = |q: &Vector<f64, N>| robot.links.gravity_torque(q);
+        u = guard.step(&Seen { age, ..Seen::fresh(&hat) }, &mut (torque, holding)).torque;
         let rate = motion_rate(&robot, &x, &u);
         x = Motion {
             q_l: x.q_l + rate.q_l.scaled(PERIOD),

@@ -33,7 +33,16 @@ pub struct Tick {
     pub period: f64,
 }
 
+/// Part of a control period by which an instant may be early: times of instants are products, and rounded.
+const EARLY: f64 = 1e-9;
+
 impl Tick {
+    /// Whether it is in [`from`, `until`) \[s\].
+    pub(crate) fn is_within(&self, from: f64, until: f64) -> bool {
+        let t = self.t + EARLY * self.period;
+        from <= t && t < until
+    }
+
     /// Instant `k` of a loop with control periods of `period` \[s\].
     pub fn new(k: u64, period: f64) -> Self {
         Self { k, t: k as f64 * period, period }

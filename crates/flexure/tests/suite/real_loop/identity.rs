@@ -58,16 +58,10 @@ fn every_registered_kind_does_something() {
 
 #[test]
 fn a_guard_that_has_nothing_to_do_changes_nothing() {
-    let guard = GuardSettings {
-        torque_limit: vec![1e9; 2],
-        torque_rate_limit: vec![f64::INFINITY; 2],
-        max_age: 0,
-        rejoin_after: 1,
-        rejoin_duration: 1.0,
-        stop_damping: vec![0.0; 2],
-    };
     let mut scenario = ideal(1.0);
-    scenario.guard = Some(guard);
+    let unlimited = vec![1e9; 2];
+    scenario.guard =
+        Some(GuardSettings { torque_limit: unlimited, ..GuardSettings::usual(&scenario.robot.limits) });
     let guarded = simulate(&scenario);
     assert!(same_bits(&simulate(&ideal(1.0)), &guarded) > 20);
     assert!(guarded.trace.column("certificate").unwrap().iter().all(|&holds| holds == 1.0));

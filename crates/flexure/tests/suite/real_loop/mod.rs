@@ -5,6 +5,7 @@
 mod effects;
 mod estimators;
 mod faults;
+mod guards;
 mod hardware;
 mod identity;
 mod limits;
