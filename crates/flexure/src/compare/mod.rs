@@ -18,6 +18,7 @@ use rayon::prelude::*;
 
 use crate::files::{Problem, Problems};
 use crate::progress::{PartProgress, Progress};
+use crate::sampled::probe;
 use crate::simulate::measure;
 use crate::tune::{Costs, has_random_points, tune_from};
 
@@ -112,7 +113,10 @@ fn score(task: &Task, entrant: Entrant, search: Search, progress: Progress<'_>) 
         best.controller = tuned.controller.clone();
         found.push((seed, tuned, measure(&best)?));
     }
-    Ok(Score::new(&entrant.name(), &found))
+    Score::new(&entrant.name(), &found, |controller| {
+        scenario.controller = controller.clone();
+        probe(&scenario)
+    })
 }
 
 /// The scores of a task; why it has none if no law could run it.

@@ -3,6 +3,9 @@
 use serde::Serialize;
 
 use crate::compare::ranking::Spread;
+use crate::files::Problems;
+use crate::laws::Controller;
+use crate::sampled::Sampled;
 use crate::simulate::Run;
 use crate::tune::{Tuned, penalised_error};
 
@@ -44,6 +47,9 @@ pub struct Score {
     pub evaluations: usize,
     /// The gains that it found.
     pub gains: Vec<TunedGain>,
+    /// Whether small errors shrink with them in the loop that holds its torque for a control period; none for laws in continuous
+    /// time, and one that could not be run.
+    pub sampled: Option<Sampled>,
     /// What came of each seed, in their order; one where no seed can matter.
     pub seeds: Vec<SeedScore>,
 }
@@ -71,8 +77,16 @@ pub struct TunedGain {
 }
 
 impl Score {
-    /// Of a law that was tuned with some seeds, and its runs with the gains that were found.
-    pub(super) fn new(law: &str, found: &[(u64, Tuned, Run)]) -> Self {
+    /// Of a law that was tuned with some seeds, and its runs with the gains that were found; `probe` looks at the sampled loop with
+    /// such gains.
+    ///
+    /// # Errors
+    /// Those of `probe`.
+    pub(super) fn new(
+        law: &str,
+        found: &[(u64, Tuned, Run)],
+        probe: impl FnOnce(&Controller) -> Result<Option<Sampled>, Problems>,
+    ) -> Result<Self, Problems> {
         let of_seed = |(seed, _, run): &(u64, Tuned, Run)| SeedScore {
             seed: *seed,
             penalised_error: penalised_error(&run.summary),
@@ -88,12 +102,12 @@ impl Score {
             seeds.iter().position(|seed| !seed.follows)
         };
         let Some((_, tuned, run)) = found.get(shown.unwrap_or(0)) else {
-            return Self::failed(law, "no seeds");
+            return Ok(Self::failed(law, "no seeds"));
         };
         let (summary, diverged_at) = (&run.summary, run.divergence.map(|divergence| divergence.time));
         let ended = |figure: f64| if diverged_at.is_none() { figure } else { f64::NAN };
         let gains = tuned.controller.gains();
-        Self {
+        Ok(Self {
             law: law.to_owned(),
             rank: f64::NAN,
             penalised_error: penalised_error(summary),
@@ -112,8 +126,9 @@ impl Score {
                 .into_iter()
                 .map(|(key, values)| TunedGain { key, values: values.to_vec() })
                 .collect(),
+            sampled: probe(&tuned.controller)?,
             seeds,
-        }
+        })
     }
 
     /// Of a law that could not be run.
@@ -134,6 +149,7 @@ impl Score {
             failure: Some(why.to_owned()),
             evaluations: 0,
             gains: Vec::new(),
+            sampled: None,
             seeds: Vec::new(),
         }
     }

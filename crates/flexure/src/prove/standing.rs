@@ -27,7 +27,7 @@ impl<'a> Standing<'a> {
             (Some((problem, true)), _) => Self::Refuted(problem),
             (Some((problem, false)), _) => Self::Undecided(problem),
             (None, Some(sampled)) => Self::Unstable(sampled),
-            (None, None) => match scenario.conditions() {
+            (None, None) => match scenario.beyond_ideal() {
                 nothing if nothing.is_empty() => Self::Proved,
                 conditions => Self::Ideal(conditions),
             },
@@ -49,5 +49,5 @@ impl<'a> Standing<'a> {
 /// Whether a certificate of the law in continuous time is about the loop of `scenario`: nothing stands between them, and the
 /// sampled loop is stable.
 pub fn is_about(scenario: &Scenario, sampled: Option<&Sampled>) -> bool {
-    scenario.conditions().is_empty() && sampled.is_none_or(|sampled| sampled.stable)
+    scenario.beyond_ideal().is_empty() && sampled.is_none_or(|sampled| sampled.stable)
 }

@@ -213,7 +213,7 @@ impl ProofSummary {
         Self {
             name: scenario.name.clone(),
             verdict: Standing::of(scenario, proof, sampled.as_ref()).words(),
-            left_out: scenario.conditions(),
+            left_out: scenario.beyond_ideal(),
             contraction_rate: certificate.map(|c| c.contraction_rate.approximate()),
             convergence_rate: certificate.map(|c| c.convergence_rate.approximate()),
             paper_rate: proof.paper_rate,

@@ -102,18 +102,29 @@ impl Scenario {
         if self.plant.unlimited && self.robot.limits.torque.iter().any(|limit| limit.is_finite()) {
             conditions.push("torque limits off");
         }
-        for imperfection in &self.imperfections {
-            if conditions.last() != Some(&imperfection.kind()) {
-                conditions.push(imperfection.kind());
-            }
-        }
+        conditions.extend(self.between());
+        conditions
+    }
+
+    /// What the loop has that the ideal one has not, the law on true states with its torque on the motors at once, in the same
+    /// words: what certificates leave out.
+    pub fn beyond_ideal(&self) -> Vec<&'static str> {
+        let between = self.between();
+        let limits = self.drive_limits().filter(|_| !between.contains(&Saturation::NAME));
+        self.plant.options().into_iter().chain(limits.map(|_| "torque limits")).chain(between).collect()
+    }
+
+    /// What stands between motion and torque.
+    fn between(&self) -> Vec<&'static str> {
+        let mut kinds: Vec<_> = self.imperfections.iter().map(Imperfection::kind).collect();
+        kinds.dedup();
         let parts = [
             (self.estimator.is_some(), "observer"),
             (self.disturbance_observer.is_some(), "disturbance observer"),
             (self.guard.is_some(), "guard"),
         ];
-        conditions.extend(parts.iter().filter(|(is_there, _)| *is_there).map(|(_, name)| name));
-        conditions
+        kinds.extend(parts.iter().filter(|(is_there, _)| *is_there).map(|(_, name)| name));
+        kinds
     }
 
     /// Largest torques that the drives give, in the order of the joints, infinite where there is no limit [N m]: those of a
