@@ -13,7 +13,7 @@ use crate::files::source::Source;
 use crate::files::table::Table;
 use crate::files::{Assumption, Outside, Places, Problem, Problems, provenance, quantity};
 use crate::imperfections::document::Context;
-use crate::imperfections::{Imperfection, Saturation, document as imperfection};
+use crate::imperfections::{Imperfection, Kind as _, Saturation, document as imperfection};
 use crate::laws::{Controller, VcbcGains, document as controller};
 use crate::references::document::Timed;
 use crate::references::{Reference, SmoothStart, TimeScaling, document as reference};
