@@ -16,12 +16,10 @@ pub fn certify(problem: &Proposition) -> Verdict<Certificate, RateWitness> {
         let verdict = engine::certify(problem, reserve);
         let Some(certificate) = verdict.proved() else { return verdict };
         let Err(rejected) = verify(&certificate.text()) else { return verdict };
-        match reserve.more() {
-            Some(more) => reserve = more,
-            None => {
-                let at = format!("the checker does not see what the prover saw: {rejected}");
-                return Verdict::Undecided(Undecided { at, spent: 1 });
-            }
-        }
+        let Some(more) = reserve.more() else {
+            let at = format!("the checker does not see what the prover saw: {rejected}");
+            return Verdict::Undecided(Undecided { at, spent: 1 });
+        };
+        reserve = more;
     }
 }

@@ -111,7 +111,7 @@ impl<'a> Chain<'a> {
             };
             let carried = link.children.iter().map(|&c| {
                 let child = &self.0[c];
-                let at = |v| child.from_parent(v);
+                let at = |v| child.carried_by_parent(v);
                 let form = child.form.as_deref().unwrap_or_default();
                 child.form(form, at(of_body[i]), at(of_body[j]))
             });
@@ -122,7 +122,7 @@ impl<'a> Chain<'a> {
 
 impl Link<'_> {
     /// The velocity of the frame, its joint at 0 and at rest, from the parent's.
-    fn from_parent(&self, (turn, along): Velocity) -> Velocity {
+    fn carried_by_parent(&self, (turn, along): Velocity) -> Velocity {
         let back = |v: Vec3| [0, 1, 2].map(|i| dot(self.rotation.map(|row| row[i]), v));
         (back(turn), back(plus(along, cross(turn, values(&self.body.translation)))))
     }

@@ -93,9 +93,11 @@ fn unit(e: V) -> V {
 
 /// Contains the rotation nearest to R. With singular values s its distance is |s − 1| ≤ |s² − 1| = |R Rᵀ − 1| (Frobenius).
 fn rotation(rows: Square) -> Square {
-    let gram = Matrix::<_, 3, 3>::from_fn(|i, j| match i == j {
-        true => rows.row(i).iter().fold(-Interval::ONE, |sum, x| sum + x.square()),
-        false => rows.row(i).dot(&rows.row(j)),
+    let gram = Matrix::<_, 3, 3>::from_fn(|i, j| {
+        if i == j {
+            return rows.row(i).iter().fold(-Interval::ONE, |sum, x| sum + x.square());
+        }
+        rows.row(i).dot(&rows.row(j))
     });
     let defect = gram.0.iter().flatten().fold(Interval::ZERO, |sum, x| sum + x.square()).sqrt();
     let around = around(defect);

@@ -66,9 +66,8 @@ impl<T: Scalar> Link<T> {
                 y[i * (i + 1) / 2 + j]
             });
         }
-        let along = Matrix::<T, 3, 3>::from_fn(|i, j| match i == j {
-            true => self.axis[i].square(),
-            false => self.axis[i] * self.axis[j],
+        let along = Matrix::<T, 3, 3>::from_fn(|i, j| {
+            if i == j { self.axis[i].square() } else { self.axis[i] * self.axis[j] }
         });
         let across = Matrix::identity() - along;
         let block = |across_part: T, along_part: T| across.scaled(across_part) + along.scaled(along_part);

@@ -2,7 +2,7 @@
 //! one for each joint, between its body with all that hangs on it and the body that carries it. Stated and shown in
 //! `docs/certificate.md`.
 //!
-//! Floats find the forms of the chain ([`programme`], [`barrier`]), intervals show that it holds.
+//! Floats find the forms of the chain (`programme`, `barrier`), intervals show that it holds.
 
 mod barrier;
 mod bodies;
