@@ -115,7 +115,7 @@ motor = [0.01, -0.02]
 [[imperfection]]
 kind = "jump"
 side = "motor"
-size = [0.0, 6.283]
+size = [0.0, 6.0]
 from = 1.0
 [[imperfection]]
 kind = "freeze"
@@ -255,7 +255,7 @@ fn everything_is_read() {
     assert_eq!((push.torque[1], push.from, push.duration, push.shape), (-0.5, 1.0, 0.1, Shape::HalfSine));
     assert!(matches!(bias, Imperfection::Bias(bias) if bias.link == [0.0; 2] && bias.motor == [0.01, -0.02]));
     let Imperfection::Jump(jump) = jump else { panic!() };
-    assert_eq!((jump.sides, jump.size[1], jump.from), (Sides::One(Side::Motor), 6.283, 1.0));
+    assert_eq!((jump.sides, jump.size[1], jump.from), (Sides::One(Side::Motor), 6.0, 1.0));
     assert!(jump.until.is_infinite(), "for good");
     let Imperfection::Freeze(freeze) = freeze else { panic!() };
     assert_eq!((freeze.sides, freeze.from, freeze.until), (Sides::One(Side::Link), 1.5, 1.6));
@@ -264,6 +264,12 @@ fn everything_is_read() {
     };
     assert_eq!(bandwidth, [300.0, 400.0]);
     assert!(scenario.disturbance_observer.is_some_and(|o| o.compensate && o.bandwidth == [50.0; 2]));
+}
+
+/// Every key of a guard.
+#[test]
+fn a_guard_is_read() {
+    let scenario = good(&with(REAL));
     let guard = scenario.guard.unwrap();
     assert_eq!((guard.torque_limit.as_slice(), guard.torque_rate_limit[0]), (&[8.0, 1.5][..], 4000.0));
     let rejoin = Rejoin {

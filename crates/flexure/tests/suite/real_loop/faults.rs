@@ -163,7 +163,7 @@ impl Outage {
 fn course(scenario: &Scenario, mut see: impl FnMut(&Observed)) {
     let mut held = scenario.open().expect("a robot of two joints");
     let mut observed = Observed::new(2);
-    for _ in 0..=(scenario.duration / PERIOD).round() as u32 {
+    while observed.t < scenario.duration - 0.5 * PERIOD {
         held.step().expect("no divergence");
         held.observe(&mut observed).expect("of two joints");
         see(&observed);
