@@ -125,7 +125,7 @@ const COLUMNS: [(&str, &str); 11] = [
     ("max |u_m|", units::TORQUE.raised),
     ("rms u_m", units::TORQUE.raised),
     ("saturated", "%"),
-    ("pointwise rate", units::RATE.raised),
+    ("rate at states", units::RATE.raised),
     ("rate certified", units::RATE.raised),
     ("energy drift", "–"),
     ("steps", "–"),
@@ -175,7 +175,7 @@ fn summary_table(runs: &[RunReport]) -> Markup {
         }
         p.note {
             "Settling time: after it every " (symbols("|e_l|")) " stays below 1 mrad; — if that never happens. "
-            "Pointwise rate: the smallest contraction rate of the law in continuous time at the states of the run, evaluated and not proved. "
+            "Rate at states: the smallest contraction rate of the law in continuous time at the states of the run, evaluated and not proved. "
             "Rate certified: proved, on the region that `flexure certify` takes by itself; — where nothing was proved of this loop. "
             "Energy drift: the energy balance's residual, relative to the energy that went through the robot."
         }

@@ -19,7 +19,7 @@ const NUMBERS: [Column; 5] = [
     ("final\n|e_l|\n[rad]", |summary| number(summary.final_abs_e_l)),
     ("settled\n\n[s]", |summary| optional(summary.settling_time)),
     ("max\n|u_m|\n[N m]", |summary| number(summary.max_abs_u_m)),
-    ("pointwise\nrate\n[1/s]", |summary| number(summary.rate_pointwise)),
+    ("rate at\nstates\n[1/s]", |summary| number(summary.rate_pointwise)),
 ];
 const AT_LIMIT: Column = ("at\nlimit\n[%]", |summary| number(100.0 * summary.saturated_fraction));
 const UNKNOWN: Column = ("unknown\nto the\nlaw", |summary| words(&summary.plant));

@@ -29,6 +29,9 @@ use crate::scenario::{Hold, Scenario};
 
 pub use advice::{Advice, Move};
 
+/// A radius is computed to about 1e-12; what grows by less than this in a period, no run shows.
+const ROUNDING: f64 = 1e-9;
+
 /// Places along the reference that are looked at, the first at t = 0.
 const PLACES: u32 = 25;
 
@@ -74,7 +77,7 @@ pub fn probe(scenario: &Scenario) -> Result<Option<Sampled>, Problems> {
     }
     let probe = Probe::new(scenario)?;
     let (radius, worst) = probe.worst(&scenario.controller);
-    let stable = radius < 1.0;
+    let stable = radius < 1.0 + ROUNDING;
     let advice = if stable { None } else { advice::advice(&probe, worst)? };
     Ok(Some(Sampled {
         spectral_radius: radius,
