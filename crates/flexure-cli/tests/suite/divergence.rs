@@ -16,7 +16,7 @@ fn the_paper_gains_diverge_at_500_hertz() {
         "slow.toml:5:18",
         "slow: the loop diverged at t = ",
         "unstable",
-        "control_period = 0.0005",
+        "control_period = 0.001 is short enough",
     ]);
     assert_eq!(place.names("out"), ["slow.csv", "slow.png", "slow.svg"]);
 
