@@ -7,12 +7,13 @@ import json, re, sys, time
 from fractions import Fraction
 from functools import partial, reduce
 from itertools import combinations_with_replacement, permutations, product
-from math import nan, prod
+from math import ceil, floor, nan, prod
 from mpmath import iv, mp, mpf
 
 iv.prec, mp.prec = 80, 200  # ends of intervals are not rounded again where they are taken out
 ZERO, ONE = iv.mpf(0), iv.mpf(1)
-DECIMAL = re.compile(r"(?!.{1001})[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,4})?", re.ASCII)
+DECIMAL = re.compile(r"(?!.{101})-?(0|[1-9]\d*)(\.\d+)?([eE][+-]?\d{1,3})?", re.ASCII)
+SMALLEST, LARGEST = Fraction(1, 10**330), 10**100
 
 def need(holds, claim, error=AssertionError):  # a ValueError where it is not even a certificate
     if holds is not True:  # None: intervals overlap, nothing is known
@@ -38,16 +39,29 @@ def smallest_pivot(matrix):  # a lower bound for L D L'; if it is at least 0, al
     return min(pivots)
 
 # ---- The file: exactly the keys, lengths and kinds of a specification; what has a key twice stays a list
-def number(text, sign=None):  # a decimal, or a pair for some real between two, as an interval that remembers its rational ends
+def enclosed(low, high):
+    sets = [iv.mpf(value.numerator) / value.denominator for value in (low, high)]
+    return span(*sets)
+def few_digits(value, digits, up):  # the nearest number of so many digits above, or below
+    size = abs(value)
+    unit = Fraction(10) ** (len(str(size.numerator)) - len(str(size.denominator)) - digits - 1 if size else 0)
+    while size >= 10**digits * unit:
+        unit *= 10
+    return (ceil if up else floor)(value / unit) * unit
+
+WRONG = []  # signs: complained of once the file is read, so that what is no certificate is called that
+def number(text, sign=None, rounded=None):  # a decimal, or a pair for a real between two, as an interval that knows its rational ends
     ends = text if isinstance(text, list) else [text]
     need(all(map(DECIMAL.fullmatch, ends)), f"{text!s:.60} is no number", ValueError)
     values = [Fraction(end) for end in ends]
+    need(all(value == 0 or SMALLEST <= abs(value) < LARGEST for value in values), f"{text!s:.60} is too small or large", ValueError)
     low, high = values if ends is text else values * 2
-    need(-2**1024 < low <= high < 2**1024, f"{text!s:.60} is not finite, or the wrong way round", ValueError)
-    need({None: True, "> 0": low > 0, ">= 0": low >= 0}[sign], f"{text!s:.60} is not {sign}")
-    sets = [iv.mpf(value.numerator) / value.denominator for value in values]
-    x = span(sets[0], sets[-1])
+    need(low <= high, f"{text!s:.60} is the wrong way round", ValueError)
+    if not {None: True, "> 0": low > 0, ">= 0": low >= 0}[sign]:
+        WRONG.append(f"{text!s:.60} is not {sign}")
+    x = enclosed(low, high)
     x.low, x.high, x.exact = low, high, nan if ends is text else low  # a pair equals nothing
+    x.claimed = enclosed(*(few_digits(end, *rounded) for end in (low, high))) if rounded else x
     return x
 positive, not_negative = partial(number, sign="> 0"), partial(number, sign=">= 0")
 
@@ -64,17 +78,33 @@ def read(value, spec):  # the value, if it is as specified: (spec,) is that or n
         fits = type(value) is spec if isinstance(spec, type) else type(value) in (str, int) and value in spec
         need(fits, f"{value!s:.60} is not of {spec}", ValueError)
     return value if isinstance(spec, (set, range, type)) else spec(value)
+def both(down, up, text):  # a level that is claimed to be enough, and from which errors follow
+    x = down(text)
+    x.reached = up(text).claimed
+    return x
+def digest(text):
+    need(re.fullmatch("[0-9a-f]{64}", text) is not None, f"{text!s:.60} is no SHA-256", ValueError)
+    return text
 def read_body(k, raw):
     slides, vector = raw["kind"] == "prismatic", [number] * 3
     return read(raw if slides else {"travel": None} | raw, {
         "parent": (range(k),), "kind": {"revolute", "prismatic"}, "axis": vector, "rotation": [vector] * 3, "translation": vector,
         "mass": not_negative, "com": vector, "inertia": [number] * 6, "travel": [number] * 2 if slides else type(None)})
 
-def read_file(text):
-    need(len(text.encode()) <= 4 << 20, "larger than 4 MiB", ValueError)
-    raw = json.loads(text, object_pairs_hook=lambda pairs: dict(pairs) if len(dict(pairs)) == len(pairs) else pairs)
+def whole(digits):
+    need(digits.isdigit(), f"{digits:.60} is no index", ValueError)
+    return int(digits)
+def read_file(data):
+    need(len(data) <= 4 << 20, "larger than 4 MiB", ValueError)
+    text = data.decode("utf-8")
+    raw = json.loads(text, object_pairs_hook=lambda pairs: dict(pairs) if len(dict(pairs)) == len(pairs) else pairs, parse_int=whole)
+    json.dumps(raw, ensure_ascii=False).encode("utf-8")  # half of a surrogate pair is no text
+    WRONG.clear()
+    version = read(raw["version"], range(1, 3))
+    def claim(sign, digits, up):  # from version 2 on rounded to the side that claims more
+        return partial(number, sign=sign, rounded=(digits, up) if version > 1 else None)
     coupled, kind = raw["controller"]["phi"] == "coupled-tanh", raw["robot"]["links"]["kind"]
-    n, first = read(raw["robot"]["joints"], range(1, 17 if coupled else 65)), read(raw["version"], range(1, 3)) == 1
+    n = read(raw["robot"]["joints"], range(1, 17 if coupled else 65))
     above, from_zero, side = [positive] * n, [not_negative] * n, {"link", "motor"}
     links = {
         ("planar-two-link", 2): {"mass": [positive] * 2, "length": positive, "com": [number] * 2, "inertia": [positive] * 2},
@@ -82,21 +112,26 @@ def read_file(text):
         ("tree", n): {"bodies": [partial(read_body, k) for k in range(n)]}}[kind, n]
     shapes = [type(None) if body["parent"] is None else [number] * (21 if body["kind"] == "prismatic" else 7)
               for body in raw["robot"]["links"].get("bodies", [])]
-    forms = {} if first else {"forms": shapes if kind == "tree" else type(None)}
+    forms = {} if version == 1 else {"forms": shapes if kind == "tree" else type(None)}
     gains = {"metric": above, "shaping": above, "damping": above, "kappa": above if coupled else type(None)}
-    rates, margins = ({"contraction": sign, "convergence": sign} for sign in (positive, not_negative))
-    witness = {"side": side, "error": [number] * n, "row": range(n), "column": range(n), "difference": positive}
-    return read(raw, {
-        "format": {"flexure-certificate"}, "version": int, "name": str, "made_by": str, "assumptions": [str, ...],
+    rate, margin = claim("> 0", 13, True), partial(number, sign="> 0" if version > 1 else ">= 0", rounded=(1, True))
+    rates, margins = ({"contraction": kind, "convergence": kind} for kind in (rate, margin))
+    witness = {"side": side, "error": [number] * n, "row": range(n), "column": range(n), "difference": claim("> 0", 1, True)}
+    about = {"subject": ({"robot": digest, "scenario": digest},)} if version > 1 else {}
+    file = read(raw, about | {
+        "format": {"flexure-certificate"}, "version": range(1, 3), "name": str, "made_by": str, "assumptions": [str, ...],
         "robot": {"name": str, "joints": int, "stiffness": above, "motor_inertia": above, "link_damping": from_zero,
                   "motor_damping": from_zero, "links": {"kind": str} | links},
         "controller": {"phi": {"tanh", "linear", "coupled-tanh"}, "link": gains, "motor": gains},
-        "region": {"error": [(positive,)] * 2 * n, "level": (positive,)}, "contraction_rate": positive,
+        "region": {"error": [(positive,)] * 2 * n, "level": (claim("> 0", 9, True),)}, "contraction_rate": positive,
         "closed_loop": {"rows": [[str] * 4] * 4, "dissipation": [str] * 4}, "convergence_rate": positive,
         "blocks": [{"block": str, "cases": [{"case": str} | margins, ...]} | rates, ...],
-        "mass_matrix": {"margins": [positive, ...]} | forms, "measures": [{"side": side, "norm": str, "bound": number}, ...],
+        "mass_matrix": {"margins": [partial(number, sign="> 0", rounded=(1, True)), ...]} | forms,
+        "measures": [{"side": side, "norm": str, "bound": claim(None, 9, False)}, ...],
         "structure": [{"name": str, "holds": bool, "witness": (witness,)}, ...],
-        "tube": ({"disturbance": from_zero, "level": not_negative, "error": from_zero * 2},)})
+        "tube": ({"disturbance": from_zero, "level": partial(both, claim(">= 0", 9, False), claim(">= 0", 9, True)), "error": [claim(">= 0", 9, False)] * 2 * n},)})
+    need(not WRONG, "; ".join(WRONG[:3]))
+    return file
 
 def by_name(entries, wanted, *keys):  # the entries by name: exactly the wanted ones, each once
     names = ["/".join(entry[key] for key in keys) for entry in entries]
@@ -281,8 +316,8 @@ def momentum_cases(file, damping):  # of both sides, by case a function of which
 def check_block(block, cases):  # by case, a function of which rate and the rate: a matrix with pivots of at least the margin
     for case, margins in by_name(block["cases"], [*cases], "case").items():
         for rate in RATES:
-            pivot = smallest_pivot(cases[case](rate, block[rate]))
-            need(margins[rate] <= pivot, f"{block['block']}: case '{case}', {rate}: pivot {float(pivot):.6g} at that rate")
+            pivot = smallest_pivot(cases[case](rate, block[rate].claimed))
+            need(margins[rate].claimed <= pivot, f"{block['block']}: case '{case}', {rate}: pivot {float(pivot):.6g} at that rate")
 def check_blocks(file, blocks, sides, momenta):
     for name, side in sides.items():
         phi, sigma = blocks["phi_" + name[0]], blocks["sigma_" + name[0]]
@@ -295,7 +330,7 @@ def check_measures(file, blocks, sides):
     own = {f"{name}/{norm}": bound for name, side in sides.items() for norm, bound in side.measures().items()}
     for name, claim in by_name(file["measures"], [*own, "link/2", "motor/2"], "side", "norm").items():
         bound, rate = claim["bound"], blocks["phi_" + claim["side"][0]]["contraction"]
-        need(own[name] <= bound if name in own else -rate.low <= bound.low, f"measures: {name} is more than claimed")
+        need(own[name] <= bound.claimed if name in own else -rate.low <= bound.low, f"measures: {name} is more than claimed")
 
 def check_structure(file, sides):
     phi = file["controller"]["phi"]
@@ -310,42 +345,44 @@ def is_witness(name, sides, side, errors, i, j, difference):
     inside = all(r is None or -r.low <= e.low and e.high <= r.low for e, r in zip(errors, law.bounds))
     entry, mirrored = law.slope(i, j, slope(errors[j])), law.slope(j, i, slope(errors[i]))
     off = entry - (p[i] if i == j else 0) if name == "ph-like" else entry / p[j] - mirrored / p[i]
-    return inside and abs(off) >= difference
+    return inside and abs(off) >= difference.claimed
 def check_tube(tube, file, blocks, metric):
     level, region = tube["level"], file["region"]["level"]
     strength = sum(d**2 / m for d, m in zip(tube["disturbance"], file["robot"]["motor_inertia"]))
     b, rest = blocks["sigma_m"]["convergence"], [blocks[name]["convergence"] for name in ("phi_l", "phi_m", "sigma_l")]
     beta = span(min(x.a for x in rest), min(x.b for x in rest))
     fast, slow = strength / (8 * beta * (b - beta)), strength / (2 * b**2)
-    need(all(level >= x for x in {True: [fast], False: [slow], None: [fast, slow]}[b >= 2 * beta]), "tube: the level is too low")
+    need(all(level.claimed >= x for x in {True: [fast], False: [slow], None: [fast, slow]}[b >= 2 * beta]), "tube: the level is too low")
     need(region is None or level.high <= region.low, "tube: the level is more than the region's")
-    need(all(p * e**2 >= 2 * level for p, e in zip(metric, tube["error"])), "tube: an error is too small")
+    need(all(p * e.claimed**2 >= 2 * level.reached for p, e in zip(metric, tube["error"])), "tube: an error is too small")
 
-def check(text):  # the rates that are proved
-    file = read_file(text)
+def check(data):  # the rates that are proved, and what the loop's files hash to
+    file = read_file(data)
     check_closed_loop(file["closed_loop"])
     sides = {name: Side(file, name) for name in ("link", "motor")}
     metric, errors, level = sides["link"].metric + sides["motor"].metric, *file["region"].values()
-    bounded = all(bound and level and 2 * level <= p * bound**2 for bound, p in zip(errors, metric))
+    bounded = all(bound and level and 2 * level.claimed <= p * bound**2 for bound, p in zip(errors, metric))
     need(bounded or {*errors, level} == {None}, "region: W <= level leaves it, or some are null and some are not")
     damping = {name: [d + k for d, k in zip(file["robot"][name + "_damping"], side.damping)] for name, side in sides.items()}
     momenta, pivots = momentum_cases(file, damping)
     margins = file["mass_matrix"]["margins"]
-    need(len(margins) == len(pivots) and all(m <= p for m, p in zip(margins, pivots)), "mass_matrix: a margin is not reached")
+    need(len(margins) == len(pivots) and all(m.claimed <= p for m, p in zip(margins, pivots)), "mass_matrix: a margin is not reached")
     blocks = by_name(file["blocks"], ["phi_l", "phi_m", "sigma_l", "sigma_m"], "block")
     check_blocks(file, blocks, sides, momenta)
     check_measures(file, blocks, sides)
     check_structure(file, sides)
     if file["tube"]:
         check_tube(file["tube"], file, blocks, metric)
-    return [float(file[rate + "_rate"].low) for rate in RATES]
+    return [float(file[rate + "_rate"].low) for rate in RATES], file.get("subject") or {}
 
 def main(paths):
     worst = 0 if paths else 2
     for path in paths:
         code, start = 0, time.perf_counter()
         try:
-            said = "proved: contraction {:.10g} 1/s, convergence {:.10g} 1/s".format(*check(open(path, encoding="utf-8").read()))
+            rates, subject = check(open(path, "rb").read())
+            said = "proved: contraction {:.10g} 1/s, convergence {:.10g} 1/s".format(*rates)
+            said += "".join(f", {key} {hash}" for key, hash in subject.items())
         except AssertionError as error:
             code, said = 1, f"does not hold: {error}"
         except Exception as error:

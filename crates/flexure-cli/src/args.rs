@@ -88,6 +88,9 @@ pub enum Command {
         /// Certificate, a JSON file as docs/certificate.md has it.
         #[arg(value_name = "CERTIFICATE")]
         certificate: PathBuf,
+        /// Scenario, a file or a built-in name: is it the loop that the certificate is about?
+        #[arg(long, value_name = "SCENARIO")]
+        against: Option<String>,
     },
     /// Measure how much delay, gain error, stiffness error and noise a loop bears, by bisection in simulation.
     Margins(Margins),

@@ -35,7 +35,9 @@ fn main() -> ExitCode {
         Command::Certify(options) => commands::certify(&options, outside, json),
         Command::Check { files } => commands::check(&files, outside, json),
         Command::Import { urdf, lock } => commands::import(&urdf, &lock, json),
-        Command::Verify { certificate } => commands::verify(&certificate, json),
+        Command::Verify { certificate, against } => {
+            commands::verify(&certificate, against.as_deref(), outside, json)
+        }
         Command::Margins(options) => commands::margins(&options, outside, json),
         Command::List { kind } => commands::list(kind, json),
     };

@@ -1,10 +1,13 @@
-//! `flexure verify`: do a certificate's claims hold?
+//! `flexure verify`: do a certificate's claims hold, and is it about this scenario?
 
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use flexure::verify::{self, CheckReport, Claim, Rejected};
+use flexure::files::Outside;
+use flexure::prove::subject::{Difference, differences};
+use flexure::scenario::load_scenario_with;
+use flexure::verify::{self, CheckReport, Claim, Rejected, quoted};
 use serde::Serialize;
 
 use super::print;
@@ -13,31 +16,50 @@ use crate::failure::{Failure, Place};
 /// One byte more than a certificate may have: enough to see that it has too many.
 const ENOUGH: u64 = (4 << 20) + 1;
 
+/// Characters of a text of the file beyond these are not shown.
+const MOST_SHOWN: usize = 1000;
+
 /// What is printed with `--json`.
-#[derive(Serialize)]
+#[derive(Default, Serialize)]
 struct Answer {
     verdict: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     name: Option<String>,
     claims: Vec<Claim>,
+    /// What the file says that it is about.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    about: Vec<Claim>,
     assumptions: Vec<String>,
     contraction_rate: Option<String>,
     convergence_rate: Option<String>,
     /// The claim that does not hold.
     claim: Option<String>,
     reason: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    against: Option<Against>,
 }
 
-pub fn verify(file: &Path, json: bool) -> Result<(), Failure> {
+/// What came of comparing with a scenario.
+#[derive(Serialize)]
+struct Against {
+    scenario: String,
+    same: bool,
+    differences: Vec<Difference>,
+}
+
+pub fn verify(file: &Path, against: Option<&str>, outside: Outside, json: bool) -> Result<(), Failure> {
     let text = read(file).map_err(|error| {
         Failure::input(
             "verify",
-            format!("cannot read {}: {error}", file.display()),
+            format!("cannot read {}: {error}", named(file)),
             "the file must be a certificate as docs/certificate.md has it",
         )
     })?;
     match verify::verify(&text) {
-        Ok(report) => verified(report, json),
+        Ok(report) => {
+            let against = against.map(|scenario| compared(&text, scenario, outside)).transpose()?;
+            verified(file, report, against, json)
+        }
         Err(Rejected::False { claim, reason }) => rejected(file, &claim, &reason, json),
         Err(Rejected::Malformed { place, reason, line, column }) => {
             Err(malformed(file, &place, &reason, line, column))
@@ -52,51 +74,123 @@ fn read(file: &Path) -> io::Result<String> {
     String::from_utf8(bytes).map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error.utf8_error()))
 }
 
-fn verified(report: CheckReport, json: bool) -> Result<(), Failure> {
-    let CheckReport { name, assumptions, claims, contraction_rate, convergence_rate } = report;
+fn compared(certificate: &str, scenario: &str, outside: Outside) -> Result<Against, Failure> {
+    let differences = differences(certificate, &load_scenario_with(scenario, outside)?)?;
+    Ok(Against { scenario: scenario.to_owned(), same: differences.is_empty(), differences })
+}
+
+fn verified(file: &Path, report: CheckReport, against: Option<Against>, json: bool) -> Result<(), Failure> {
+    let ended = against.as_ref().map_or(Ok(()), |against| ending(file, against));
     if json {
-        return print::json(&Answer {
+        let CheckReport { name, about, assumptions, claims, contraction_rate, convergence_rate } = report;
+        print::json(&Answer {
             verdict: "verified",
             name: Some(name),
             claims,
+            about,
             assumptions,
             contraction_rate: Some(contraction_rate),
             convergence_rate: Some(convergence_rate),
-            claim: None,
-            reason: None,
-        });
+            against,
+            ..Answer::default()
+        })?;
+        return ended;
     }
-    for Claim { name, value } in &claims {
+    print::line("the file says that it is about:")?;
+    for Claim { name, value } in &report.about {
+        print::line(&format!("  {name}: {}", clipped(value)))?;
+    }
+    for assumption in &report.assumptions {
+        print::line(&format!("  assumed: {}", clipped(&quoted(assumption))))?;
+    }
+    print::line("and of that these claims hold:")?;
+    for Claim { name, value } in &report.claims {
         print::line(&format!("{name}: {value}"))?;
     }
-    for assumption in &assumptions {
-        print::line(&format!("assumed: {}", shown(assumption)))?;
-    }
-    let name = shown(&name);
+    let (contraction, convergence) = (&report.contraction_rate, &report.convergence_rate);
     print::line(&format!(
-        "verified: {name}: contraction {contraction_rate} 1/s, convergence {convergence_rate} 1/s"
+        "verified: {}: contraction {contraction} 1/s, convergence {convergence} 1/s",
+        clipped(&quoted(&report.name))
+    ))?;
+    if let Some(against) = against.filter(|against| against.same) {
+        print::line(&format!("it is about {}", shown(&against.scenario)))?;
+    }
+    ended
+}
+
+/// Whether the certificate is about the scenario.
+fn ending(file: &Path, Against { scenario, same, differences }: &Against) -> Result<(), Failure> {
+    if *same {
+        return Ok(());
+    }
+    let (file, scenario) = (named(file), shown(scenario));
+    if let [Difference { place, certificate, .. }] = differences.as_slice()
+        && place == "subject"
+        && certificate == "null"
+    {
+        let message = format!(
+            "{file} has no hash of its scenario: robot and gains are those of {scenario}, the rest cannot be told"
+        );
+        return Err(Failure::no(
+            "against",
+            message,
+            "it is of version 1 of the format; `flexure certify` writes version 2",
+        ));
+    }
+    let told: Vec<_> =
+        differences.iter().filter(|difference| !difference.place.starts_with("subject")).collect();
+    let Some(first) = told.first() else {
+        let which: Vec<_> =
+            differences.iter().map(|difference| difference.place.trim_start_matches("subject.")).collect();
+        let message = format!(
+            "{file} is not about {scenario}: its {} says something else, though the robot's numbers and the gains are the same",
+            which.join(" and its ")
+        );
+        let hint =
+            "times, reference, limits, imperfections or another key that no number of the certificate tells";
+        return Err(Failure::no("against", message, hint));
+    };
+    let Difference { place, certificate, scenario: other } = first;
+    let more = if told.len() > 1 { format!(", and {} more", told.len() - 1) } else { String::new() };
+    let message = format!(
+        "{file} is not about {scenario}: {} is {} in the certificate and {} in the scenario{more}",
+        shown(place),
+        clipped(&shown(certificate)),
+        clipped(&shown(other)),
+    );
+    Err(Failure::no(
+        "against",
+        message,
+        "what it claims holds of the loop that it tells, which is another one",
     ))
 }
 
 /// The file's own text without what could command a terminal.
 fn shown(text: &str) -> String {
-    text.chars().filter(|c| !c.is_control()).collect()
+    let quoted = quoted(text);
+    let inside = quoted.get(1..quoted.len() - 1).unwrap_or_default();
+    inside.replace("\\\"", "\"")
+}
+
+/// As much of a text as is shown of it.
+fn clipped(text: &str) -> String {
+    match text.char_indices().nth(MOST_SHOWN) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+/// The name of the certificate's file, which may be somebody else's too.
+fn named(file: &Path) -> String {
+    shown(&file.display().to_string())
 }
 
 fn rejected(file: &Path, claim: &str, reason: &str, json: bool) -> Result<(), Failure> {
     let (claim, reason) = (shown(claim), shown(reason));
-    let message = format!("{}: {claim} does not hold: {reason}", file.display());
+    let message = format!("{}: {claim} does not hold: {reason}", named(file));
     if json {
-        print::json(&Answer {
-            verdict: "rejected",
-            name: None,
-            claims: Vec::new(),
-            assumptions: Vec::new(),
-            contraction_rate: None,
-            convergence_rate: None,
-            claim: Some(claim),
-            reason: Some(reason),
-        })?;
+        let (claim, reason) = (Some(claim), Some(reason));
+        print::json(&Answer { verdict: "rejected", claim, reason, ..Answer::default() })?;
     }
     Err(Failure::no("verify", message, "nothing else in the file is to be relied on either"))
 }
@@ -106,7 +200,7 @@ fn malformed(file: &Path, place: &str, reason: &str, line: Option<usize>, column
         (Some(line), Some(column)) => format!(":{line}:{column}"),
         _ => String::new(),
     };
-    let message = format!("{}{at} is not a certificate: {}: {}", file.display(), shown(place), shown(reason));
+    let message = format!("{}{at} is not a certificate: {}: {}", named(file), shown(place), shown(reason));
     let hint = "the file must be a certificate as docs/certificate.md has it";
-    Failure::input_at(Place { file: file.display().to_string(), line, column }, "verify", message, hint)
+    Failure::input_at(Place { file: named(file), line, column }, "verify", message, hint)
 }

@@ -103,14 +103,17 @@ fn an_initial_error_gets_the_level_set_that_holds_it() {
         .json();
     let error: Vec<f64> =
         found["region"]["error"].as_array().unwrap().iter().map(|e| e.as_f64().unwrap()).collect();
-    // ½ (55 + 30)/4 + ½ (70 + 60)/100 = 11.275 J.
-    assert!((found["region"]["level"].as_f64().unwrap() - 11.275).abs() < 1e-12);
+    // ½ (55 + 30)/4 + ½ (70 + 60)/100 = 11.275 J, rounded up to nine digits, and so are the errors that follow.
+    let above = |x: f64, exact: f64| x >= exact && x <= exact * (1.0 + 3e-8);
+    let level = found["region"]["level"].as_f64().unwrap();
+    assert!(above(level, 11.275), "{level}");
     for (e, metric) in error.iter().zip([55.0, 30.0, 70.0, 60.0]) {
-        assert!((e - (22.55_f64 / metric).sqrt()).abs() < 1e-14, "{e}");
+        assert!(above(*e, (2.0 * level / metric).sqrt()), "{e}");
     }
     let slope = |e: f64| 1.0 / e.cosh().powi(2);
     let expected = (55.0 * slope(error[0])).min(30.0 * slope(error[1]));
-    assert!((found["contraction_rate"].as_f64().unwrap() - expected).abs() < 1e-11);
+    // Thirteen digits of 40 1/s or so.
+    assert!((found["contraction_rate"].as_f64().unwrap() - expected).abs() < 2e-11);
 }
 
 /// A disturbance larger than the region can hold is not decided; one that fits gives a tube inside it.

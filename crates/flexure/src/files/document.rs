@@ -1,6 +1,6 @@
 //! A TOML document while it is read: its text, the problems found so far, and where every key stands.
 
-use std::cell::{Cell, RefCell};
+use std::cell::{Cell, Ref, RefCell};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -10,6 +10,7 @@ use toml::de::{DeTable, DeValue, Error};
 use crate::files::bounds;
 use crate::files::decimals::Decimals;
 use crate::files::diagnostic::{Problem, Problems};
+use crate::files::normal::Normal;
 use crate::files::quantity::Quantity;
 use crate::files::source::Source;
 use crate::files::table::Table;
@@ -23,11 +24,17 @@ pub(crate) struct Log {
     pub source: Source,
     problems: RefCell<Vec<Problem>>,
     decimals: Cell<Decimals>,
+    contents: RefCell<BTreeMap<String, Normal>>,
 }
 
 impl Log {
     pub fn new(source: &Source) -> Self {
-        Self { source: source.clone(), problems: RefCell::default(), decimals: Cell::default() }
+        Self {
+            source: source.clone(),
+            problems: RefCell::default(),
+            decimals: Cell::default(),
+            contents: RefCell::default(),
+        }
     }
 
     /// Notes `problem` as it is.
@@ -45,6 +52,16 @@ impl Log {
     /// Notes what other numbers were read from.
     pub fn note(&self, decimals: Decimals) {
         self.decimals.set(self.decimals.get().and(decimals));
+    }
+
+    /// Notes what stands in the file that is named at `path`.
+    pub fn contain(&self, path: &str, content: Normal) {
+        self.contents.borrow_mut().insert(path.to_owned(), content);
+    }
+
+    /// What stands in the files named so far, by the path of the key that names it.
+    pub fn contents(&self) -> Ref<'_, BTreeMap<String, Normal>> {
+        self.contents.borrow()
     }
 
     /// Warnings, or errors, noted so far.

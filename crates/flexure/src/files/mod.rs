@@ -15,6 +15,7 @@ pub(crate) mod document;
 mod entry;
 pub(crate) mod field;
 mod leftover;
+pub(crate) mod normal;
 pub mod number;
 pub(crate) mod provenance;
 pub(crate) mod quantity;

@@ -8,6 +8,7 @@ use toml::de::{DeTable, DeValue};
 use crate::files::decimals::Decimals;
 use crate::files::document::Log;
 use crate::files::field::{Field, Joints};
+use crate::files::normal::Normal;
 use crate::files::quantity::Quantity;
 use crate::files::site::Site;
 use crate::files::suggest;
@@ -31,6 +32,11 @@ impl<'a> Table<'a> {
     /// What the numbers of the file that were read so far were read from.
     pub fn decimals(&self) -> Decimals {
         self.log.decimals()
+    }
+
+    /// What the table says, with the content of the files that it names: after it was read.
+    pub fn normal(&self) -> Normal {
+        Normal::table(self.entries, &self.path, &self.log.contents())
     }
 
     /// Notes every key that is not in `known`.

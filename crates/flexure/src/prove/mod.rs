@@ -10,5 +10,6 @@ pub mod paper;
 pub mod question;
 pub mod sampling;
 pub mod standing;
+pub mod subject;
 pub mod summary;
 pub mod verified;

@@ -19,6 +19,7 @@ use crate::prove::engine::verdict::{Undecided, Verdict};
 use crate::prove::engine::witness::{RateWitness, WitnessState, against};
 use crate::prove::paper::paper_rate;
 use crate::prove::sampling::{Sampled, sample};
+use crate::prove::subject::subject;
 use crate::prove::verified::certify;
 use crate::scenario::{self, Scenario};
 use crate::{laws, robot};
@@ -141,6 +142,7 @@ pub fn problem(
         question.disturbance.as_ref().map(|torques| torques.iter().map(|&d| Number::decimal(d)).collect());
     Ok(structural::Proposition {
         name: scenario.name.clone(),
+        subject: Some(subject(scenario)),
         assumptions,
         robot: robot(&scenario.robot),
         controller,

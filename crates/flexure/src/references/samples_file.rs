@@ -6,6 +6,7 @@ use crate::files::Problems;
 use crate::files::base::Base;
 use crate::files::document::Log;
 use crate::files::field::{Field, Joints};
+use crate::files::normal::Normal;
 use crate::files::quantity::{self, Quantity};
 use crate::files::source::Source;
 use crate::files::suggest;
@@ -38,6 +39,7 @@ pub(crate) fn read(
     let rows = parse(&log, joints);
     let rows = field.log.absorb(log.finish(rows))?;
     check_span(&field, &rows, end)?;
+    field.log.contain(&field.path, normal(&rows));
     Some(rows.into_iter().unzip())
 }
 
@@ -55,6 +57,12 @@ pub fn samples_from_text(
     let rows = parse(&log, &Joints { count: Some(joints), robot: "the robot".to_owned() });
     let (rows, _) = log.finish(rows)?;
     Ok(rows.into_iter().unzip())
+}
+
+/// The rows, each a list that begins with the time.
+fn normal(rows: &[Row]) -> Normal {
+    let row = |(t, q): &Row| std::iter::once(t).chain(q).copied().map(Normal::number).collect();
+    Normal::List(rows.iter().map(|entry| Normal::List(row(entry))).collect())
 }
 
 /// One sample: its time and the positions.

@@ -7,6 +7,7 @@ use flexure_core::scalar::Interval;
 use crate::files::base::Base;
 use crate::files::decimals::Decimals;
 use crate::files::document::{self, Form};
+use crate::files::normal::Normal;
 use crate::files::source::Source;
 use crate::files::table::Table;
 use crate::files::{Assumption, Outside, Places, Problem, Problems, provenance, quantity};
@@ -54,6 +55,8 @@ pub struct Robot {
     /// Line and column of each key of the file, for messages.
     pub places: Places,
     pub(crate) decimals: Decimals,
+    /// SHA-256 of what the files say, in hexadecimal.
+    pub(crate) digest: String,
 }
 
 impl Robot {
@@ -82,6 +85,9 @@ impl Robot {
 pub fn robot_from_text(name: &str, text: &str, folder: &Path) -> Result<Robot, Problems> {
     read(&Source::new(name, text), &Base::Folder(folder.to_owned(), Outside::Refused))
 }
+
+/// Acceleration of gravity where nothing is said [m/s²].
+const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 
 const FORM: Form = Form {
     what: "robot file",
@@ -114,7 +120,7 @@ fn robot(root: &Table<'_>, places: &Places, base: &Base) -> Option<Robot> {
     assumed.extend(of_the_links(&links, &drives, places));
     Some(Robot {
         name: name?.to_owned(),
-        gravity: gravity?.unwrap_or([0.0, 0.0, -9.81]),
+        gravity: gravity?.unwrap_or(GRAVITY),
         links: links.links,
         enclosed: links.enclosed,
         joints: links.joints,
@@ -128,7 +134,14 @@ fn robot(root: &Table<'_>, places: &Places, base: &Base) -> Option<Robot> {
         warnings: Vec::new(),
         places: places.clone(),
         decimals: root.decimals(),
+        digest: normal(root).digest(),
     })
+}
+
+/// What a robot file says of the robot: names and free texts are left out, and what is said anyway.
+fn normal(root: &Table<'_>) -> Normal {
+    let gravity = Normal::List(GRAVITY.map(Normal::number).to_vec());
+    root.normal().without(&["name", "sources"]).without_default("gravity", &gravity)
 }
 
 /// What is assumed of the damping in a URDF.

@@ -9,6 +9,7 @@ use crate::files::base::Base;
 use crate::files::decimals::Decimals;
 use crate::files::document::{self, Form};
 use crate::files::field::Field;
+use crate::files::normal::Normal;
 use crate::files::source::Source;
 use crate::files::table::Table;
 use crate::files::{Assumption, Outside, Places, Problem, Problems, provenance, quantity};
@@ -85,6 +86,8 @@ pub struct Scenario {
     /// Line and column of each key of the file, for messages.
     pub places: Places,
     decimals: Decimals,
+    /// SHA-256 of what the file says, without its robot, in hexadecimal.
+    pub(crate) digest: String,
 }
 
 impl Scenario {
@@ -258,7 +261,16 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> 
         assumptions: assumed,
         places: places.clone(),
         decimals: root.decimals(),
+        digest: normal(root).digest(),
     })
+}
+
+/// What a scenario file says of the loop: the robot is told apart, free texts are left out, and what is said anyway.
+fn normal(root: &Table<'_>) -> Normal {
+    let normal = root.normal().without(&["robot", "sources"]);
+    normal
+        .without_default("hold", &Normal::Text("zero-order".to_owned()))
+        .without_default("seed", &Normal::number(0.0))
 }
 
 fn stem(file: &str) -> String {

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use crate::verify::document::{Block, Case, Certificate};
+use crate::verify::document::{Block, Case, Certificate, Version};
 use crate::verify::json::clipped;
 use crate::verify::number::Number;
+use crate::verify::robot::positive;
 use crate::verify::shaping::{RATES, Rate};
 use crate::verify::verdict::{Claim, Rejected, ensure};
 
@@ -72,7 +73,7 @@ pub(super) fn check(
 /// The margin is ≥ 0 and the smallest pivot at least that.
 pub(super) fn margin(claim: &str, margin: &Number, found: f64) -> Result<(), Rejected> {
     ensure(margin.is_nonnegative(), claim, || format!("the margin {margin} is not >= 0"))?;
-    ensure(found >= margin.value.hi(), claim, || {
+    ensure(found >= margin.claimed.hi(), claim, || {
         format!("the smallest pivot is claimed to be at least {margin}, found {found:e}")
     })
 }
@@ -81,6 +82,11 @@ pub(super) fn margin(claim: &str, margin: &Number, found: f64) -> Result<(), Rej
 pub(super) fn check_rates(certificate: &Certificate) -> Result<Vec<Claim>, Rejected> {
     if let Some(block) = certificate.blocks.iter().find(|block| !BLOCKS.contains(&block.name.as_str())) {
         return Err(Rejected::claim("blocks", format!("there is no block '{}'", clipped(&block.name))));
+    }
+    let cases = certificate.blocks.iter().flat_map(|block| &block.cases);
+    if certificate.version != Version::One {
+        let margins: Vec<_> = cases.flat_map(|case| [&case.contraction, &case.convergence]).collect();
+        positive("blocks.cases", margins)?;
     }
     let tops = [&certificate.contraction_rate, &certificate.convergence_rate];
     for ((name, rate), top) in RATES.into_iter().zip(tops) {

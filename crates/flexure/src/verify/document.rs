@@ -3,13 +3,17 @@
 use crate::verify::chain::{self, Forms};
 use crate::verify::field::Field;
 use crate::verify::json::Node;
-use crate::verify::number::Number;
+use crate::verify::number::{Number, Stronger};
 use crate::verify::robot::{self, Robot};
+use crate::verify::subject::{self, Subject};
 use crate::verify::verdict::Rejected;
 
 /// A certificate as its file says it.
 pub(super) struct Certificate {
+    pub version: Version,
     pub name: String,
+    pub made_by: String,
+    pub subject: Option<Subject>,
     pub assumptions: Vec<String>,
     pub robot: Robot,
     pub controller: Controller,
@@ -25,6 +29,47 @@ pub(super) struct Certificate {
     pub structure: Vec<Property>,
     pub tube: Option<Tube>,
 }
+
+/// Version of the format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Version {
+    One,
+    Two,
+}
+
+impl Version {
+    /// A number that is claimed. From version 2 on it is held to a rounded one.
+    fn claim(self, field: &Field<'_>, stronger: Stronger) -> Result<Number, Rejected> {
+        let number = field.number()?;
+        Ok(if self == Self::One { number } else { number.held_to(stronger) })
+    }
+
+    /// A margin, which is far from what was found: rounded in every version.
+    fn margin(field: &Field<'_>) -> Result<Number, Rejected> {
+        Ok(field.number()?.held_to(Stronger::Up(1)))
+    }
+
+    /// A number that was found as it is, up to rounding: the more the stronger.
+    fn up(self, field: &Field<'_>) -> Result<Number, Rejected> {
+        self.claim(field, Stronger::Up(DIGITS))
+    }
+
+    /// A rate, by which a pivot hangs that nearly vanishes.
+    fn rate(self, field: &Field<'_>) -> Result<Number, Rejected> {
+        self.claim(field, Stronger::Up(RATE_DIGITS))
+    }
+
+    /// A number that was found as it is, up to rounding: the less the stronger.
+    fn down(self, field: &Field<'_>) -> Result<Number, Rejected> {
+        self.claim(field, Stronger::Down(DIGITS))
+    }
+}
+
+/// Digits of claims that are compared with what a checker finds.
+const DIGITS: usize = 9;
+
+/// Digits of rates.
+const RATE_DIGITS: usize = 13;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
@@ -110,11 +155,14 @@ pub(super) struct Witness {
 
 pub(super) struct Tube {
     pub disturbance: Vec<Number>,
+    /// As a claim that so much is enough.
     pub level: Number,
+    /// The same as what errors follow from.
+    pub reached: Number,
     pub error: Vec<Number>,
 }
 
-const KEYS: [&str; 16] = [
+const KEYS: [&str; 17] = [
     "format",
     "version",
     "name",
@@ -131,6 +179,7 @@ const KEYS: [&str; 16] = [
     "measures",
     "structure",
     "tube",
+    "subject",
 ];
 
 /// Largest file, in bytes.
@@ -154,18 +203,22 @@ fn certificate(root: &Field<'_>) -> Result<Certificate, Rejected> {
     if root.get("format")?.is_none_or(|format| format.text() != Ok("flexure-certificate")) {
         return Err(root.bad("has no \"format\": \"flexure-certificate\""));
     }
-    let [_, version, name, made_by, assumptions, robot, controller, region, closed_loop, rest @ ..] =
-        root.object(KEYS)?;
+    let version = self::version(root)?;
+    let ([_, _, name, made_by, assumptions, robot, controller, region, closed_loop, rest @ ..], subject) =
+        match version {
+            Version::One => {
+                let [keys @ .., _] = KEYS;
+                (root.object(keys)?, None)
+            }
+            Version::Two => {
+                let [fields @ .., subject] = root.object(KEYS)?;
+                (fields, subject.unless_null())
+            }
+        };
     let [blocks, contraction_rate, convergence_rate, mass_matrix, measures, structure, tube] = rest;
-    let first = match version.index()? {
-        1 => true,
-        2 => false,
-        _ => return Err(version.bad("must be 1 or 2")),
-    };
-    made_by.text()?;
     let robot = robot::read(&robot)?;
     let n = robot.joints;
-    let (mass_margins, forms) = if first {
+    let (mass_margins, forms) = if version == Version::One {
         let [margins] = mass_matrix.object(["margins"])?;
         (margins, None)
     } else {
@@ -173,21 +226,34 @@ fn certificate(root: &Field<'_>) -> Result<Certificate, Rejected> {
         (margins, chain::read(forms, &robot.links)?)
     };
     Ok(Certificate {
+        version,
+        made_by: made_by.text()?.to_owned(),
+        subject: subject.map(|subject| subject::read(&subject)).transpose()?,
         name: name.text()?.to_owned(),
         assumptions: each(&assumptions, |text| Ok(text.text()?.to_owned()))?,
         controller: self::controller(&controller, n)?,
-        region: self::region(&region, n)?,
+        region: self::region(&region, n, version)?,
         closed_loop: self::closed_loop(&closed_loop)?,
-        blocks: each(&blocks, block)?,
+        blocks: each(&blocks, |entry| block(entry, version))?,
         contraction_rate: contraction_rate.number()?,
         convergence_rate: convergence_rate.number()?,
-        mass_margins: each(&mass_margins, Field::number)?,
+        mass_margins: each(&mass_margins, Version::margin)?,
         forms,
-        measures: each(&measures, measure)?,
-        structure: each(&structure, |entry| property(entry, n))?,
-        tube: tube.unless_null().map(|tube| self::tube(&tube, n)).transpose()?,
+        measures: each(&measures, |entry| measure(entry, version))?,
+        structure: each(&structure, |entry| property(entry, n, version))?,
+        tube: tube.unless_null().map(|tube| self::tube(&tube, n, version)).transpose()?,
         robot,
     })
+}
+
+/// Which keys there are.
+fn version(root: &Field<'_>) -> Result<Version, Rejected> {
+    let version = root.get("version")?.ok_or_else(|| root.bad("key 'version' is missing"))?;
+    match version.index()? {
+        1 => Ok(Version::One),
+        2 => Ok(Version::Two),
+        _ => Err(version.bad("must be 1 or 2")),
+    }
 }
 
 fn each<'a, T>(
@@ -224,11 +290,12 @@ fn gains(field: &Field<'_>, phi: Phi, n: usize) -> Result<Gains, Rejected> {
     })
 }
 
-fn region(field: &Field<'_>, n: usize) -> Result<Region, Rejected> {
+fn region(field: &Field<'_>, n: usize, version: Version) -> Result<Region, Rejected> {
     let [error, level] = field.object(["error", "level"])?;
     let bound = |field: Field<'_>| field.unless_null().map(|field| field.number()).transpose();
     let error = error.list_of(2 * n)?.into_iter().map(bound).collect::<Result<_, _>>()?;
-    Ok(Region { error, level: bound(level)? })
+    let level = level.unless_null().map(|level| version.up(&level)).transpose()?;
+    Ok(Region { error, level })
 }
 
 fn closed_loop(field: &Field<'_>) -> Result<ClosedLoop, Rejected> {
@@ -237,36 +304,36 @@ fn closed_loop(field: &Field<'_>) -> Result<ClosedLoop, Rejected> {
     Ok(ClosedLoop { rows: rows.array(|row| row.array(word))?, dissipation: dissipation.array(word)? })
 }
 
-fn block(field: &Field<'_>) -> Result<Block, Rejected> {
+fn block(field: &Field<'_>, version: Version) -> Result<Block, Rejected> {
     let [name, contraction, convergence, cases] =
         field.object(["block", "contraction", "convergence", "cases"])?;
     Ok(Block {
         name: name.text()?.to_owned(),
-        contraction: contraction.number()?,
-        convergence: convergence.number()?,
+        contraction: version.rate(&contraction)?,
+        convergence: version.rate(&convergence)?,
         cases: each(&cases, |case| {
             let [name, contraction, convergence] = case.object(["case", "contraction", "convergence"])?;
             Ok(Case {
                 name: name.text()?.to_owned(),
-                contraction: contraction.number()?,
-                convergence: convergence.number()?,
+                contraction: Version::margin(&contraction)?,
+                convergence: Version::margin(&convergence)?,
             })
         })?,
     })
 }
 
-fn measure(field: &Field<'_>) -> Result<Measure, Rejected> {
+fn measure(field: &Field<'_>, version: Version) -> Result<Measure, Rejected> {
     let [side, norm, bound] = field.object(["side", "norm", "bound"])?;
-    Ok(Measure { side: side.one_of(&SIDES)?, norm: norm.text()?.to_owned(), bound: bound.number()? })
+    Ok(Measure { side: side.one_of(&SIDES)?, norm: norm.text()?.to_owned(), bound: version.down(&bound)? })
 }
 
-fn property(field: &Field<'_>, n: usize) -> Result<Property, Rejected> {
+fn property(field: &Field<'_>, n: usize, version: Version) -> Result<Property, Rejected> {
     let [name, holds, witness] = field.object(["name", "holds", "witness"])?;
-    let witness = witness.unless_null().map(|witness| self::witness(&witness, n)).transpose()?;
+    let witness = witness.unless_null().map(|witness| self::witness(&witness, n, version)).transpose()?;
     Ok(Property { name: name.text()?.to_owned(), holds: holds.truth()?, witness })
 }
 
-fn witness(field: &Field<'_>, n: usize) -> Result<Witness, Rejected> {
+fn witness(field: &Field<'_>, n: usize, version: Version) -> Result<Witness, Rejected> {
     let [side, error, row, column, difference] =
         field.object(["side", "error", "row", "column", "difference"])?;
     let index = |field: &Field<'_>| match field.index()? {
@@ -278,11 +345,16 @@ fn witness(field: &Field<'_>, n: usize) -> Result<Witness, Rejected> {
         error: error.numbers(n)?,
         row: index(&row)?,
         column: index(&column)?,
-        difference: difference.number()?,
+        difference: version.claim(&difference, Stronger::Up(1))?,
     })
 }
 
-fn tube(field: &Field<'_>, n: usize) -> Result<Tube, Rejected> {
+fn tube(field: &Field<'_>, n: usize, version: Version) -> Result<Tube, Rejected> {
     let [disturbance, level, error] = field.object(["disturbance", "level", "error"])?;
-    Ok(Tube { disturbance: disturbance.numbers(n)?, level: level.number()?, error: error.numbers(2 * n)? })
+    Ok(Tube {
+        disturbance: disturbance.numbers(n)?,
+        reached: version.up(&level)?,
+        level: version.down(&level)?,
+        error: error.list_of(2 * n)?.iter().map(|error| version.down(error)).collect::<Result<_, _>>()?,
+    })
 }

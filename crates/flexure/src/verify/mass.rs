@@ -52,7 +52,7 @@ pub(super) fn check(certificate: &Certificate) -> Result<Vec<Claim>, Rejected> {
     for (i, (margin, found)) in margins.iter().zip(found).enumerate() {
         let claim = format!("mass_matrix.margins[{i}]");
         ensure(margin.is_positive(), claim.as_str(), || format!("the margin {margin} is not > 0"))?;
-        ensure(found >= margin.value.hi(), claim, || {
+        ensure(found >= margin.claimed.hi(), claim, || {
             format!("at least {margin} kg m^2 (kg for a prismatic joint) is claimed, found {found:e}")
         })?;
     }

@@ -36,7 +36,7 @@ fn bound(certificate: &Certificate, claim: &str, measure: &Measure) -> Result<()
         });
     }
     let found = largest_sum(&Law::of(certificate, measure.side), measure.norm == "1");
-    ensure(found <= measure.bound.value.lo(), claim, || {
+    ensure(found <= measure.bound.claimed.lo(), claim, || {
         format!("{} is claimed, found {found:e}", measure.bound)
     })
 }

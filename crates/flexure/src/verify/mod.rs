@@ -22,11 +22,13 @@ mod region;
 mod robot;
 mod shaping;
 mod structure;
+mod subject;
 mod tube;
 mod vector;
 mod verdict;
 mod words;
 
+pub use subject::quoted;
 pub use verdict::{CheckReport, Claim, Rejected};
 
 /// Checks every claim of a certificate.
@@ -61,6 +63,7 @@ pub fn verify(text: &str) -> Result<CheckReport, Rejected> {
         claims.extend(check(&certificate)?);
     }
     Ok(CheckReport {
+        about: subject::stated(&certificate),
         name: certificate.name,
         assumptions: certificate.assumptions,
         claims,

@@ -30,7 +30,7 @@ fn links(certificate: &Certificate) -> Result<Claim, Rejected> {
     let damping = damping(&robot.link_damping, &certificate.controller.gains(Side::Link).damping);
     // B − β M.
     let pivot = |mass: &dyn Fn(usize, usize) -> Interval, rate: Rate| {
-        let beta = block.rate(rate).value;
+        let beta = block.rate(rate).claimed;
         let entry = |i: usize, j: usize| {
             let inertia = beta * mass(i, j);
             if i == j { damping[i] - inertia } else { -inertia }
@@ -63,7 +63,7 @@ fn links(certificate: &Certificate) -> Result<Claim, Rejected> {
                 let names: Vec<_> = cases.keys().cloned().collect();
                 block::check(block, &names, |case, rate| {
                     let case = &cases[case];
-                    chain.matrix(case, damping[case.joint], block.rate(rate).value).smallest_pivot()
+                    chain.matrix(case, damping[case.joint], block.rate(rate).claimed).smallest_pivot()
                 })
             }
         },
@@ -76,7 +76,7 @@ fn motors(certificate: &Certificate) -> Result<Claim, Rejected> {
     let damping = damping(&robot.motor_damping, &certificate.controller.gains(Side::Motor).damping);
     equal_rates(block)?;
     block::check(block, &[String::new()], |_, rate| {
-        let entry = |(d, m): (&Interval, &Number)| (*d - block.rate(rate).value * m.value).lo();
+        let entry = |(d, m): (&Interval, &Number)| (*d - block.rate(rate).claimed * m.value).lo();
         damping.iter().zip(&robot.motor_inertia).map(entry).fold(f64::INFINITY, f64::min)
     })
 }

@@ -16,7 +16,7 @@ pub(super) fn check(certificate: &Certificate) -> Result<Vec<Claim>, Rejected> {
         let ends = [law.lower_ends(Rate::Contraction), law.lower_ends(Rate::Convergence)];
         let pivot = |case: &str, rate: Rate| {
             let lower = &ends[usize::from(rate == Rate::Convergence)];
-            inequality(&law, &vertex(case, lower), block.rate(rate).value).smallest_pivot()
+            inequality(&law, &vertex(case, lower), block.rate(rate).claimed).smallest_pivot()
         };
         claims.push(block::check(block, &cases(&law), pivot)?);
     }

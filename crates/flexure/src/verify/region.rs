@@ -23,7 +23,7 @@ pub(super) fn check(certificate: &Certificate) -> Result<Vec<Claim>, Rejected> {
     for (offset, side) in [(0, Side::Link), (certificate.robot.joints, Side::Motor)] {
         let law = Law::of(certificate, side);
         for (i, (bound, metric)) in law.error.iter().flatten().zip(law.metric).enumerate() {
-            let (needed, reached) = (twice(level), metric.value * bound.value.square());
+            let (needed, reached) = (twice(level.claimed), metric.value * bound.value.square());
             ensure(needed.hi() <= reached.lo(), "region.level", || {
                 format!(
                     "2 c = {:e} J is claimed to be at most metric times error[{}]^2, found {:e} J",
@@ -39,6 +39,6 @@ pub(super) fn check(certificate: &Certificate) -> Result<Vec<Claim>, Rejected> {
 }
 
 /// 2 c.
-pub(super) fn twice(level: &Number) -> Interval {
-    level.value * Interval::from_f64(2.0)
+pub(super) fn twice(level: Interval) -> Interval {
+    level * Interval::from_f64(2.0)
 }

@@ -6,6 +6,7 @@ use crate::verify::number::Number;
 use crate::verify::verdict::{Claim, Rejected, ensure};
 
 pub(super) struct Robot {
+    pub name: String,
     pub joints: usize,
     pub stiffness: Vec<Number>,
     pub motor_inertia: Vec<Number>,
@@ -51,7 +52,6 @@ pub(super) fn read(field: &Field<'_>) -> Result<Robot, Rejected> {
         "motor_damping",
         "links",
     ])?;
-    name.text()?;
     let n = joints.index()?;
     if !(1..=64).contains(&n) {
         return Err(joints.bad("must be 1 to 64"));
@@ -66,6 +66,7 @@ pub(super) fn read(field: &Field<'_>) -> Result<Robot, Rejected> {
         return Err(joints.bad(format!("must be {needed} for these links")));
     }
     Ok(Robot {
+        name: name.text()?.to_owned(),
         joints: n,
         stiffness: stiffness.numbers(n)?,
         motor_inertia: motor_inertia.numbers(n)?,

@@ -57,8 +57,7 @@ fn property(certificate: &Certificate, claim: &str, property: &Property) -> Resu
 fn witness(certificate: &Certificate, claim: &str, witness: &Witness, like: bool) -> Result<(), Rejected> {
     let law = Law::of(certificate, witness.side);
     for (i, (error, bound)) in witness.error.iter().zip(law.error).enumerate() {
-        let inside =
-            bound.as_ref().is_none_or(|bound| error.value.magnitude() <= bound.value.lo() || error.is(bound));
+        let inside = bound.as_ref().is_none_or(|bound| error.is_within(bound));
         ensure(inside, claim, || format!("error[{i}] of the witness, {error} rad, is outside the region"))?;
     }
     positive(claim, [&witness.difference])?;
@@ -71,7 +70,7 @@ fn witness(certificate: &Certificate, claim: &str, witness: &Witness, like: bool
         false => entry(i, j) / metric(j) - entry(j, i) / metric(i),
     };
     let found = off.lo().max(-off.hi());
-    ensure(found >= witness.difference.value.hi(), claim, || {
+    ensure(found >= witness.difference.claimed.hi(), claim, || {
         format!("a difference of at least {} is claimed, found {found:e}", witness.difference)
     })
 }

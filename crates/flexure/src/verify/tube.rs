@@ -16,7 +16,7 @@ pub(super) fn check(certificate: &Certificate) -> Result<Vec<Claim>, Rejected> {
     nonnegative("tube.level", [&tube.level])?;
     nonnegative("tube.error", &tube.error)?;
     let needed = least_level(certificate, tube)?;
-    ensure(needed <= tube.level.value.lo(), "tube.level", || {
+    ensure(needed <= tube.level.claimed.lo(), "tube.level", || {
         format!("{} J is claimed, found {needed:e} J", tube.level)
     })?;
     if let Some(region) = &certificate.region.level {
@@ -26,7 +26,7 @@ pub(super) fn check(certificate: &Certificate) -> Result<Vec<Claim>, Rejected> {
     }
     let metrics = SIDES.into_iter().flat_map(|(_, side)| Law::of(certificate, side).metric);
     for (i, (error, metric)) in tube.error.iter().zip(metrics).enumerate() {
-        let (needed, reached) = (twice(&tube.level), metric.value * error.value.square());
+        let (needed, reached) = (twice(tube.reached.claimed), metric.value * error.claimed.square());
         ensure(needed.hi() <= reached.lo(), format!("tube.error[{i}]"), || {
             format!("{error} rad is claimed, found {:e} rad", (needed / metric.value).sqrt().hi())
         })?;

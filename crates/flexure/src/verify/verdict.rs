@@ -24,6 +24,9 @@ impl Claim {
 pub struct CheckReport {
     /// The scenario it is about, as the file says.
     pub name: String,
+    /// What the file says that it is about: who made it, hashes of files, numbers of the robot, gains. Nothing of it is
+    /// checked here; the claims are claims about these numbers.
+    pub about: Vec<Claim>,
     /// What the file says was assumed. Not checked.
     pub assumptions: Vec<String>,
     /// Every claim, in the order of checking.

@@ -50,6 +50,7 @@ fn gains(metric: [f64; 2], damping: [f64; 2], kappa: Option<[f64; 2]>) -> Decima
 fn problem(phi: CertifiedPhi, region: RequestedRegion) -> Proposition {
     let kappa = (phi == CertifiedPhi::CoupledTanh).then_some([10.0, 8.0]);
     Proposition {
+        subject: None,
         name: "two-link".to_owned(),
         assumptions: Vec::new(),
         robot: arm(),

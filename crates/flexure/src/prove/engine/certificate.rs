@@ -21,6 +21,8 @@ pub struct Certificate {
     pub name: String,
     /// Program and version that wrote it.
     pub made_by: String,
+    /// What the files of the loop say, hashed; none of a loop that was not read from files.
+    pub subject: Option<Subject>,
     /// What no source vouches for, and options that were not given.
     pub assumptions: Vec<String>,
     /// The robot.
@@ -55,6 +57,16 @@ impl Certificate {
     pub fn text(&self) -> String {
         serde_json::to_string_pretty(self).expect("texts and lists") + "\n"
     }
+}
+
+/// SHA-256 of what the files of a loop say, in hexadecimal: `docs/certificate.md` has their normal form.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+pub struct Subject {
+    /// The robot file, with the URDF that it names.
+    pub robot: String,
+    /// The scenario file without its robot.
+    pub scenario: String,
 }
 
 /// A flexible-joint robot in decimals.

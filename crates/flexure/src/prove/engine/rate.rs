@@ -61,7 +61,7 @@ fn claim(beta: f64, inequalities: &[Inequality], reserve: f64) -> Option<Claimed
     let below = std::iter::successors(Some(reserve), |step| Some(4.0 * step))
         .take_while(|&step| step < 1e7 * reserve);
     std::iter::once(0.0).chain(below).find_map(|step| {
-        let rate = Number::decimal(beta * (1.0 - step));
+        let rate = Number::rate(beta * (1.0 - step));
         let margins: Vec<f64> = inequalities.iter().map(|one| one.margin(rate.bounds())).collect();
         margins.iter().all(|&margin| margin > 0.0).then_some(ClaimedRate { rate, margins })
     })

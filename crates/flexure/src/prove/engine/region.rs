@@ -25,11 +25,11 @@ pub fn region(request: &RequestedRegion, metric: &[Interval]) -> CertifiedRegion
             let level = level.fold(f64::INFINITY, f64::min);
             CertifiedRegion {
                 error: errors.iter().cloned().map(Some).collect(),
-                level: Some(rounded(level, f64::next_down)),
+                level: Some(Number::below(level)),
             }
         }
         RequestedRegion::Level(level) => {
-            let level = Number::decimal(*level);
+            let level = Number::above(*level);
             let error = metric.iter().map(|&metric| Some(error_of(&level, metric))).collect();
             CertifiedRegion { error, level: Some(level) }
         }
@@ -43,12 +43,7 @@ fn level_of(error: Interval, metric: Interval) -> f64 {
 
 /// √(2c/Π_i), from above.
 fn error_of(level: &Number, metric: Interval) -> Number {
-    rounded((level.bounds() * Interval::point(2.0) / metric).sqrt().hi(), f64::next_up)
-}
-
-/// The decimal of `x`, which may lie a step beside it, moved one step to the safe side first.
-fn rounded(x: f64, safe: impl Fn(f64) -> f64) -> Number {
-    Number::decimal(safe(safe(x)))
+    Number::above((level.bounds() * Interval::point(2.0) / metric).sqrt().hi())
 }
 
 /// ½ Σ Π_i e_i², from above: W of position errors alone.
@@ -87,7 +82,7 @@ pub fn tube(
     } else {
         delta_squared / (two * b.square())
     };
-    let level = rounded(level.hi(), f64::next_up);
+    let level = Number::above(level.hi());
     if let Some(largest) = &region.level
         && level.bounds().hi() > largest.bounds().lo()
     {

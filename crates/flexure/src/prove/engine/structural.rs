@@ -5,7 +5,7 @@ use flexure_core::scalar::Interval;
 
 use crate::prove::engine::certificate::{
     Block, BlockName, Case, Certificate, ClosedLoopWords, DecimalLaw, DecimalRobot, LoopSide, MassMatrix,
-    Measure, Norm, VERSION, bounds,
+    Measure, Norm, Subject, VERSION, bounds,
 };
 use crate::prove::engine::coupling::{DISSIPATION, ROWS, coupling_cancels};
 use crate::prove::engine::momentum::{self, MomentumBlock};
@@ -26,6 +26,8 @@ const MOST_CASES: usize = 1024;
 pub struct Proposition {
     /// Name of the scenario.
     pub name: String,
+    /// What the files of the loop say, hashed; none of a loop that was not read from files.
+    pub subject: Option<Subject>,
     /// What no source vouches for.
     pub assumptions: Vec<String>,
     /// The robot.
@@ -120,6 +122,7 @@ fn attempt(problem: &Proposition, reserve: Reserve) -> Result<Certificate, Failu
         version: VERSION,
         name: problem.name.clone(),
         made_by: format!("flexure {}", env!("CARGO_PKG_VERSION")),
+        subject: problem.subject.clone(),
         assumptions: problem.assumptions.clone(),
         robot: robot.clone(),
         controller: controller.clone(),
@@ -150,7 +153,7 @@ fn mass_matrix(
             k + 1
         )));
     }
-    let margins = pivots.iter().map(|&pivot| Number::decimal(reserve.claimed() * pivot)).collect();
+    let margins = pivots.iter().map(|&pivot| Number::margin(reserve.claimed() * pivot)).collect();
     Ok(MassMatrix { margins, forms })
 }
 
@@ -158,7 +161,7 @@ fn measures(sides: &[&Position; 2], blocks: &[Block], reserve: Reserve) -> Vec<M
     let entries = [LoopSide::Link, LoopSide::Motor].into_iter().zip(sides).zip(blocks);
     entries
         .flat_map(|((side, position), block)| {
-            let up = |x: f64| Number::decimal(x + reserve.relative() * x.abs());
+            let up = |x: f64| Number::above(x + reserve.relative() * x.abs());
             let negative = |rate: &Number| match rate {
                 Number::Decimal(text) | Number::Between([text, _]) => Number::Decimal(format!("-{text}")),
             };
@@ -175,7 +178,7 @@ fn measures(sides: &[&Position; 2], blocks: &[Block], reserve: Reserve) -> Vec<M
 fn momentum_block(block: BlockName, from: &MomentumBlock, reserve: Reserve) -> Result<Block, Failure> {
     let claim = largest(&from.inequalities, from.unclaimed)
         .ok_or_else(|| Failure::Reason(format!("no positive rate of {} could be shown", block.name())))?;
-    let margins = claim.margins.iter().map(|&margin| Number::decimal(reserve.claimed() * margin));
+    let margins = claim.margins.iter().map(|&margin| Number::margin(reserve.claimed() * margin));
     let cases = from.cases.iter().zip(margins).map(|(case, margin)| Case {
         case: case.clone(),
         contraction: margin.clone(),
@@ -220,8 +223,8 @@ fn position_block(block: BlockName, position: &Position, reserve: Reserve) -> Re
     let margins = contraction.margins.iter().zip(&convergence.margins);
     let cases = cases.iter().zip(margins).map(|(case, (&contraction, &convergence))| Case {
         case: case.iter().map(|&high| if high { 'H' } else { 'L' }).collect(),
-        contraction: Number::decimal(reserve.claimed() * contraction),
-        convergence: Number::decimal(reserve.claimed() * convergence),
+        contraction: Number::margin(reserve.claimed() * contraction),
+        convergence: Number::margin(reserve.claimed() * convergence),
     });
     Ok(Block { block, cases: cases.collect(), contraction: contraction.rate, convergence: convergence.rate })
 }

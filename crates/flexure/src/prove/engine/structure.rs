@@ -86,7 +86,7 @@ fn search(
                         error: error.iter().map(|&e| Number::decimal(e)).collect(),
                         row,
                         column,
-                        difference: Number::decimal(0.5 * least),
+                        difference: Number::margin(0.5 * least),
                     };
                     found = Some((least, witness));
                 }

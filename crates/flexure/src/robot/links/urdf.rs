@@ -24,6 +24,7 @@ pub(crate) fn read(table: &Table<'_>, base: &Base) -> Option<Assembled> {
         let sound: Vec<_> = locked.iter().map(|(name, q, field)| urdf.can_hold(name, *q, field)).collect();
         sound.into_iter().collect::<Option<()>>()?;
         file.log.note(log.decimals());
+        file.log.contain(&file.path, urdf.normal.clone());
         urdf.assemble(
             &locked.iter().map(|(name, q, _)| (*name, *q)).collect::<Locks<'_>>(),
             file.log.decimals(),

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use crate::files::decimals::Decimals;
 use crate::files::document::Log;
+use crate::files::normal::Normal;
 use crate::files::site::Site;
 use crate::files::suggest;
 use crate::robot::links::assembly::{self, Motion, assemble};
@@ -27,6 +28,8 @@ pub(crate) struct Urdf<'a> {
     pub name: Option<&'a str>,
     /// Depth first, in the order of the file: parents before children.
     pub joints: Vec<Joint<'a>>,
+    /// What the file says.
+    pub normal: Normal,
 }
 
 /// Joints that are held still, and where [rad or m].
@@ -44,7 +47,13 @@ pub(crate) fn read<'a>(root: &'a Element<'a>, log: &'a Log) -> Option<Urdf<'a>> 
     let name = if node.has("name") { Some(node.text("name", "")?.0) } else { None };
     let parts = parts(root, log)?;
     let joints = ordered(parts, &node.site)?;
-    Some(Urdf { site: node.site, name, joints })
+    Some(Urdf { site: node.site, name, joints, normal: normal(root) })
+}
+
+/// The links and joints in the order of the file. What the robot is called is left out.
+fn normal(root: &Element<'_>) -> Normal {
+    let parts = root.children.iter().filter(|child| matches!(child.name, "link" | "joint"));
+    Normal::List(parts.map(Element::normal).collect())
 }
 
 /// Every link and joint; all that is wrong with any of them is noted.

@@ -10,6 +10,7 @@ use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
 
 use crate::files::document::Log;
+use crate::files::normal::Normal;
 use crate::files::suggest;
 
 /// Elements nested deeper than this are no URDF.
@@ -35,6 +36,32 @@ pub(crate) struct Element<'a> {
     pub span: Range<usize>,
     pub attributes: Vec<Attribute<'a>>,
     pub children: Vec<Element<'a>>,
+}
+
+/// Attributes that name something: texts, whatever they look like.
+const NAMES: [&str; 4] = ["name", "link", "joint", "type"];
+
+impl Element<'_> {
+    /// What it says: its name, attributes and children. Attributes of numbers are lists of them.
+    pub fn normal(&self) -> Normal {
+        let attribute = |attribute: &Attribute<'_>| {
+            let numbers: Option<Vec<_>> = attribute
+                .value
+                .split_whitespace()
+                .map(|word| word.parse().ok().filter(|x: &f64| x.is_finite()).map(Normal::Number))
+                .collect();
+            let value = match numbers {
+                Some(numbers) if !NAMES.contains(&attribute.name) => Normal::List(numbers),
+                _ => Normal::Text(attribute.value.to_string()),
+            };
+            (attribute.name.to_owned(), value)
+        };
+        Normal::List(vec![
+            Normal::Text(self.name.to_owned()),
+            Normal::Table(self.attributes.iter().map(attribute).collect()),
+            Normal::List(self.children.iter().map(Self::normal).collect()),
+        ])
+    }
 }
 
 /// An attribute with its references resolved.

@@ -5,12 +5,14 @@
 //! claimed, and margins half of the pivots.
 
 mod accepted;
+mod agreement;
 mod lists;
 mod mangled;
 mod mutants;
 mod prover;
 pub mod python;
 mod signs;
+mod subject;
 mod values;
 
 use serde_json::Value;

@@ -12,7 +12,7 @@ use serde_json::Value;
 use super::python;
 
 /// A certificate of each scenario: errors up to 0.3 rad, and a disturbance of 0.1 mN m on every motor.
-fn certificates() -> Vec<(&'static str, Value)> {
+pub fn certificates() -> Vec<(&'static str, Value)> {
     SCENARIOS
         .iter()
         .map(|&(name, _)| {

@@ -43,7 +43,7 @@ fn interpreter() -> Option<PathBuf> {
 }
 
 /// Exit code and lines for these texts, a file each.
-fn checked(python: &Path, texts: &[&str]) -> (Option<i32>, Vec<String>) {
+fn checked(python: &Path, texts: &[impl AsRef<[u8]>]) -> (Option<i32>, Vec<String>) {
     let folder = tempfile::tempdir().unwrap();
     let files: Vec<_> = (0..texts.len()).map(|i| folder.path().join(format!("{i}.json"))).collect();
     for (file, text) in files.iter().zip(texts) {
@@ -70,9 +70,8 @@ fn code(line: &str) -> i32 {
 }
 
 /// What the second checker says of each text, as an exit code; none where it cannot be run.
-pub fn codes(texts: &[String]) -> Option<Vec<i32>> {
-    let texts: Vec<&str> = texts.iter().map(String::as_str).collect();
-    let (_, lines) = checked(INTERPRETER.as_deref()?, &texts);
+pub fn codes(texts: &[impl AsRef<[u8]>]) -> Option<Vec<i32>> {
+    let (_, lines) = checked(INTERPRETER.as_deref()?, texts);
     Some(lines.iter().map(|line| code(line)).collect())
 }
 
