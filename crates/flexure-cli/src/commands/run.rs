@@ -105,14 +105,18 @@ pub fn objections(experiment: &Experiment) -> Vec<Problem> {
     if let Some(problem) = diverged(experiment) {
         return vec![problem];
     }
-    let Experiment { scenario, run, .. } = experiment;
+    let Experiment { scenario, run, sampled, .. } = experiment;
     let hint = "what is accepted stands in [accept], or follows from the robot's limits and the reference; slower references \
                 and smooth starts take less";
     let problem = |reason: &Reason| {
         let message = format!("{}: the loop does not follow: {}", scenario.name, reason.words);
         scenario.places.problem("reference", "lost", message, hint)
     };
-    run.summary.following.reasons.iter().map(problem).collect()
+    let reasons = &run.summary.following.reasons;
+    // Why comes before what.
+    let unstable =
+        sampled.as_ref().filter(|_| !reasons.is_empty()).and_then(|sampled| sampled.problem(scenario));
+    unstable.into_iter().chain(reasons.iter().map(problem)).collect()
 }
 
 /// What to say of a loop that diverged.

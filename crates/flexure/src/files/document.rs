@@ -248,6 +248,11 @@ impl Places {
         &self.source.name
     }
 
+    /// Whether the file gives `key`, dotted.
+    pub(crate) fn has(&self, key: &str) -> bool {
+        self.spans.contains_key(key)
+    }
+
     /// A problem at `key` (dotted, like `reference.amplitude` or `links.joint[2].mass`), or at the start of the file if
     /// there is no such key. `code` is one word; `help` says what to do.
     pub fn problem(

@@ -7,6 +7,7 @@ use crate::laws::{Controller, drives};
 use crate::linalg::{Dense, Mode, dominant_mode, spectral_radius};
 use crate::sampled::exchange::fastest;
 use crate::sampled::{Probe, Spot};
+use crate::scenario::Scenario;
 
 /// What makes the loop stable that is not, one at a time: each was tried on the same linearisation, at every place.
 #[derive(Clone, Debug, Serialize)]
@@ -23,6 +24,8 @@ pub struct Advice {
     pub direction: Move,
     /// By which factor, for all joints: with that the loop is stable; none if no factor up to 2¹² makes it so.
     pub factor: Option<f64>,
+    /// A gain that the file leaves to this one, as it is: to be written down before that moves. `controller.motor.shaping = 30.0`.
+    pub keep: Option<String>,
     /// Spectral radius of the same law with its starting gains; below 1 these are a way out.
     pub starting_gains: f64,
     /// A control period in s with which the loop is stable as it is, the given one halved as often as needed; none if a 64th of it is not
@@ -82,12 +85,22 @@ pub(super) fn advice(probe: &Probe<'_>, worst: usize) -> Result<Option<Advice>, 
         key: format!("controller.{}", law.gains()[gain].0),
         direction,
         factor,
+        keep: left_to(scenario, gain),
         starting_gains: probe.worst(&start).0,
         period: period(probe, worst),
         exchange: fastest(law, joint, &drive)
             .filter(|exchange| exchange.speed * scenario.control_period > FAST)
             .map(|exchange| exchange.to_string()),
     }))
+}
+
+/// The shaping of v-CBC that the file leaves to the metric of the same side.
+fn left_to(scenario: &Scenario, gain: usize) -> Option<String> {
+    let gains = scenario.controller.gains();
+    let shaping = gains[gain].0.strip_suffix("metric")?.to_owned() + "shaping";
+    let (_, values) = gains.iter().find(|(key, _)| *key == shaping)?;
+    let key = format!("controller.{shaping}");
+    (!scenario.places.has(&key)).then(|| format!("{key} = {values:?}"))
 }
 
 /// The joint with the largest part in a mode.

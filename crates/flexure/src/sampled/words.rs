@@ -31,8 +31,11 @@ impl Sampled {
     /// What makes it stable, where it is not.
     pub fn help(&self) -> Option<String> {
         let (advice, gain) = (self.advice.as_ref()?, self.gain.as_ref()?);
-        let Advice { direction, factor, starting_gains, period, exchange, .. } = advice;
-        let mut ways = vec![match (direction, factor) {
+        let Advice { direction, factor, keep, starting_gains, period, exchange, .. } = advice;
+        let keep = keep
+            .as_ref()
+            .map_or(String::new(), |keep| format!(" (write {keep}, which the file leaves to the metric)"));
+        let first = match (direction, factor) {
             (Move::Raise, Some(factor)) => {
                 format!("raise {gain}: the loop is stable with {factor} times as much")
             }
@@ -41,7 +44,8 @@ impl Sampled {
             }
             (Move::Raise, None) => format!("raise {gain} first; alone it does not suffice"),
             (Move::Lower, None) => format!("lower {gain} first; alone it does not suffice"),
-        }];
+        };
+        let mut ways = vec![first + &keep];
         if *starting_gains < 1.0 {
             ways.push(format!(
                 "the starting gains of this law have a spectral radius of {}: `flexure compare SCENARIO --budget 1 --json` shows \
