@@ -14,10 +14,12 @@ fn read(text: &str) -> Scenario {
     scenario_from_text("test.toml", text, &root().join("scenarios")).unwrap()
 }
 
-/// A two-link arm with the starting gains of φ tanh, control periods of `period` in s and what `more` adds.
+/// A two-link arm with the starting gains of φ tanh, control periods of `period` in s, drives without limits and what
+/// `more` adds.
 fn two_link(period: f64, reference: &str, more: &str) -> Scenario {
     let mut scenario = read(&format!(
-        "robot = \"planar-2r\"\nduration = 1.2\ncontrol_period = {period}\n{more}\n[reference]\n{reference}\n\
+        "robot = \"planar-2r\"\nduration = 1.2\ncontrol_period = {period}\n{more}\n[plant]\ntorque_limits = false\n\
+         [reference]\n{reference}\n\
          [controller]\nkind = \"pd\"\nstiffness = 1.0\ndamping = 1.0"
     ));
     scenario.controller =
@@ -156,7 +158,7 @@ fn small_errors_do_what_the_radius_says() {
     let (mut shrunk, mut grew) = (0, 0);
     for law in ["vcbc:tanh", "pd", "feedback-linearization", "cascade"] {
         for milliseconds in [1, 5, 20, 40, 80, 160] {
-            let mut scenario = standing(f64::from(milliseconds) * 1e-3, "[plant]\ntorque_limits = false");
+            let mut scenario = standing(f64::from(milliseconds) * 1e-3, "");
             scenario.controller =
                 entrants(&[law.to_owned()]).unwrap()[0].controller(&scenario.robot).unwrap();
             let radius = probe(&scenario).unwrap().unwrap().spectral_radius;
