@@ -125,6 +125,15 @@ fn what_is_certified_is_verified_and_no_sample_is_slower() {
     assert!(figures.shares[0] > 0.95, "{}", figures.shares[0]);
 }
 
+/// Robots whose programmes need more than a hundred steps to a point of the central path, or are followed to where rounding
+/// hides what another step would lower.
+#[test]
+fn long_paths_are_followed_to_their_ends() {
+    let figures = examine([10042, 10189, 10284].into_iter(), 60);
+    assert_eq!(figures.proved, 3);
+    assert!(figures.shares.iter().all(|&share| share > 0.99), "{:?}", figures.shares);
+}
+
 /// `cargo test -p flexure --test suite two_thousand -- --ignored --nocapture`
 #[test]
 #[ignore = "half an hour: 2,000 robots, each certificate by both checkers"]

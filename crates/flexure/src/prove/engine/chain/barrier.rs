@@ -24,10 +24,13 @@ const GROWTH: f64 = 8.0;
 const GAP: f64 = 1e-7;
 
 /// Steps towards a point of the path, at most.
-const STEPS: usize = 60;
+const STEPS: usize = 200;
 
 /// A point of the path is found where another step would lower the barrier by less than half of this.
 const CENTRED: f64 = 1e-4;
+
+/// The same where rounding hides whether a step lowers the barrier.
+const NEARLY_CENTRED: f64 = 0.1;
 
 /// Shorter steps are rounding.
 const SHORTEST: f64 = 1e-9;
@@ -52,7 +55,7 @@ pub fn central_path(blocks: &[Block], start: Vec<f64>) -> Vec<Vec<f64>> {
     path
 }
 
-/// Moves `v` to where t v₀ − Σ log det F is least; false where rounding keeps it from getting there.
+/// Moves `v` to where t v₀ − Σ log det F is least; false where rounding keeps it from getting near.
 fn centre(blocks: &[Block], v: &mut Vec<f64>, t: f64) -> bool {
     for _ in 0..STEPS {
         let Some(Newton { direction, decrease }) = newton(blocks, v, t) else { return false };
@@ -68,7 +71,7 @@ fn centre(blocks: &[Block], v: &mut Vec<f64>, t: f64) -> bool {
                 _ => false,
             },
         );
-        let Some((_, there)) = found else { return false };
+        let Some((_, there)) = found else { return decrease < NEARLY_CENTRED };
         *v = there;
     }
     false
