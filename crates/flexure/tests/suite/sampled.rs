@@ -155,29 +155,35 @@ fn every_law() {
 /// A loop pushed aside by 0.1 mrad comes back where ρ < 1 and does not where ρ > 1, whatever law and period.
 #[test]
 fn small_errors_do_what_the_radius_says() {
+    const START: f64 = 1e-4; // rad
     let (mut shrunk, mut grew) = (0, 0);
-    for law in ["vcbc:tanh", "pd", "feedback-linearization", "cascade"] {
-        for milliseconds in [1, 5, 20, 40, 80, 160] {
+    for law in ["vcbc", "vcbc:tanh", "feedback-linearization", "cascade"] {
+        for milliseconds in [1, 3, 5, 10, 15, 60] {
             let mut scenario = standing(f64::from(milliseconds) * 1e-3, "");
             scenario.controller =
                 entrants(&[law.to_owned()]).unwrap()[0].controller(&scenario.robot).unwrap();
             let radius = probe(&scenario).unwrap().unwrap().spectral_radius;
-            scenario.initial.q_l[1] = 1e-4;
+            scenario.initial.q_l[1] = START;
             let mut held = scenario.open().unwrap();
             let mut seen = Observed::new(2);
-            // Within a thousand periods 0.99 makes 1e-4 of an error, and 1.01 more than 1e4 times it.
-            let bounded = (0..1000).all(|_| held.step().is_ok());
-            held.observe(&mut seen).unwrap();
-            let error = seen.motion.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+            let mut error = START;
+            // Within a thousand periods 0.99 makes 4e-5 of an error, 1.01 makes 2e4 of it.
+            for _ in 0..1000 {
+                if error > 100.0 * START || held.step().is_err() {
+                    break;
+                }
+                held.observe(&mut seen).unwrap();
+                error = seen.motion[..4].iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+            }
             match radius {
-                ..0.99 => assert!(bounded && error < 1e-5, "{law} at {milliseconds} ms: {radius}, {error}"),
-                1.01.. => assert!(!bounded || error > 1e-3, "{law} at {milliseconds} ms: {radius}, {error}"),
+                ..0.99 => assert!(error < 0.1 * START, "{law} at {milliseconds} ms: {radius}, {error}"),
+                1.01.. => assert!(error > 100.0 * START, "{law} at {milliseconds} ms: {radius}, {error}"),
                 _ => continue,
             }
             (shrunk, grew) = if radius < 1.0 { (shrunk + 1, grew) } else { (shrunk, grew + 1) };
         }
     }
-    assert!(shrunk >= 5 && grew >= 5, "{shrunk} and {grew}");
+    assert!(shrunk >= 4 && grew >= 4, "{shrunk} and {grew}");
 }
 
 /// What is proved of a law in continuous time says nothing of a slow computer: the paper's gains bear 1 ms, not 2 ms.

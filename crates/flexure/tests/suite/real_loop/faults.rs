@@ -117,7 +117,8 @@ impl Campaign {
         let (faults, outages) = self.faults(seed);
         let index = seed % SURROUNDINGS;
         let [worst_error, worst_torque] = peaks[usize::try_from(index).unwrap()];
-        let scenario = (self.scenario)(&format!("{}{faults}", self.surroundings(index)));
+        let faults = format!("{}{faults}", self.surroundings(index));
+        let scenario = (self.scenario)(&faults);
         let context = |t: f64| format!("at {t} s, seed {seed}: {faults}");
         let (mut stops, mut stopped, mut end, mut last) = (0, false, 0.0, 0.0);
         course(&scenario, |observed| {
