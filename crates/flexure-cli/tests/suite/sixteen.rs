@@ -115,7 +115,7 @@ fn sixteen_joints_are_shown_and_simulated() {
     place.run(&["check", "arms.toml"]).done();
     let summary = place.run(&["run", "arms.toml", "--json"]).done().json();
     assert!(summary["max_abs_e_l"].as_f64().unwrap() < 1e-5, "{summary}");
-    assert!(summary["rate_certified"].as_f64().unwrap() > 0.1, "{summary}");
+    assert_eq!(summary["rate_certified"], Value::Null, "torque limits act");
     has_joints(&place.read("out/arms.csv"), 16, 11);
     let picture = place.read("out/arms.svg");
     assert!(picture.contains("joint 16") && !picture.contains("joint 17"));

@@ -32,6 +32,10 @@ pub use advice::{Advice, Move};
 /// A radius is computed to about 1e-12; what grows by less than this in a period, no run shows.
 const ROUNDING: f64 = 1e-9;
 
+/// The start is a moment, and the robot need not be in balance there: what grows no faster than this in a period is over before it
+/// matters, and grows in continuous time, too.
+const PASSING: f64 = 1.01;
+
 /// Places along the reference that are looked at, the first at t = 0.
 const PLACES: u32 = 25;
 
@@ -189,9 +193,14 @@ impl<'a> Probe<'a> {
         around.cycle(&self.lifted.law(law, spot.time, &motion))
     }
 
-    /// The largest spectral radius with `law` and where it is; what is no number is larger than any.
+    /// The largest spectral radius with `law` that counts, and where it is; what is no number is larger than any.
     fn worst(&self, law: &Controller) -> (f64, usize) {
-        let radii = self.spots.iter().map(|spot| self.radius(spot, law)).zip(0..);
-        radii.max_by(|(x, _), (y, _)| x.abs().total_cmp(&y.abs())).expect("there are spots")
+        let radii = self.spots.iter().map(|spot| (spot.place, self.radius(spot, law))).zip(0..);
+        let passing = |place, radius| place == Place::Start && (1.0..PASSING).contains(&radius);
+        radii
+            .filter(|((place, radius), _)| !passing(*place, *radius))
+            .map(|((_, radius), i)| (radius, i))
+            .max_by(|(x, _), (y, _)| x.abs().total_cmp(&y.abs()))
+            .expect("the reference has places")
     }
 }

@@ -13,7 +13,8 @@ impl Sampled {
             Place::Start => "at the start".to_owned(),
             Place::Reference => format!("on the reference at t = {} s", short(self.time, 4)),
         };
-        let radius = short(self.spectral_radius, 4);
+        let digits = if (self.spectral_radius - 1.0).abs() < 0.01 { 7 } else { 4 };
+        let radius = short(self.spectral_radius, digits);
         match (self.stable, &self.joint) {
             (true, _) => {
                 format!(
