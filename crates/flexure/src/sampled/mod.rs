@@ -39,6 +39,13 @@ const PASSING: f64 = 1.01;
 /// Places along the reference that are looked at, the first at t = 0.
 const PLACES: u32 = 25;
 
+/// Places of a loop with many torques on their way: its matrices are large.
+const FEW_PLACES: u32 = 7;
+
+/// Torques on their way, of all joints, that are many, and that are too many to look at.
+const MANY: usize = 24;
+const TOO_MANY: usize = 64;
+
 /// What small errors do in a sampled loop, where that is worst.
 #[derive(Clone, Debug, Serialize)]
 pub struct Sampled {
@@ -71,15 +78,13 @@ pub enum Place {
     Reference,
 }
 
-/// Looks at the sampled loop of `scenario`; none if its law acts in continuous time.
+/// Looks at the sampled loop of `scenario`; none if its law acts in continuous time, or more than 64 torques of its joints together are
+/// on their way at a time.
 ///
 /// # Errors
 /// As [`Scenario::open`].
 pub fn probe(scenario: &Scenario) -> Result<Option<Sampled>, Problems> {
-    if scenario.hold == Hold::Continuous {
-        return Ok(None);
-    }
-    let probe = Probe::new(scenario)?;
+    let Some(probe) = Probe::new(scenario)? else { return Ok(None) };
     let (radius, worst) = probe.worst(&scenario.controller);
     let stable = radius < 1.0 + ROUNDING;
     let advice = if stable { None } else { advice::advice(&probe, worst)? };
@@ -95,15 +100,12 @@ pub fn probe(scenario: &Scenario) -> Result<Option<Sampled>, Problems> {
     }))
 }
 
-/// The spectral radius at every place that [`probe`] looks at: time in s, place and radius; nothing for laws in continuous time.
+/// The spectral radius at every place that [`probe`] looks at: time in s, place and radius; nothing where it does not look.
 ///
 /// # Errors
 /// As [`Scenario::open`].
 pub fn radii(scenario: &Scenario) -> Result<Vec<(f64, Place, f64)>, Problems> {
-    if scenario.hold == Hold::Continuous {
-        return Ok(Vec::new());
-    }
-    let probe = Probe::new(scenario)?;
+    let Some(probe) = Probe::new(scenario)? else { return Ok(Vec::new()) };
     let law = &scenario.controller;
     Ok(probe.spots.iter().map(|spot| (spot.time, spot.place, probe.radius(spot, law))).collect())
 }
@@ -125,19 +127,25 @@ struct Spot {
 }
 
 impl<'a> Probe<'a> {
-    fn new(scenario: &'a Scenario) -> Result<Self, Problems> {
-        let (lifted, arm) = (lifted(scenario)?, scenario.robot.arm()?);
+    /// None where there is nothing to look at, or too much.
+    fn new(scenario: &'a Scenario) -> Result<Option<Self>, Problems> {
         let devices = Devices::of(scenario);
+        let waiting = devices.waiting.saturating_mul(scenario.robot.joint_count());
+        if scenario.hold == Hold::Continuous || waiting > TOO_MANY {
+            return Ok(None);
+        }
+        let places = if waiting > MANY { FEW_PLACES } else { PLACES };
+        let (lifted, arm) = (lifted(scenario)?, scenario.robot.arm()?);
         let mut probe = Self { scenario, lifted, arm, devices, spots: Vec::new() };
         let period = scenario.control_period;
-        let on_reference = (0..PLACES).map(|i| f64::from(i) / f64::from(PLACES - 1) * scenario.duration);
+        let on_reference = (0..places).map(|i| f64::from(i) / f64::from(places - 1) * scenario.duration);
         let spots: Vec<_> = [(0.0, Place::Start)]
             .into_iter()
             .chain(on_reference.map(|time| (time, Place::Reference)))
             .map(|(time, place)| Spot { time, place, around: probe.around(time, place, period) })
             .collect();
         probe.spots = spots;
-        Ok(probe)
+        Ok(Some(probe))
     }
 
     /// The loop at a time and place, with control periods of `period` in s.
