@@ -6,6 +6,7 @@ use flexure::report::{joint_table, usage_table};
 use flexure::robot::{JointRow, overview, supported};
 use flexure::sampled::{Sampled, probe};
 use flexure::scenario::{self, Checked, Scenario};
+use flexure::simulate::preload;
 use serde::Serialize;
 
 use super::print;
@@ -170,13 +171,15 @@ fn content(file: &str, outside: Outside) -> Result<Found, Problems> {
             supported(&scenario.robot)?;
             let reference = along(&scenario)?;
             let sampled = probe(&scenario)?;
-            let mut exceeded = feasible::exceeded(&scenario, &reference.usage);
-            exceeded.extend(sampled.as_ref().and_then(|sampled| sampled.problem(&scenario)));
+            let unstable = sampled.as_ref().and_then(|sampled| sampled.problem(&scenario));
+            let beyond = feasible::exceeded(&scenario, &reference.usage);
+            let exceeded = unstable.into_iter().chain(beyond).collect();
+            let warnings = scenario.warnings.iter().cloned().chain(preload(&scenario)?).collect();
             let assumed = assumed(&scenario.assumptions);
             let (joints, assumptions, name) = (scenario.robot.joint_count(), assumed.len(), scenario.name);
             let (kind, robot, reference) = ("scenario", None, Some(reference));
             let content = Content { kind, name, joints, assumptions, assumed, robot, reference, sampled };
-            Ok(Found { content, warnings: scenario.warnings, exceeded })
+            Ok(Found { content, warnings, exceeded })
         }
     }
 }

@@ -82,7 +82,8 @@ pub fn run(scenario: &str, outside: Outside, out: &Path, json: bool) -> Result<(
 
 /// What the table does not say of a real loop.
 fn summary_line(summary: &Summary) -> Option<String> {
-    let real = !summary.imperfections.is_empty() || summary.stops > 0 || summary.suspended_fraction > 0.0;
+    let real = summary.rms_e_l.is_finite()
+        && (!summary.imperfections.is_empty() || summary.stops > 0 || summary.suspended_fraction > 0.0);
     real.then(|| {
         format!(
             "rms |e_l| {:.3} mrad; no certificate could hold for {:.2} % of the run; safe stops: {}",

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::files::Problems;
 use crate::laws::{Controller, drives};
-use crate::linalg::{Dense, Mode, dominant_mode, spectral_radius};
+use crate::linalg::{Dense, Mode, dominant_mode};
 use crate::sampled::exchange::fastest;
 use crate::sampled::{Probe, Spot};
 use crate::scenario::Scenario;
@@ -87,7 +87,7 @@ pub(super) fn advice(probe: &Probe<'_>, worst: usize) -> Result<Option<Advice>, 
         factor,
         keep: left_to(scenario, gain),
         starting_gains: probe.worst(&start).0,
-        period: period(probe, worst),
+        period: period(scenario)?,
         exchange: fastest(law, joint, &drive)
             .filter(|exchange| exchange.speed * scenario.control_period > FAST)
             .map(|exchange| exchange.to_string()),
@@ -133,14 +133,16 @@ fn factor(probe: &Probe<'_>, spot: &Spot, gain: usize, direction: Move) -> Optio
     })
 }
 
-/// The longest control period, halved again and again, with which the loop is stable as it is.
-fn period(probe: &Probe<'_>, worst: usize) -> Option<f64> {
-    let law = &probe.scenario.controller;
-    (1..=HALVINGS).map(|k| probe.scenario.control_period * 2.0_f64.powi(-k)).find(|&period| {
-        let stable = |spot: &Spot| {
-            let around = probe.around(spot.time, spot.place, period);
-            spectral_radius(&probe.cycle(spot, law, &around)) < 1.0
-        };
-        stable(&probe.spots[worst]) && probe.spots.iter().all(stable)
-    })
+/// The longest control period, halved again and again, with which the loop is stable as it is: with filters and delays as they are
+/// then.
+fn period(scenario: &Scenario) -> Result<Option<f64>, Problems> {
+    let mut shorter = scenario.clone();
+    for _ in 0..HALVINGS {
+        shorter.control_period *= 0.5;
+        let Some(probe) = Probe::new(&shorter)? else { return Ok(None) };
+        if probe.worst(&scenario.controller).0 < 1.0 {
+            return Ok(Some(shorter.control_period));
+        }
+    }
+    Ok(None)
 }

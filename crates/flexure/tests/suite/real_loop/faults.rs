@@ -64,6 +64,8 @@ struct Campaign {
     allowance: f64,
     /// How many combinations, unless asked for others.
     count: u64,
+    /// How many of a hundred may stay stopped: a guard rather stays than takes over from what it cannot believe.
+    stay: u64,
     /// A loop with these imperfections, this guard and this seed.
     scenario: fn(&str) -> Scenario,
 }
@@ -112,8 +114,8 @@ impl Campaign {
 
     /// Torque that leaves the controller is finite and inside the limits; a dead sensor stops the robot at the first control instant
     /// at which nobody may bridge it; whenever the law has the robot again, errors are at most three times those without faults
-    /// and the allowance, and torques at most three times; and when all is over, the law has it. Where sensors lie, the first holds.
-    fn survives(&self, seed: u64, peaks: &[[f64; 2]]) {
+    /// and the allowance, and torques at most three times; whether the law has it when all is over. Where sensors lie, the first holds.
+    fn survives(&self, seed: u64, peaks: &[[f64; 2]]) -> bool {
         let (faults, outages) = self.faults(seed);
         let index = seed % SURROUNDINGS;
         let [worst_error, worst_torque] = peaks[usize::try_from(index).unwrap()];
@@ -147,20 +149,24 @@ impl Campaign {
             stops += u32::from(observed.stopped && !stopped);
             (stopped, end, last) = (observed.stopped, t, error(observed));
         });
-        if self.lies {
-            return;
+        assert!(end > self.clear + 0.9, "no end {}", context(end));
+        if self.lies || stopped {
+            return !stopped;
         }
-        assert!(end > self.clear + 0.9 && !stopped, "still stopped {}", context(end));
         assert!(last < 0.01, "{last} rad at the end {}", context(end));
         let silent = |outage: &Outage| outage.is_dead && outage.lasts(self.max_age);
         assert!(stops > 0 || !outages.iter().any(silent), "no stop {}", context(end));
         assert!(stops == 0 || !outages.is_empty(), "stopped by nothing {}", context(end));
+        true
     }
 
     fn run(&self) {
         let asked = std::env::var("FLEXURE_FAULTS").ok().map(|count| count.parse().expect("a number"));
         let peaks: Vec<_> = (0..SURROUNDINGS).into_par_iter().map(|index| self.peaks(index)).collect();
-        (0..asked.unwrap_or(self.count)).into_par_iter().for_each(|seed| self.survives(seed, &peaks));
+        let count = asked.unwrap_or(self.count);
+        let resumed = (0..count).into_par_iter().filter(|seed| self.survives(*seed, &peaks)).count() as u64;
+        println!("{resumed} of {count} went on");
+        assert!(self.lies || 100 * (count - resumed) <= self.stay * count, "{resumed} of {count} went on");
     }
 }
 
@@ -314,6 +320,7 @@ fn a_thousand_combinations_of_faults() {
         lies: false,
         allowance: f64::INFINITY, // gains of 3 1/s, pushed while the law takes over: small at the end only
         count: 1000,
+        stay: 0,
         scenario: plausible,
     };
     campaign.run();
@@ -327,6 +334,7 @@ const PAPER: Campaign = Campaign {
     lies: false,
     allowance: 0.01,
     count: 60,
+    stay: 2,
     scenario: paper,
 };
 
