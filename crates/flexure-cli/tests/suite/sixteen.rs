@@ -215,7 +215,7 @@ fn any_number_of_joints_fits() {
             "moves.toml",
             format!(
                 "robot = 'part.toml'\nduration = 0.02\ncontrol_period = 0.001\n[reference]\nkind = 'sine'\n\
-                 amplitude = {}\nfrequency = {}\n[controller]\nkind = 'vcbc'\nphi = 'tanh'\n{}{}[accept]\nerror = 0.01\n",
+                 amplitude = {}\nfrequency = {}\n[controller]\nkind = 'vcbc'\nphi = 'tanh'\n{}{}[accept]\nerror = 0.01\nat_limit = 1.0\n",
                 list(0.01),
                 list(1.0),
                 side("link", 0.01),
