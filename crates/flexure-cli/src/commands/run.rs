@@ -3,12 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use flexure::feasible;
+use flexure::files::number::short;
 use flexure::files::{Outside, Problem, prepare};
+use flexure::imperfections::Imperfection;
 use flexure::report::summary_table;
 use flexure::reproduce::{Experiment, write_experiment};
 use flexure::sampled::Sampled;
 use flexure::scenario::load_scenario_with;
-use flexure::simulate::{Cause, FaultLog, Following, Reason, Summary, exceeded, preload};
+use flexure::simulate::{Cause, FaultLog, Following, Summary, exceeded, preload};
 use serde::Serialize;
 
 use super::print;
@@ -101,23 +103,55 @@ fn verdict(following: &Following) -> String {
     format!("follows its reference: {answer}; accepted are{}", accepted.collect::<String>())
 }
 
-/// What to say of a loop that does not follow its reference.
+/// What to say of a loop that diverged, that is not stable as it is sampled, or that does not follow its reference.
 pub fn objections(experiment: &Experiment) -> Vec<Problem> {
     if let Some(problem) = diverged(experiment) {
         return vec![problem];
     }
-    let Experiment { scenario, run, sampled, .. } = experiment;
-    let hint = "what is accepted stands in [accept], or follows from the robot's limits and the reference; slower references \
-                and smooth starts take less";
-    let problem = |reason: &Reason| {
-        let message = format!("{}: the loop does not follow: {}", scenario.name, reason.words);
-        scenario.places.problem("reference", "lost", message, hint)
-    };
-    let reasons = &run.summary.following.reasons;
+    let Experiment { scenario, sampled, .. } = experiment;
     // Why comes before what.
-    let unstable =
-        sampled.as_ref().filter(|_| !reasons.is_empty()).and_then(|sampled| sampled.problem(scenario));
-    unstable.into_iter().chain(reasons.iter().map(problem)).collect()
+    let unstable = sampled.as_ref().and_then(|sampled| sampled.problem(scenario));
+    unstable.into_iter().chain(lost(experiment)).collect()
+}
+
+/// Reasons that are told; the others are in the JSON.
+const TOLD: usize = 4;
+
+/// What to say of a loop that does not follow its reference.
+fn lost(experiment: &Experiment) -> Option<Problem> {
+    let Experiment { scenario, run, .. } = experiment;
+    let reasons = &run.summary.following.reasons;
+    let told: Vec<_> = reasons.iter().take(TOLD).map(|reason| reason.words.as_str()).collect();
+    let more = match reasons.len().saturating_sub(TOLD) {
+        0 => String::new(),
+        more => format!(";\nand {more} more: `flexure run --json` has all of them"),
+    };
+    let message = format!("{}: the loop does not follow: {}{more}", scenario.name, told.join(";\n"));
+    (!told.is_empty()).then(|| scenario.places.problem("reference", "lost", message, of_lost(experiment)))
+}
+
+/// What a loop may be lost by.
+fn of_lost(Experiment { scenario, run, .. }: &Experiment) -> String {
+    let lies = |imperfection: &Imperfection| ["dropout", "freeze", "jump"].contains(&imperfection.kind());
+    if let Some(first) = run.faults.as_ref().and_then(|faults| faults.stops.first()) {
+        let joint = first.joint.and_then(|joint| scenario.robot.joints.get(joint as usize));
+        let at = match (first.side, joint) {
+            (Some(side), Some(joint)) => format!(", {side} side of joint {}", joint.name),
+            _ => String::new(),
+        };
+        return format!(
+            "the guard stopped the robot at t = {} s: {}{at}; the columns `phase` and `fault` of the trace and `faults` of \
+             `flexure run --json` tell the rest",
+            short(first.time, 4),
+            first.cause
+        );
+    }
+    if scenario.guard.is_none() && scenario.imperfections.iter().any(lies) {
+        return "readings fail in this loop and nothing looks at them: add [guard]".to_owned();
+    }
+    "what is accepted stands in [accept], or follows from the robot's limits and the reference; slower references and smooth starts \
+     take less"
+        .to_owned()
 }
 
 /// What to say of a loop that diverged.

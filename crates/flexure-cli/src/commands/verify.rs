@@ -1,10 +1,8 @@
 //! `flexure verify`: do a certificate's claims hold, and is it about this scenario?
 
-use std::fs::File;
-use std::io::{self, Read};
 use std::path::Path;
 
-use flexure::files::Outside;
+use flexure::files::{Outside, read_text};
 use flexure::prove::subject::{Difference, differences};
 use flexure::scenario::load_scenario_with;
 use flexure::verify::{self, CheckReport, Claim, Rejected, quoted};
@@ -13,8 +11,8 @@ use serde::Serialize;
 use super::print;
 use crate::failure::{Failure, Place};
 
-/// One byte more than a certificate may have: enough to see that it has too many.
-const ENOUGH: u64 = (4 << 20) + 1;
+/// Bytes that a certificate may have.
+const LARGEST: u64 = 4 << 20;
 
 /// Characters of a text of the file beyond these are not shown.
 const MOST_SHOWN: usize = 1000;
@@ -48,13 +46,7 @@ struct Against {
 }
 
 pub fn verify(file: &Path, against: Option<&str>, outside: Outside, json: bool) -> Result<(), Failure> {
-    let text = read(file).map_err(|error| {
-        Failure::input(
-            "verify",
-            format!("cannot read {}: {error}", named(file)),
-            "the file must be a certificate as docs/certificate.md has it",
-        )
-    })?;
+    let text = read_text(file, LARGEST)?;
     match verify::verify(&text) {
         Ok(report) => {
             let against = against.map(|scenario| compared(&text, scenario, outside)).transpose()?;
@@ -65,13 +57,6 @@ pub fn verify(file: &Path, against: Option<&str>, outside: Outside, json: bool) 
             Err(malformed(file, &place, &reason, line, column))
         }
     }
-}
-
-/// The text, or its start if it is too long.
-fn read(file: &Path) -> io::Result<String> {
-    let mut bytes = Vec::new();
-    File::open(file)?.take(ENOUGH).read_to_end(&mut bytes)?;
-    String::from_utf8(bytes).map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error.utf8_error()))
 }
 
 fn compared(certificate: &str, scenario: &str, outside: Outside) -> Result<Against, Failure> {

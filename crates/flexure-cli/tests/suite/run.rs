@@ -128,7 +128,7 @@ fn what_is_accepted_is_checked() {
     let place = Place::new();
     for (line, fragments) in [
         ("error = -0.1", ["accept.error", "must be > 0"]),
-        ("settling = 20.0", ["accept.settling is 20 s", "must be <= duration, 10 s"]),
+        ("settling = 20.0", ["accept.settling is 20 s", "must be < duration, 10 s"]),
         ("at_limit = 2.0", ["accept.at_limit", "2"]),
         ("errors = 0.1", ["unknown key 'errors' in [accept]", "did you mean 'error'?"]),
         ("speed = [1.0, 2.0, 3.0]", ["accept.speed: 2 numbers expected", "got 3"]),

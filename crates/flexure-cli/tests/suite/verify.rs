@@ -63,7 +63,7 @@ fn nasty_files_are_refused_with_their_name() {
     let escape = altered(CERTIFICATE, &[("\"metric\"", "\"\\u001b[31mmetric\"")]);
     let cases: &[(&[u8], &[&str])] = &[
         (b"", &["arm.json:1:0 is not a certificate", "EOF"]),
-        (b"\0\x01\xff\xfe", &["cannot read arm.json", "utf-8"]),
+        (b"\0\x01\xff\xfe", &["arm.json is not UTF-8"]),
         (b"\0\x01\x02", &["arm.json:1:1 is not a certificate"]),
         (SCENARIO.as_bytes(), &["arm.json:1:1 is not a certificate"]),
         (cut.as_bytes(), &["arm.json:", "is not a certificate", "EOF"]),
@@ -187,7 +187,7 @@ fn pipes_and_devices() {
     }
     let stdin = place.fed(&["verify", "/dev/stdin"], CERTIFICATE);
     stdin.done();
-    place.run(&["verify", "/dev/zero"]).refused(&["is not a certificate"]);
+    place.run(&["verify", "/dev/zero"]).refused(&["larger than 4 MiB"]);
     place.run(&["verify", "/dev/null"]).refused(&["/dev/null:1:0 is not a certificate", "EOF"]);
     // A folder instead of a scenario, a certificate instead of one.
     place.write("arm.json", CERTIFICATE);

@@ -15,7 +15,7 @@ const RANDOM: usize = 6;
 /// A process of this number may be another one after so long.
 const OLD: Duration = Duration::from_hours(1);
 
-/// A temporary file in `folder`, `.flexure-PROCESS-XXXXXX.tmp`, locked as long as it is open.
+/// A temporary file in `folder`, `.flexure-`, the number of the process, six random characters, `.tmp`, locked as long as it is open.
 pub(crate) fn create(folder: &Path) -> std::io::Result<NamedTempFile> {
     let before = format!("{BEFORE}{}-", std::process::id());
     let mut builder = Builder::new();

@@ -32,4 +32,5 @@ pub use diagnostic::{Problem, Problems};
 pub use document::Places;
 pub use entry::Entry;
 pub use provenance::Assumption;
+pub use source::read_text;
 pub use states::{StateFile, StateRow, States, load_states};

@@ -113,6 +113,14 @@ pub(crate) fn harmless(text: String) -> String {
         .collect()
 }
 
+/// The text of the file at `path`, of at most `limit` bytes, read once: pipes are files too.
+///
+/// # Errors
+/// `unreadable`, `huge`, or `encoding` if it is not UTF-8.
+pub fn read_text(path: &Path, limit: u64) -> Result<String, Problem> {
+    Ok(read(path, limit)?.text.to_string())
+}
+
 /// Reads the text file at `path`, of at most `limit` bytes.
 pub(crate) fn read(path: &Path, limit: u64) -> Result<Source, Problem> {
     read_as(path, path, limit)

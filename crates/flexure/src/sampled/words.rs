@@ -46,16 +46,29 @@ impl Sampled {
             (Move::Raise, None) => format!("raise {gain} first; alone it does not suffice"),
             (Move::Lower, None) => format!("lower {gain} first; alone it does not suffice"),
         };
-        let mut ways = vec![first + &keep];
-        if *starting_gains < 1.0 {
-            ways.push(format!(
+        let first = first + &keep;
+        let start = (*starting_gains < 1.0).then(|| {
+            format!(
                 "the starting gains of this law have a spectral radius of {}: `flexure compare SCENARIO --budget 1 --json` shows \
                  them",
                 short(*starting_gains, 4)
-            ));
+            )
+        });
+        let period = period.map(|period| format!("control_period = {} is short enough", shortest(period)));
+        let mut ways: Vec<String> = start.into_iter().chain(period).collect();
+        match factor {
+            // What suffices comes first.
+            Some(_) => ways.insert(0, first),
+            None => ways.push(first),
         }
-        if let Some(period) = period {
-            ways.push(format!("control_period = {} is short enough", shortest(*period)));
+        if let [_] = ways.as_slice()
+            && factor.is_none()
+        {
+            ways.push(
+                "less delay, faster filters and estimators, softer gains on both sides: neither one gain, nor the starting gains, nor \
+                 a shorter period makes it stable"
+                    .to_owned(),
+            );
         }
         let why = exchange
             .as_ref()

@@ -10,7 +10,7 @@ use crate::files::table::Table;
 pub struct Accept {
     /// Largest |q_l − q_ld| > 0 from `settling` on \[rad\].
     pub error: Option<Vec<f64>>,
-    /// Time ≥ 0 from which errors, torque changes and time at the limit count \[s\].
+    /// Time ≥ 0, before the end, from which errors, torque changes and time at the limit count \[s\].
     pub settling: Option<f64>,
     /// Largest torque of the motors > 0 [N m].
     pub torque: Option<Vec<f64>>,
@@ -40,10 +40,10 @@ pub(crate) fn read(root: &Table<'_>, joints: &Joints, times: Option<(f64, f64)>)
     let at_limit = table.optional("at_limit", |field| field.number(&quantity::ACCEPTED_SHARE));
     let settling = table.optional("settling", |field| {
         let settling = field.number(&quantity::SETTLING)?;
-        let late = times.is_some_and(|(duration, _)| settling > duration);
+        let late = times.is_some_and(|(duration, _)| settling >= duration);
         if late {
             let message = format!(
-                "{} is {settling} s, must be <= duration, {} s",
+                "{} is {settling} s, must be < duration, {} s",
                 field.path,
                 times.map_or(f64::NAN, |(duration, _)| duration)
             );

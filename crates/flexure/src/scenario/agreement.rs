@@ -33,6 +33,7 @@ pub(crate) fn agree(real: &Loop<'_>) {
     real.limits();
     real.ages();
     real.unguarded();
+    real.unlimited();
 }
 
 impl<'a> Loop<'a> {
@@ -256,6 +257,20 @@ impl<'a> Loop<'a> {
                 "unguarded",
                 "dropout, but there is no guard: the law goes on with what it reads",
                 "add [guard] with stop_damping",
+            );
+        }
+    }
+
+    /// Until a fault is found the law answers it: something must bound the answer.
+    fn unlimited(&self) {
+        let (Some(guard), Some(field)) = (self.guard, self.root.get("guard")) else { return };
+        let limits = guard.torque_limit.iter().zip(&guard.torque_rate_limit);
+        if limits.clone().any(|(torque, rate)| torque.is_infinite() && rate.is_infinite()) {
+            field.warn(
+                "unlimited",
+                "the guard limits neither torques nor their rates",
+                "a reading that lies is answered by the law until that is found: set torque_limit or torque_rate_limit, in [guard] or \
+                 in the [limits] of the robot",
             );
         }
     }

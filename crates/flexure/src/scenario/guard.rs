@@ -95,10 +95,16 @@ const MOST: u64 = 1_000_000;
 /// How far beyond the robot's own limits readings are believed, if nothing is said: limits may be touched, readings are noisy.
 const BEYOND: f64 = 1.5;
 
+/// What a reading may jump by in a control period, if nothing is said: as at this speed [rad/s], far above that of arms, but at least
+/// what coarse encoders do and at most what no arm does \[rad\].
+const JUMP_SPEED: f64 = 50.0;
+const JUMP: (f64, f64) = (0.05, 0.5);
+
 impl GuardSettings {
-    /// What is not said in a file, for a robot with these limits: no damping.
-    pub fn usual(limits: &Limits) -> Self {
+    /// What is not said in a file, for a robot with these limits and a control period in s: no damping.
+    pub fn usual(limits: &Limits, period: f64) -> Self {
         let n = limits.torque.len();
+        let jump = (JUMP_SPEED * period).clamp(JUMP.0, JUMP.1);
         let beyond = |limit: &[f64]| limit.iter().map(|x| BEYOND * x).collect();
         let margin = |i: usize| 0.5 * (BEYOND - 1.0) * (limits.upper[i] - limits.lower[i]);
         let position = |limit: &[f64], sign: f64| (0..n).map(|i| limit[i] + sign * margin(i)).collect();
@@ -120,7 +126,7 @@ impl GuardSettings {
                 position: [position(&limits.lower, -1.0), position(&limits.upper, 1.0)],
                 speed: beyond(&limits.velocity),
                 deflection: beyond(&limits.deflection),
-                jump: vec![0.5; n],
+                jump: vec![jump; n],
                 frozen: (10, 0.05),
                 velocity_gap: vec![f64::INFINITY; n],
                 motor_residual: vec![f64::INFINITY; n],
@@ -165,7 +171,8 @@ pub(crate) fn read(root: &Table<'_>, context: &Context<'_>) -> Option<Option<Gua
         let table = Keys { table: field.table(KEYS)?, context };
         let damping = table.table.per_joint("stop_damping", context.joints, &quantity::STOP_DAMPING);
         // Without a robot there is nothing to compare with, and the file is bad already.
-        let mut guard = GuardSettings::usual(&context.robot?.limits);
+        let (_, period) = context.times?;
+        let mut guard = GuardSettings::usual(&context.robot?.limits, period);
         let read = [
             table.per_joint("torque_limit", &quantity::TORQUE_LIMIT, &mut guard.torque_limit),
             table.per_joint("torque_rate_limit", &quantity::TORQUE_RATE_LIMIT, &mut guard.torque_rate_limit),

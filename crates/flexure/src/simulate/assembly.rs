@@ -145,14 +145,3 @@ pub(crate) fn acting_limits(scenario: &Scenario) -> Vec<f64> {
     let least = |i: usize| acting.iter().flatten().fold(f64::INFINITY, |least, limit| least.min(limit[i]));
     (0..scenario.robot.joint_count()).map(least).collect()
 }
-
-/// The smallest of the torque limits that are known, per joint [N m]: the robot's, the guard's, the drive's.
-pub(crate) fn torque_limit(scenario: &Scenario) -> Vec<f64> {
-    let robot = &scenario.robot.limits.torque;
-    let guard = scenario.guard.as_ref().map(|guard| &guard.torque_limit);
-    let mut drives = scenario.imperfections.iter().filter_map(|imperfection| imperfection.of::<Saturation>());
-    let drive = drives.next().map(|saturation| &saturation.limit);
-    let known = [Some(robot), guard, drive];
-    let least = |i: usize| known.iter().flatten().fold(f64::INFINITY, |least, limit| least.min(limit[i]));
-    (0..robot.len()).map(least).collect()
-}

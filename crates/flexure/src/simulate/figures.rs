@@ -26,7 +26,7 @@ pub(crate) struct Figures {
 }
 
 impl Figures {
-    /// Of nothing yet; `torque_limit` is the smallest of the limits that are known per joint [N m].
+    /// Of nothing yet; `torque_limit` is the smallest of the limits that act, per joint [N m].
     pub(crate) fn new(torque_limit: Vec<f64>) -> Self {
         let zeros = || vec![0.0; torque_limit.len()];
         Self {

@@ -72,8 +72,9 @@ fn simulate(
     let started = Clock::now();
     let mut held = scenario.open()?;
     let mut observed = Observed::new(held.joints());
-    let mut figures = Figures::new(assembly::torque_limit(scenario));
-    let mut watch = Watch::new(criteria.clone(), assembly::acting_limits(scenario));
+    let limits = assembly::acting_limits(scenario);
+    let mut figures = Figures::new(limits.clone());
+    let mut watch = Watch::new(criteria.clone(), limits);
     let mut recorder = traced.then(|| Recorder::new(&*held));
     let mut divergence = None;
     for _ in 0..=periods(scenario) {

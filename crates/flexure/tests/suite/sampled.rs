@@ -199,3 +199,54 @@ fn a_slow_loop_is_found_out() {
     assert!(!slow.stable && slow.spectral_radius > 1.0 && slow.rate < 0.0);
     assert!(slow.joint.is_some() && slow.gain.is_some());
 }
+
+/// What is advised was tried: done one at a time, each makes the loop stable.
+#[test]
+fn advice_helps() {
+    let late = "[[imperfection]]\nkind = \"delay\"\ncomputation = 0.0007\n";
+    let filter = "[[imperfection]]\nkind = \"velocity-filter\"\norder = 2\ncutoff = 90.0\ndamping = 0.9\n";
+    let (mut factors, mut periods, mut starts) = (0, 0, 0);
+    for law in ["vcbc", "vcbc:tanh", "cascade", "backstepping", "feedback-linearization"] {
+        for (milliseconds, more) in [(2, late), (5, ""), (5, filter), (20, "")] {
+            let mut scenario = standing(f64::from(milliseconds) * 1e-3, more);
+            let start = entrants(&[law.to_owned()]).unwrap()[0].controller(&scenario.robot).unwrap();
+            for (gain, factor) in [(0, 1.0), (0, 1e-3), (1, 20.0)] {
+                scenario.controller = start.with_gain(gain, factor);
+                let Some(found) = probe(&scenario).unwrap().filter(|found| !found.stable) else { continue };
+                let Some(advice) = found.advice else { continue };
+                let stable = |change: &dyn Fn(&mut Scenario)| {
+                    let mut changed = scenario.clone();
+                    change(&mut changed);
+                    probe(&changed).unwrap().unwrap().stable
+                };
+                let gain = found.gain.unwrap();
+                let place = scenario
+                    .controller
+                    .gains()
+                    .iter()
+                    .position(|(key, _)| gain == format!("controller.{key}"))
+                    .unwrap();
+                if let Some(factor) = advice.factor {
+                    factors += 1;
+                    let moved = scenario.controller.with_gain(place, factor);
+                    assert!(
+                        stable(&|scenario| scenario.controller = moved.clone()),
+                        "{law}: {gain} times {factor}"
+                    );
+                }
+                if let Some(period) = advice.period {
+                    periods += 1;
+                    assert!(stable(&|scenario| scenario.control_period = period), "{law}: {period} s");
+                }
+                if advice.starting_gains < 1.0 {
+                    starts += 1;
+                    assert!(stable(&|scenario| scenario.controller = start.clone()), "{law}: starting gains");
+                }
+            }
+        }
+    }
+    assert!(
+        factors > 5 && periods > 5 && starts > 5,
+        "{factors} factors, {periods} periods, {starts} starts"
+    );
+}

@@ -60,8 +60,10 @@ fn every_registered_kind_does_something() {
 fn a_guard_that_has_nothing_to_do_changes_nothing() {
     let mut scenario = ideal(1.0);
     let unlimited = vec![1e9; 2];
-    scenario.guard =
-        Some(GuardSettings { torque_limit: unlimited, ..GuardSettings::usual(&scenario.robot.limits) });
+    scenario.guard = Some(GuardSettings {
+        torque_limit: unlimited,
+        ..GuardSettings::usual(&scenario.robot.limits, scenario.control_period)
+    });
     let guarded = simulate(&scenario);
     assert!(same_bits(&simulate(&ideal(1.0)), &guarded) > 20);
     assert!(guarded.trace.column("certificate").unwrap().iter().all(|&holds| holds == 1.0));
