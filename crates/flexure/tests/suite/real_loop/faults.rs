@@ -19,6 +19,9 @@ use super::{with, with_these};
 /// Control period in s.
 const PERIOD: f64 = 0.001;
 
+/// What errors after a stop may be beside three times those without faults, in rad.
+const ALLOWANCE: f64 = 0.01;
+
 /// How many surroundings there are.
 const SURROUNDINGS: u64 = 8;
 
@@ -60,8 +63,6 @@ struct Campaign {
     surroundings: fn(&mut Chance) -> String,
     /// Faults of sensors that do not say so.
     lies: bool,
-    /// What errors after a stop may be beside three times those without faults, in rad.
-    allowance: f64,
     /// How many combinations, unless asked for others.
     count: u64,
     /// How many of a hundred may stay stopped: a guard rather stays than takes over from what it cannot believe.
@@ -113,8 +114,8 @@ impl Campaign {
     }
 
     /// Torque that leaves the controller is finite and inside the limits; a dead sensor stops the robot at the first control instant
-    /// at which nobody may bridge it; whenever the law has the robot again, errors are at most three times those without faults
-    /// and the allowance, and torques at most three times; whether the law has it when all is over. Where sensors lie, the first holds.
+    /// at which nobody may bridge it; whenever the law has the robot again, errors are at most three times those without faults and 10
+    /// mrad, and torques at most three times; whether the law has it when all is over. Where sensors lie, the first holds.
     fn survives(&self, seed: u64, peaks: &[[f64; 2]]) -> bool {
         let (faults, outages) = self.faults(seed);
         let index = seed % SURROUNDINGS;
@@ -140,7 +141,7 @@ impl Campaign {
             {
                 let (error, torque) = (error(observed), torque(observed));
                 assert!(
-                    error <= 3.0 * worst_error + self.allowance,
+                    error <= 3.0 * worst_error + ALLOWANCE,
                     "{error} rad, not {worst_error}, {}",
                     context(t)
                 );
@@ -260,7 +261,8 @@ fn noise(text: &mut String, deviation: f64) {
     writeln!(text, "[[imperfection]]\nkind = \"noise\"\nlink = {deviation}\nmotor = {deviation}").unwrap();
 }
 
-/// The plausible arm at 1 kHz with a small, slow reference that starts at rest.
+/// The plausible arm at 1 kHz with a small, slow reference that starts at rest. What it moves with when the law takes over, by a push
+/// that nobody held against, goes on for `rejoin_settle`: 0.18 s of that are too far, 0.1 s ask for too much torque.
 fn plausible(imperfections: &str) -> Scenario {
     const GUARD: &str = r#"
 [guard]
@@ -269,6 +271,7 @@ torque_rate_limit = [2000.0, 400.0]
 stop_damping = [1.0, 0.2]
 rejoin_after = 10
 rejoin_duration = 0.5
+rejoin_settle = 0.15
 [[imperfection]]
 kind = "velocity-filter"
 order = 2
@@ -301,7 +304,6 @@ max_age = 5
 rejoin_duration = 1.0
 speed = 6.0
 deflection = 2.0
-jump = 0.02
 frozen_after = 3
 frozen_travel = 0.003
 ";
@@ -318,7 +320,6 @@ fn a_thousand_combinations_of_faults() {
         max_age: 0,
         surroundings: gentle,
         lies: false,
-        allowance: f64::INFINITY, // gains of 3 1/s, pushed while the law takes over: small at the end only
         count: 1000,
         stay: 0,
         scenario: plausible,
@@ -332,9 +333,8 @@ const PAPER: Campaign = Campaign {
     max_age: 5,
     surroundings: fast,
     lies: false,
-    allowance: 0.01,
     count: 60,
-    stay: 2,
+    stay: 4,
     scenario: paper,
 };
 
