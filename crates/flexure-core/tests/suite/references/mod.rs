@@ -1,6 +1,9 @@
 //! Laws that every reference obeys, and what each promises besides.
 #![expect(clippy::float_cmp, reason = "exactness at the ends is the promise under test")]
 
+mod smooth_start;
+mod smoothstep;
+
 use flexure_core::linalg::Vector;
 use flexure_core::reference::{
     Clock, Multisine, PointToPoint, Reference, Retimed, Sine, SmoothStart, Smoothstep, Stop, Term,
@@ -250,84 +253,6 @@ fn multisine_is_the_sum_of_its_sines() {
 }
 
 #[test]
-fn smoothstep_slope_is_the_bell() {
-    // s' = (2m + 1)! / m!² τᵐ (1 − τ)ᵐ: an independent characterisation, with s(0) = 0.
-    for (step, scale) in STEPS.into_iter().zip([30.0, 140.0, 630.0]) {
-        let m = i32::try_from(step.smoothness()).unwrap();
-        for i in 0..=1000 {
-            let tau = f64::from(i) / 1000.0;
-            let s = step.eval(Jet::<f64, 2>::variable(tau));
-            let bell = scale * (tau * (1.0 - tau)).powi(m);
-            // Ten operations on intermediate sums up to 30 times the slope: 100 ε × 2.5, the largest slope.
-            assert_close(s.derivative(1), bell, 6e-14, &format!("{step:?} at {tau}"));
-        }
-        assert_eq!(step.eval(0.0), 0.0);
-        assert_eq!(step.eval(0.5), 0.5);
-    }
-}
-
-#[test]
-fn smoothstep_is_its_published_polynomial() {
-    let published: [&[f64]; 3] =
-        [&[10.0, -15.0, 6.0], &[35.0, -84.0, 70.0, -20.0], &[126.0, -420.0, 540.0, -315.0, 70.0]];
-    for (step, coefficients) in STEPS.into_iter().zip(published) {
-        let jet = step.eval(Jet::<f64, 10>::variable(0.0));
-        for k in 0..10 {
-            let expected = usize::checked_sub(k, step.smoothness() + 1).and_then(|j| coefficients.get(j));
-            // Integers: no rounding.
-            assert_eq!(jet.coefficient(k), expected.copied().unwrap_or(0.0), "{step:?}, power {k}");
-        }
-    }
-}
-
-#[test]
-fn smoothstep_is_exact_at_its_ends() {
-    for step in STEPS {
-        let m = step.smoothness();
-        for (tau, s) in [(0.0, 0.0), (1.0, 1.0)] {
-            let jet = step.eval(Jet::<f64, 6>::variable(tau));
-            assert_eq!(jet.derivative(0), s);
-            for k in 1..=m {
-                assert_eq!(jet.derivative(k), 0.0, "{step:?} at {tau}, derivative {k}");
-            }
-            assert!(jet.derivative(m + 1).abs() >= 60.0, "{step:?} is smoother than promised");
-        }
-        for tau in [-3.0, -1e-300, 1.0 + f64::EPSILON, 7.0] {
-            let held = if tau < 0.0 { 0.0 } else { 1.0 };
-            assert_eq!(step.eval(Jet::<f64, 6>::variable(tau)), Jet::value(held), "{step:?} at {tau}");
-        }
-    }
-}
-
-#[test]
-fn smoothstep_is_antisymmetric_and_increasing() {
-    for step in STEPS {
-        let mut before = 0.0;
-        for i in 0..=4096 {
-            // Dyadic, so that 1 − τ is exact, and with it the law.
-            let tau = f64::from(i) / 4096.0;
-            let s = step.eval(tau);
-            assert_eq!(s + step.eval(1.0 - tau), 1.0, "{step:?} at {tau}");
-            assert!(s >= before, "{step:?} falls at {tau}");
-            before = s;
-        }
-    }
-}
-
-#[test]
-fn smoothstep_meets_itself_in_the_middle() {
-    for step in STEPS {
-        let (left, right) = (0.5f64.next_down(), 0.5f64.next_up());
-        let (left, right) =
-            (step.eval(Jet::<f64, 10>::variable(left)), step.eval(Jet::<f64, 10>::variable(right)));
-        for k in 0..10 {
-            // Coefficients up to 9e3 at the middle from binomial sums: 100 ε of that.
-            assert_close(left.coefficient(k), right.coefficient(k), 2e-10, &format!("{step:?}, power {k}"));
-        }
-    }
-}
-
-#[test]
 fn point_to_point_rests_exactly_at_both_postures() {
     for step in STEPS {
         // 0.1 and 0.7 are not dyadic, the postures far apart in size: rounding would show.
@@ -351,74 +276,6 @@ fn point_to_point_rests_exactly_at_both_postures() {
         let halfway = q_d.on(0.1 + 0.7 / 2.0)[0];
         // Slope 2.5 × 1e3 / 0.7 times a few ulp of time.
         assert_close(halfway, 500.0005, 1e-11, "halfway");
-    }
-}
-
-#[test]
-fn smooth_start_leaves_from_rest() {
-    for t in [-1e3, -0.1, 0.0] {
-        // Exact: the step is τ⁵ times a polynomial.
-        assert_eq!(SMOOTH_START.at::<5>(t), FROM.lift(), "at {t} s");
-    }
-}
-
-#[test]
-fn smooth_start_arrives_at_the_reference() {
-    for t in [2.0, 2.0f64.next_up(), 3.7, 100.0] {
-        // Exact: what is left to go is (1 − τ)⁵ times a polynomial, and 0 after the end.
-        assert_eq!(SMOOTH_START.at::<5>(t), SINE.at(t), "at {t} s");
-    }
-    assert_eq!(SMOOTH_START.at::<9>(2.5), SINE.at(2.5));
-}
-
-#[test]
-fn smooth_start_jumps_in_the_fifth_derivative_as_documented() {
-    for t in [0.0, 2.0] {
-        let (inside, outside) = (SMOOTH_START.at::<6>(t), SINE.at::<6>(t));
-        for i in 0..2 {
-            let outside = if t > 0.0 { outside[i].derivative(5) } else { 0.0 };
-            let jump = 15120.0 * (SINE.on(t)[i] - FROM[i]) / 2.0f64.powi(5);
-            // 50 operations on numbers below 1e3.
-            assert_close(inside[i].derivative(5) - outside, jump, 1e-11, &format!("at {t} s, joint {i}"));
-        }
-    }
-}
-
-#[test]
-fn smooth_start_obeys_leibniz() {
-    for t in instants().filter(|t| (0.0..2.0).contains(t)) {
-        let s = Smoothstep::Nonic.eval(Jet::<f64, 5>::variable(t).scaled_time(2.0));
-        let (q_d, r) = (SMOOTH_START.at::<5>(t), SINE.at::<5>(t));
-        for i in 0..2 {
-            let expected = Jet::value(FROM[i]) + s * (r[i] - Jet::value(FROM[i]));
-            for k in 0..5 {
-                let tolerance = 100.0 * f64::EPSILON * expected.derivative(k).abs().max(100.0);
-                let what = format!("at {t} s, joint {i}, derivative {k}");
-                // Counting from the far end rounds otherwise than the formula, by ε of summands below 1e2.
-                assert_close(q_d[i].derivative(k), expected.derivative(k), tolerance, &what);
-            }
-        }
-    }
-}
-
-/// t ↦ t / duration on a jet.
-trait ScaledTime {
-    fn scaled_time(self, duration: f64) -> Self;
-}
-
-impl<const K: usize> ScaledTime for Jet<f64, K> {
-    fn scaled_time(self, duration: f64) -> Self {
-        self / Jet::value(duration)
-    }
-}
-
-#[test]
-fn smooth_start_to_a_set_point_is_the_nonic_motion() {
-    let (from, to) = (Vector([0.3, -0.8]), Vector([-1.1, 0.7]));
-    let start = SmoothStart::from_rest(from, 1.7, to);
-    let motion = PointToPoint { from, to, start: 0.0, duration: 1.7, step: Smoothstep::Nonic };
-    for t in instants() {
-        assert_eq!(start.at::<6>(t), motion.at(t), "at {t} s");
     }
 }
 
