@@ -21,9 +21,10 @@ impl Clock {
         self.next.saturating_sub(1)
     }
 
-    /// The next instant, with its stamp; what is wrong with that where at most `allowed` instants may be missed.
+    /// The next instant, with its stamp: control periods since the last one, and what is wrong where at most `allowed` instants may be
+    /// missed.
     #[inline]
-    pub fn tick(&mut self, stamp: Option<u64>, allowed: u32) -> Option<Fault> {
+    pub fn tick(&mut self, stamp: Option<u64>, allowed: u32) -> (u64, Option<Fault>) {
         let passed = self.stamp.zip(stamp).map(|(last, now)| now.checked_sub(last));
         self.stamp = stamp.or(self.stamp);
         let (passed, fault) = match passed {
@@ -33,7 +34,7 @@ impl Clock {
             None => (1, None),
         };
         self.next = self.next.saturating_add(passed);
-        fault
+        (passed, fault)
     }
 
     /// `next`, and the last `stamp` if there is one.

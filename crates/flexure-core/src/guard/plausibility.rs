@@ -77,7 +77,7 @@ pub(super) struct Watch<C, const N: usize> {
 /// Of the encoders of one side; NaN where there was no reading yet.
 #[derive(Clone, Copy, Debug)]
 struct Side<C, const N: usize> {
-    /// The last position that was believed in rad, the speed then [rad/s], and control periods since.
+    /// The last position that was believed in rad, the speed then [rad/s], and the time since in s.
     believed: Vector<C, N>,
     speed: Vector<C, N>,
     since: Vector<C, N>,
@@ -112,13 +112,13 @@ impl<C: Float, const N: usize> Watch<C, N> {
         Self { link: side, motor: side }
     }
 
-    /// Adds what is not to be believed to the `faults` of readings that are there. `moving` says that the robot is to follow where it
-    /// shall be.
+    /// Adds what is not to be believed to the `faults` of readings that are there, a time of `elapsed` in s after those before. `moving`
+    /// says that the robot is to follow where it shall be.
     #[inline]
     pub fn doubt(
         &mut self,
         plausible: &Plausible<C, N>,
-        period: C,
+        elapsed: C,
         seen: &Seen<C, N>,
         moving: bool,
         faults: &mut Faults<N>,
@@ -136,7 +136,7 @@ impl<C: Float, const N: usize> Watch<C, N> {
         for (side, faults, q, other, v) in sides {
             for i in 0..N {
                 let now = Now { q: q[i], v: v[i], other: other[i], target: target[i], moving };
-                let doubt = side.doubt(plausible, period, i, &now);
+                let doubt = side.doubt(plausible, elapsed, i, &now);
                 let both = if wound[i] {
                     Some(Fault::Deflection)
                 } else if torn[i] {
@@ -165,17 +165,17 @@ struct Now<C> {
 
 impl<C: Float, const N: usize> Side<C, N> {
     #[inline]
-    fn doubt(&mut self, plausible: &Plausible<C, N>, period: C, i: usize, now: &Now<C>) -> Option<Fault> {
+    fn doubt(&mut self, plausible: &Plausible<C, N>, elapsed: C, i: usize, now: &Now<C>) -> Option<Fault> {
         let &Now { q, v, .. } = now;
-        let rate = (q - self.last[i]) / period;
+        let rate = (q - self.last[i]) / elapsed;
         let difference = v - rate;
         self.gap[i] = if difference.is_finite() {
             self.gap[i] + (difference - self.gap[i]) * C::from_ratio(SHARE.0, SHARE.1)
         } else {
             C::ZERO
         };
-        self.since[i] += C::ONE;
-        let passed = Piecewise::min(self.since[i] * period, C::from_ratio(GOING_ON.0, GOING_ON.1));
+        self.since[i] += elapsed;
+        let passed = Piecewise::min(self.since[i], C::from_ratio(GOING_ON.0, GOING_ON.1));
         let far = plausible.jump[i] + self.speed[i] * passed;
         let frozen = self.is_frozen(plausible.frozen, i, now);
         self.last[i] = q;
@@ -224,7 +224,7 @@ impl<C: Float, const N: usize> Memory<C> for Watch<C, N> {
     }
 }
 
-/// `believed` in rad, the `speed` then [rad/s] and control periods `since`, `last`, of the last change `other` and `target` in rad and `same`, the control periods since; whether it is
+/// `believed` in rad, the `speed` then [rad/s] and the time `since` in s, `last`, of the last change `other` and `target` in rad and `same`, the control periods since; whether it is
 /// `frozen`, 0 or 1; `gap` [rad/s].
 impl<C: Float, const N: usize> Memory<C> for Side<C, N> {
     #[inline]
@@ -232,7 +232,7 @@ impl<C: Float, const N: usize> Memory<C> for Side<C, N> {
         let Self { believed, speed, since, last, same, other, target, frozen, gap } = self;
         port.joints("believed", "rad", &mut believed.0);
         port.joints("speed", "rad/s", &mut speed.0);
-        port.joints("since", "control periods", &mut since.0);
+        port.joints("since", "s", &mut since.0);
         port.joints("last", "rad", &mut last.0);
         port.joints("same", "control periods", &mut same.0);
         port.joints("other", "rad", &mut other.0);

@@ -247,8 +247,16 @@ impl<C: Float, const N: usize> Guard<C, N> {
     fn faults(&mut self, seen: &Seen<C, N>) -> Faults<N> {
         let settings = &self.settings;
         let mut faults = Faults::missing(settings, seen);
-        faults.controller = self.clock.tick(seen.stamp, settings.allowed_age);
-        self.watch.doubt(&settings.plausible, settings.period, seen, !self.state.stopped, &mut faults);
+        let (passed, fault) = self.clock.tick(seen.stamp, settings.allowed_age);
+        faults.controller = fault;
+        let passed = C::from_f64(f64::from(u32::try_from(passed).unwrap_or(u32::MAX)));
+        self.watch.doubt(
+            &settings.plausible,
+            settings.period * passed,
+            seen,
+            !self.state.stopped,
+            &mut faults,
+        );
         if !faults.any() {
             self.posture = Some(seen.x.q_l);
         }

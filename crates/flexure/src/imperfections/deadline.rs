@@ -7,7 +7,7 @@ use crate::files::table::Table;
 use crate::imperfections::document::Context;
 use crate::imperfections::effect::Effect;
 use crate::imperfections::kind::{Kind, Overlap, Place, Setup, Strengths};
-use crate::imperfections::stages::{Actuating, Random, Tick};
+use crate::imperfections::stages::{Missing, Random, Tick};
 
 /// Control instants that the law misses: the last command stays for a period.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,40 +60,28 @@ impl Kind for Deadline {
     }
 
     fn effect(&self, setup: Setup) -> Effect<'_> {
-        let last = vec![0.0; setup.joints];
-        Effect::Actuating(Box::new(Keeping { deadline: *self, random: setup.random, last }))
+        Effect::Missing(Box::new(Late { deadline: *self, random: setup.random }))
     }
 }
 
-/// Keeps the last command for another period where the law misses its instant.
-struct Keeping {
+/// Keeps commands back.
+struct Late {
     deadline: Deadline,
     random: Random,
-    last: Vec<f64>,
 }
 
-impl Actuating for Keeping {
-    fn start(&mut self, torque: &[f64]) {
-        self.last.copy_from_slice(torque);
-    }
-
-    fn actuate(&mut self, instant: &Tick, torque: &mut [f64]) {
-        let is_missed = match self.deadline {
+impl Missing for Late {
+    fn misses(&mut self, instant: &Tick) -> bool {
+        match self.deadline {
             Deadline::Random { probability } => self.random.uniform() < probability,
             Deadline::Every(every) => (instant.k + 1).is_multiple_of(u64::from(every)),
-        };
-        if is_missed {
-            torque.copy_from_slice(&self.last);
-        } else {
-            self.last.copy_from_slice(torque);
         }
     }
 }
 
-/// `random`, the state of the stream, and the last `torque` [N m].
-impl Memory<f64> for Keeping {
+/// `random`, the state of the stream.
+impl Memory<f64> for Late {
     fn memory(&mut self, port: &mut dyn Port<f64>) {
         port.part("random", &mut self.random);
-        port.joints("torque", "N m", &mut self.last);
     }
 }

@@ -4,7 +4,7 @@ use flexure_core::estimate::LowPass;
 
 use crate::files::Entry;
 use crate::imperfections::kind::Setup;
-use crate::imperfections::stages::{Actuating, Actuator, Random, Sensing, Sensors};
+use crate::imperfections::stages::{Actuating, Actuator, Computer, Missing, Random, Sensing, Sensors};
 use crate::imperfections::{IMPERFECTIONS, Imperfection, Push};
 use crate::plant::{self, Departures, Plant};
 use crate::robot::Robot;
@@ -19,6 +19,10 @@ pub(crate) type RobotChange<'a> = Box<dyn Fn(&Robot) -> Robot + 'a>;
 pub(crate) enum Effect<'a> {
     /// A stage between motion and readings.
     Sensing(Box<dyn Sensing>),
+    /// The computer stands still at instants in [from, until) in s.
+    Stall([f64; 2]),
+    /// Commands that do not get out in time.
+    Missing(Box<dyn Missing>),
     /// A stage between commanded torque and motor.
     Actuating(Box<dyn Actuating>),
     /// Torque acts so much later in s. Times add up.
@@ -39,6 +43,8 @@ pub struct Effects<'a> {
     count: usize,
     /// From motion to readings.
     pub sensors: Sensors,
+    /// When it runs, and whether commands get out.
+    pub computer: Computer,
     /// From command to torque.
     pub actuator: Actuator,
     /// Of differences of measured positions, where velocities are those.
@@ -57,12 +63,15 @@ impl<'a> Effects<'a> {
     pub fn of(imperfections: &'a [Imperfection], joints: usize, period: f64, seed: u64) -> Self {
         let (mut effects, mut delay) = (Self { count: joints, ..Self::default() }, 0.0);
         let (mut sensing, mut actuating) = (Vec::new(), Vec::new());
+        let (mut stalls, mut missing) = (Vec::new(), Vec::new());
         for Entry { name, .. } in IMPERFECTIONS {
             let of_kind = imperfections.iter().filter(|imperfection| imperfection.kind() == *name);
             for (index, imperfection) in (0..).zip(of_kind) {
                 let random = Random::new(seed, name, index);
                 match imperfection.effect(Setup { joints, period, random }) {
                     Effect::Sensing(stage) => sensing.push((*name, stage)),
+                    Effect::Stall(window) => stalls.push(window),
+                    Effect::Missing(late) => missing.push((*name, late)),
                     Effect::Actuating(stage) => actuating.push((*name, stage)),
                     Effect::Delay(more) => delay += more,
                     Effect::Velocities(filter) => effects.velocities = Some(filter),
@@ -73,6 +82,7 @@ impl<'a> Effects<'a> {
             }
         }
         effects.sensors = Sensors::new(joints, sensing);
+        effects.computer = Computer::new(stalls, missing);
         effects.actuator = Actuator::new(joints, actuating, delay, period);
         effects
     }

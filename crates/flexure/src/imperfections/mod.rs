@@ -36,6 +36,7 @@ imperfections! {
     sampling::Sampling,
     dropout::Dropout,
     velocity_filter::VelocityFilter,
+    stall::Stall,
     deadline::Deadline,
     torque_gain::TorqueGain,
     current_quantisation::CurrentQuantisation,

@@ -24,6 +24,8 @@ pub struct GuardSettings {
     pub off_after: Option<f64>,
     /// So many stops ≥ 1 within so many seconds > 0 last until the guard is reset.
     pub latch: Option<(u32, f64)>,
+    /// Control periods ≥ 1 that a drive goes on with a command; none for ever. Then its torque falls, no faster than the rate limit.
+    pub watchdog: Option<u32>,
     /// What is believed.
     pub believed: Believed,
     /// What is done when something pushes a link.
@@ -122,6 +124,7 @@ impl GuardSettings {
             },
             off_after: None,
             latch: None,
+            watchdog: None,
             believed: Believed {
                 position: [position(&limits.lower, -1.0), position(&limits.upper, 1.0)],
                 speed: beyond(&limits.velocity),
@@ -150,6 +153,7 @@ const KEYS: &[&str] = &[
     "off_after",
     "latch_stops",
     "latch_within",
+    "watchdog",
     "position",
     "speed",
     "deflection",
@@ -234,8 +238,12 @@ impl<'a> Keys<'a> {
             field.whole("stops after which somebody must look", 1, LATCH_MOST)
         });
         let within = self.table.optional("latch_within", |field| field.number(&quantity::DURATION));
+        let watchdog = self
+            .table
+            .optional("watchdog", |field| field.whole("age of commands in control periods", 1, MOST));
         let (off, stops, within) = (off?, stops?, within?);
         guard.off_after = off;
+        guard.watchdog = watchdog?.and_then(|periods| u32::try_from(periods).ok());
         guard.latch = match (stops, within) {
             (Some(stops), Some(within)) => Some((u32::try_from(stops).ok()?, within)),
             (None, None) => None,

@@ -14,7 +14,7 @@ use crate::plant::{Plant, Push};
 use crate::robot::{Robot, padded, vector};
 use crate::scenario::{self, Scenario};
 use crate::simulate::controller::{Compensation, Controller, Feedback};
-use crate::simulate::guard_settings::guarded;
+use crate::simulate::guard_settings::{guarded, watchdog};
 use crate::simulate::signals::Columns;
 use crate::simulate::simulation::{Hold, Timing};
 
@@ -119,13 +119,15 @@ where
 {
     let period = scenario.control_period;
     let acting = acting(scenario);
-    let Effects { sensors, mut actuator, velocities, .. } =
+    let Effects { sensors, computer, mut actuator, velocities, .. } =
         Effects::of(&acting, scenario.robot.joint_count(), period, scenario.seed);
     // Until the first command arrives the motors are held where they are.
     let before = robot.spring_torque(&x.q_l, &x.q_m);
     let mut controller = Controller::new(robot, reference, law);
     actuator.start(&before);
     controller.sensors = sensors;
+    controller.watchdog = (!computer.is_in_time()).then(|| watchdog(scenario.guard.as_ref(), period, before));
+    controller.computer = computer;
     controller.actuator = actuator;
     controller.estimator = estimator(scenario.estimator.as_ref(), velocities, period);
     controller.disturbance = scenario.disturbance_observer.as_ref().map(|settings| Compensation {

@@ -3,13 +3,13 @@
 use std::cell::Cell;
 
 use flexure_core::estimate::{DisturbanceObserver, Estimator, FilteredDifference};
-use flexure_core::guard::{Age, Certificate, Fault, Phase, Place, Status};
+use flexure_core::guard::{Age, Certificate, Fault, Phase, Place, Status, Watchdog};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion};
 use flexure_core::reference::{Reference, Stop};
 use flexure_core::scalar::Jet;
 
-use crate::imperfections::stages::{Actuator, Pieces, Sensors, Tick};
+use crate::imperfections::stages::{Actuator, Computer, Pieces, Sensors, Tick};
 use crate::laws::{self, AnyLaw};
 use crate::simulate::guarded::{Asked, Guarded};
 
@@ -31,6 +31,10 @@ pub struct Controller<L, R, F, E, const N: usize> {
     pub disturbance: Option<Compensation<N>>,
     /// Limits and safe stops.
     pub guard: Option<Guarded<N>>,
+    /// When it runs, and whether commands get out.
+    pub computer: Computer,
+    /// What the drive does while no command comes; none where one always does.
+    pub watchdog: Option<Watchdog<f64, N>>,
     /// From command to torque.
     pub actuator: Actuator,
     pub(crate) state: State<N>,
@@ -150,7 +154,7 @@ where
     /// The law with nothing between it and the robot yet.
     pub fn new(robot: Fjr<f64, L, N>, reference: R, law: F) -> Self {
         let state = State { applied: Vector::ZERO, rejoined: None };
-        let (sensors, actuator) = (Sensors::default(), Actuator::default());
+        let (sensors, computer, actuator) = (Sensors::default(), Computer::default(), Actuator::default());
         Self {
             robot,
             reference,
@@ -159,6 +163,8 @@ where
             estimator: None,
             disturbance: None,
             guard: None,
+            computer,
+            watchdog: None,
             actuator,
             state,
         }
@@ -181,6 +187,9 @@ where
 
     /// What happens at a control instant at which the robot moves as `x`. Nothing is allocated.
     pub fn step(&mut self, tick: &Tick, x: &Motion<f64, N>) -> Action<N> {
+        if self.computer.is_still(tick) {
+            return self.silent(tick);
+        }
         let measured = self.sensors.sense(tick, x);
         let applied = self.state.applied;
         let (read, age) = match &mut self.guard {
@@ -220,8 +229,8 @@ where
         if let (Some(Status { phase: Phase::Rejoined, .. }), Some(guarded)) = (status, &self.guard) {
             self.state.rejoined = Some(guarded.joined(&self.robot, tick.t, &seen));
         }
-        let pieces = self.actuator.actuate(tick, u_m);
-        self.state.applied = pieces.mean(tick.period);
+        let command = (!self.computer.misses(tick)).then_some(u_m);
+        let pieces = self.driven(tick, command);
         let disturbance = disturbance.map_or(Vector::ZERO, |(torque, _)| torque);
         Action {
             reference,
@@ -235,6 +244,32 @@ where
             stopped: status.is_some_and(|status| !status.phase.is_law_s()),
             guard: status.map(|status| Said { phase: status.phase, fault: status.fault() }),
         }
+    }
+
+    /// An instant at which the computer stands still.
+    fn silent(&mut self, tick: &Tick) -> Action<N> {
+        let pieces = self.driven(tick, None);
+        Action {
+            reference: self.reference_at(tick.t),
+            seen: Motion::at_rest(Vector([f64::NAN; N])),
+            disturbance: Vector::ZERO,
+            u_m: self.state.applied,
+            applied: pieces,
+            certificate: false,
+            stopped: false,
+            guard: None,
+        }
+    }
+
+    /// What the drive gives over the period, by the `command` of this instant, if it came.
+    fn driven(&mut self, tick: &Tick, command: Option<Vector<f64, N>>) -> Pieces<N> {
+        let torque = match &mut self.watchdog {
+            Some(watchdog) => watchdog.step(command),
+            None => command.unwrap_or(self.state.applied),
+        };
+        let pieces = self.actuator.actuate(tick, torque);
+        self.state.applied = pieces.mean(tick.period);
+        pieces
     }
 
     /// Torque of the law [N m] at any time, for loops in continuous time: no device stands in between.

@@ -1,7 +1,7 @@
 //! From `[guard]` of a scenario to the guard of the core.
 
 use flexure_core::estimate::DisturbanceObserver;
-use flexure_core::guard::{self, Coasting, Frozen, Guard, Latch, Plausible, Settings};
+use flexure_core::guard::{self, Coasting, Frozen, Guard, Latch, Plausible, Settings, Watchdog};
 use flexure_core::linalg::Vector;
 
 use crate::robot::{padded, vector};
@@ -29,6 +29,22 @@ pub(crate) fn guarded<const N: usize>(
         rejoin: settings.rejoin.duration,
         settle: settings.rejoin.settle,
     }
+}
+
+/// What the drives do while no command comes, in a loop with control periods of `period` in s; they give `applied` [N m] before the
+/// first one.
+pub(crate) fn watchdog<const N: usize>(
+    settings: Option<&GuardSettings>,
+    period: f64,
+    applied: Vector<f64, N>,
+) -> Watchdog<f64, N> {
+    let allowed = settings.and_then(|settings| settings.watchdog).unwrap_or(u32::MAX);
+    let fall = settings.map_or(Vector([f64::INFINITY; N]), |settings| {
+        padded(&settings.torque_rate_limit, f64::INFINITY).map(|rate: f64| rate * period)
+    });
+    let mut watchdog = Watchdog::new(allowed, fall).expect("rates are above 0");
+    watchdog.step(Some(applied));
+    watchdog
 }
 
 fn core<const N: usize>(settings: &GuardSettings, period: f64) -> Settings<f64, N> {

@@ -49,11 +49,22 @@ impl<L, R, F, E: Memory<f64>, const N: usize> Memory<f64> for Simulation<L, R, F
     }
 }
 
-/// Sensors, estimator, disturbance observer, guard, drive; torque since the last instant and how the reference is joined again.
+/// Sensors, estimator, disturbance observer, guard, computer, watchdog, drive; torque since the last instant and how the reference is joined again.
 impl<L, R, F, E: Memory<f64>, const N: usize> Memory<f64> for Controller<L, R, F, E, N> {
     fn memory(&mut self, port: &mut dyn Port<f64>) {
-        let Self { robot: _, reference: _, law: _, sensors, estimator, disturbance, guard, actuator, state } =
-            self;
+        let Self {
+            robot: _,
+            reference: _,
+            law: _,
+            sensors,
+            estimator,
+            disturbance,
+            guard,
+            computer,
+            watchdog,
+            actuator,
+            state,
+        } = self;
         port.part("sensors", sensors);
         if let Some(estimator) = estimator {
             port.part("estimator", estimator);
@@ -67,6 +78,10 @@ impl<L, R, F, E: Memory<f64>, const N: usize> Memory<f64> for Controller<L, R, F
             if let Some(residual) = residual {
                 port.part("residual", residual);
             }
+        }
+        port.part("computer", computer);
+        if let Some(watchdog) = watchdog {
+            port.part("watchdog", watchdog);
         }
         port.part("drive", actuator);
         port.joints("u_reported", "N m", &mut state.applied.0);

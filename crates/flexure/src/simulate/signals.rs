@@ -119,9 +119,12 @@ impl Columns {
             let flag = |holds: bool| f64::from(u8::from(holds));
             push(&mut [flag(action.certificate), flag(action.stopped)].into_iter());
         }
-        if let Some(Said { phase, fault }) = action.guard {
-            let fault = fault.map_or(0, |(fault, _)| fault.code());
-            push(&mut [phase.code(), fault].into_iter().map(f64::from));
+        if self.guard {
+            // While the computer stands still nobody says anything.
+            let said = action.guard.map_or([f64::NAN; 2], |Said { phase, fault }| {
+                [phase.code(), fault.map_or(0, |(fault, _)| fault.code())].map(f64::from)
+            });
+            push(&mut said.into_iter());
         }
     }
 }

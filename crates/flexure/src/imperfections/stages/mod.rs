@@ -1,11 +1,12 @@
 //! What sensors, computer and drives do to a control loop: one stage each, none of them there unless asked for.
 //!
-//! Once a control period [`Sensors`] turn the true motion into what is measured, and an [`Actuator`] turns the commanded
-//! torque into what acts on the motors. Stages work on slices with an entry for each joint that the robot has; joints that
+//! Once a control period [`Sensors`] turn the true motion into what is measured, if the [`Computer`] runs, and an [`Actuator`] turns
+//! the commanded torque into what acts on the motors. Stages work on slices with an entry for each joint that the robot has; joints that
 //! only fill the capacity of a vector are never touched, and no random number is drawn for them. All memory is taken when
 //! stages are made.
 
 mod actuator;
+mod computer;
 mod held;
 mod late;
 mod pieces;
@@ -13,6 +14,7 @@ mod random;
 mod sensors;
 
 pub use actuator::{Actuating, Actuator};
+pub use computer::{Computer, Missing};
 pub(crate) use held::Held;
 pub(crate) use late::split;
 pub use pieces::Pieces;

@@ -6,7 +6,8 @@ use std::path::Path;
 use flexure::core::scalar::Interval;
 use flexure::estimators::{Encoders, Estimator};
 use flexure::imperfections::{
-    Deadline, DropoutMode, IMPERFECTIONS, Imperfection, ModelError, Outage, Side, Sides, VelocityFilter,
+    Deadline, DropoutMode, IMPERFECTIONS, Imperfection, ModelError, Outage, Side, Sides, Stall,
+    VelocityFilter,
 };
 use flexure::plant::Shape;
 use flexure::robot::{Links, Robot, load_robot};
@@ -44,6 +45,7 @@ fn everything_is_read() {
         bias,
         jump,
         freeze,
+        stall,
     ] = scenario.imperfections.as_slice()
     else {
         panic!("{kinds:?}")
@@ -99,6 +101,7 @@ fn everything_is_read() {
     assert!(jump.until.is_infinite(), "for good");
     let Imperfection::Freeze(freeze) = freeze else { panic!() };
     assert_eq!((freeze.sides, freeze.from, freeze.until), (Sides::One(Side::Link), 1.5, 1.6));
+    assert!(matches!(stall, Imperfection::Stall(Stall { from: 1.7, until: 1.72 })));
     let Some(Estimator::Observer { encoders: Encoders::Both, bandwidth }) = scenario.estimator else {
         panic!()
     };
@@ -120,7 +123,7 @@ fn a_guard_is_read() {
         settle: 0.2, // no longer than the reference takes
     };
     assert_eq!((guard.max_age, guard.rejoin), (1, rejoin));
-    assert_eq!((guard.off_after, guard.latch), (Some(5.0), Some((3, 10.0))));
+    assert_eq!((guard.off_after, guard.latch, guard.watchdog), (Some(5.0), Some((3, 10.0)), Some(3)));
     let believed = Believed {
         position: [vec![-3.0, -2.0], vec![3.0, 2.0]],
         speed: vec![6.0; 2],

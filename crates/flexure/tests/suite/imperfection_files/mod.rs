@@ -116,6 +116,10 @@ kind = "freeze"
 side = "link"
 from = 1.5
 until = 1.6
+[[imperfection]]
+kind = "stall"
+from = 1.7
+until = 1.72
 [estimator]
 kind = "observer"
 encoders = "both"
@@ -132,6 +136,7 @@ rejoin_duration = 0.2
 off_after = 5.0
 latch_stops = 3
 latch_within = 10.0
+watchdog = 3
 position = [3.0, 2.0]
 speed = 6.0
 deflection = 0.4

@@ -147,8 +147,8 @@ fn a_seed_says_everything_and_another_something_else() {
     let mut random = 0;
     for Graded { name, at: [.., much] } in all() {
         let much = &much.map(|much| [much]).unwrap();
-        let Effects { mut sensors, mut actuator, .. } = Effects::of(much, 2, PERIOD, 1);
-        let (sensing, acting) = (streams(&mut sensors), streams(&mut actuator));
+        let Effects { mut sensors, mut computer, mut actuator, .. } = Effects::of(much, 2, PERIOD, 1);
+        let (sensing, acting) = (streams(&mut sensors), streams(&mut computer) + streams(&mut actuator));
         check(name, sensing, &|seed| sensed_bits(&readings(much, seed, COUNT)));
         check(name, acting, &|seed| torque_bits(&torques(much, seed, COUNT)));
         random += sensing + acting;

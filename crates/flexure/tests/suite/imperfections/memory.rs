@@ -8,7 +8,7 @@ use flexure::core::memory::{Memory, length, restore, save};
 use flexure::core::model::{Fjr, Motion};
 use flexure::core::robots::PlanarTwoLink;
 use flexure::estimators::{AnyEstimator, estimator};
-use flexure::imperfections::stages::{Actuator, Sensors, Tick};
+use flexure::imperfections::stages::{Actuator, Computer, Sensors, Tick};
 use flexure::imperfections::{Effects, Imperfection};
 
 use super::{PERIOD, motion, registered, torque};
@@ -17,14 +17,16 @@ use super::{PERIOD, motion, registered, torque};
 struct Devices {
     sensors: Sensors,
     estimator: Option<AnyEstimator<f64, 2>>,
+    computer: Computer,
     actuator: Actuator,
 }
 
 impl Devices {
     fn new(imperfections: &[Imperfection], seed: u64) -> Self {
-        let Effects { sensors, mut actuator, velocities, .. } = Effects::of(imperfections, 2, PERIOD, seed);
+        let Effects { sensors, computer, mut actuator, velocities, .. } =
+            Effects::of(imperfections, 2, PERIOD, seed);
         actuator.start(&Vector([0.5, -0.25]));
-        Self { sensors, estimator: estimator(None, velocities, PERIOD), actuator }
+        Self { sensors, estimator: estimator(None, velocities, PERIOD), computer, actuator }
     }
 
     /// All that is read, estimated and given in the control instants `range`.
@@ -39,14 +41,17 @@ impl Devices {
         let measured = self.sensors.sense(tick, &motion(tick.t));
         let x = measured.motion;
         let seen = self.estimator.as_mut().map_or(x, |filter| filter.update(&robot, &x.q_l, &x.q_m, &one));
-        let given = self.actuator.actuate(tick, torque(tick.t));
+        let command = if self.computer.misses(tick) { Vector::ZERO } else { torque(tick.t) };
+        let given = self.actuator.actuate(tick, command);
         let parts = [seen.q_l, seen.q_m, seen.v_l, seen.v_m].into_iter().chain(given.iter().map(|(_, u)| u));
         parts.flat_map(|vector| vector.0).chain(measured.age.map(f64::from)).collect()
     }
 
     fn parts(&mut self) -> impl Iterator<Item = &mut dyn Memory<f64>> {
         let estimator = self.estimator.as_mut().map(|estimator| estimator as &mut dyn Memory<f64>);
-        [&mut self.sensors as &mut dyn Memory<f64>, &mut self.actuator].into_iter().chain(estimator)
+        [&mut self.sensors as &mut dyn Memory<f64>, &mut self.computer, &mut self.actuator]
+            .into_iter()
+            .chain(estimator)
     }
 
     fn save(&mut self) -> Vec<Vec<f64>> {

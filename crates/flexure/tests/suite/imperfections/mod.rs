@@ -77,10 +77,17 @@ fn driven(
     count: u64,
     command: impl Fn(f64) -> Vector<f64, 2>,
 ) -> Vec<Pieces<2>> {
-    let mut actuator = actuator(imperfections, seed, Vector::ZERO);
+    let Effects { mut computer, mut actuator, .. } = Effects::of(imperfections, 2, PERIOD, seed);
+    actuator.start(&Vector::<_, 2>::ZERO);
+    let mut last = Vector::ZERO;
     (0..count)
         .map(|k| Tick::new(k, PERIOD))
-        .map(|instant| actuator.actuate(&instant, command(instant.t)))
+        .map(|instant| {
+            if !computer.is_still(&instant) && !computer.misses(&instant) {
+                last = command(instant.t);
+            }
+            actuator.actuate(&instant, last)
+        })
         .collect()
 }
 

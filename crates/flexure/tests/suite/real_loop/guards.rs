@@ -134,3 +134,35 @@ fn a_collision_is_found_and_answered() {
     let [stop, float, retract] = courses;
     assert!(stop < float && stop < retract, "giving way: {stop}, {float}, {retract} rad");
 }
+
+/// A computer that stands still for 50 ms at speed: the drives go on with the last command until their watchdog lets it fall; the
+/// guard sees by its clock that it is late, stops the robot and lets the law take over.
+#[test]
+fn a_computer_that_stands_still_is_found_late() {
+    let stall = "[[imperfection]]\nkind = \"stall\"\nfrom = 2.5\nuntil = 2.55\n";
+    let guard = "[guard]\nstop_damping = 4.0\ntorque_rate_limit = 10000.0\nwatchdog = 3\n";
+    let run = paper(&format!("{guard}{stall}"));
+    let (time, cause, joint) = first_stop(&run).expect("a stop");
+    assert!((time - 2.55).abs() < 1e-9 && (cause, joint) == ("late", None), "{cause} at {time} s");
+    assert_eq!(run.summary.stops, 1);
+    assert!(run.summary.final_abs_e_l < 1e-6, "{} rad", run.summary.final_abs_e_l);
+    let [phase, certificate] = ["phase", "certificate"].map(|name| run.trace.column(name).unwrap());
+    assert!(phase[2500..2550].iter().all(|phase| phase.is_nan()) && phase[2499] == 0.0);
+    assert!(certificate[2500..2550].iter().all(|holds| *holds == 0.0));
+    for u in run.trace.joints("u_m") {
+        assert!(u[2500..2503].iter().all(|torque| *torque == u[2499]), "as old as it may be");
+        // 10,000 N m/s are 10 N m a period.
+        for (k, pair) in u[2502..2550].windows(2).enumerate() {
+            let expected = pair[0] - pair[0].clamp(-10.0, 10.0);
+            assert!((pair[1] - expected).abs() < 1e-12, "{} N m, {k} periods after", pair[1]);
+        }
+        assert_eq!(u[2549], 0.0);
+    }
+    // Without a watchdog the last command acts for all of that time; one instant that nobody needs is not late.
+    let run = paper(&format!("{}max_age = 1\n{stall}", guard.replace("watchdog = 3\n", "")));
+    for u in run.trace.joints("u_m") {
+        assert!(u[2500..2550].iter().all(|torque| *torque == u[2499]));
+    }
+    let run = paper(&format!("{guard}max_age = 1\n{}", stall.replace("2.55", "2.501")));
+    assert_eq!(first_stop(&run), None);
+}
