@@ -42,6 +42,9 @@ struct Content {
     /// What the reference uses of the limits, for a scenario.
     #[serde(skip_serializing_if = "Option::is_none")]
     reference: Option<Along>,
+    /// Gains that the file leaves to the starting rule, as `[controller]` of a scenario that gives them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    starting_gains: Option<String>,
     /// Whether the loop is stable that holds its torque for a control period, for a scenario.
     #[serde(skip_serializing_if = "Option::is_none")]
     sampled: Option<Sampled>,
@@ -95,11 +98,9 @@ pub fn check(files: &[String], outside: Outside, json: bool) -> Result<(), Failu
 
 /// What is in a file, on the terminal.
 fn show(verdict: &Verdict) -> Result<(), Failure> {
-    let Some(Content { kind, name, joints, assumptions, assumed, robot, reference, sampled }) =
-        &verdict.content
-    else {
-        return Ok(());
-    };
+    let Some(content) = &verdict.content else { return Ok(()) };
+    let Content { kind, name, joints, assumptions, assumed, robot, reference, starting_gains, sampled } =
+        content;
     print::line(&format!(
         "{}: {kind} {name}, {}, {}, {}",
         verdict.file,
@@ -120,6 +121,9 @@ fn show(verdict: &Verdict) -> Result<(), Failure> {
         if !usage.is_empty() {
             print::line(&usage_table(joints, usage))?;
         }
+    }
+    if let Some(gains) = starting_gains {
+        print::line(&format!("gains by the starting rule:\n{gains}"))?;
     }
     if let Some(sampled) = sampled {
         print::line(&sampled.line())?;
@@ -162,23 +166,41 @@ fn content(file: &str, outside: Outside) -> Result<Found, Problems> {
             let rows = overview(&robot)?;
             let assumed = assumed(&robot.assumptions());
             let (joints, assumptions, name) = (rows.len(), assumed.len(), robot.name);
-            let (kind, robot_rows, reference, sampled) = ("robot", Some(rows), None, None);
-            let content =
-                Content { kind, name, joints, assumptions, assumed, robot: robot_rows, reference, sampled };
+            let content = Content {
+                kind: "robot",
+                name,
+                joints,
+                assumptions,
+                assumed,
+                robot: Some(rows),
+                reference: None,
+                starting_gains: None,
+                sampled: None,
+            };
             Ok(Found { content, warnings: robot.warnings, exceeded: Vec::new() })
         }
         Checked::Scenario(scenario) => {
             supported(&scenario.robot)?;
             let reference = along(&scenario)?;
             let sampled = probe(&scenario)?;
+            let starting_gains = scenario.has_starting_gains().then(|| scenario.controller.to_toml());
             let unstable = sampled.as_ref().and_then(|sampled| sampled.problem(&scenario));
             let beyond = feasible::exceeded(&scenario, &reference.usage);
             let exceeded = unstable.into_iter().chain(beyond).collect();
             let warnings = scenario.warnings.iter().cloned().chain(preload(&scenario)?).collect();
             let assumed = assumed(&scenario.assumptions);
             let (joints, assumptions, name) = (scenario.robot.joint_count(), assumed.len(), scenario.name);
-            let (kind, robot, reference) = ("scenario", None, Some(reference));
-            let content = Content { kind, name, joints, assumptions, assumed, robot, reference, sampled };
+            let content = Content {
+                kind: "scenario",
+                name,
+                joints,
+                assumptions,
+                assumed,
+                robot: None,
+                reference: Some(reference),
+                starting_gains,
+                sampled,
+            };
             Ok(Found { content, warnings, exceeded })
         }
     }

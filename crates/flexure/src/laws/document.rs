@@ -1,9 +1,30 @@
 //! `[controller]`: the law and its gains.
 
 use crate::files::field::{Field, Joints};
+use crate::laws::starting::Starting;
 use crate::laws::{Controller, MAKERS};
+use crate::robot::Robot;
 
 impl Controller {
+    /// What files have of it: `[controller]` with every gain.
+    pub fn to_toml(&self) -> String {
+        let mut text = format!("[controller]\nkind = \"{}\"\n", self.kind());
+        if let Some(phi) = self.phi() {
+            text += &format!("phi = \"{phi}\"\n");
+        }
+        let mut table = "";
+        let gains = self.gains();
+        for (path, values) in &gains {
+            let (within, key) = path.rsplit_once('.').unwrap_or(("", path));
+            if within != table {
+                text += &format!("[controller.{within}]\n");
+                table = within;
+            }
+            text += &format!("{key} = {values:?}\n");
+        }
+        text
+    }
+
     /// The same law with other gains, in the order of [`gains`](Self::gains); gains beyond the end of `values` stay.
     pub fn with_gains(&self, values: &[Vec<f64>]) -> Self {
         let mut changed = self.clone();
@@ -14,8 +35,8 @@ impl Controller {
     }
 }
 
-/// Reads `[controller]`.
-pub(crate) fn read(field: &Field<'_>, joints: &Joints) -> Option<Controller> {
+/// Reads `[controller]` for `robot`, if that could be read. With `kind` alone the gains are the starting ones.
+pub(crate) fn read(field: &Field<'_>, joints: &Joints, robot: Option<&Robot>) -> Option<Controller> {
     let maker = field.any_table()?.choice("kind", MAKERS)?;
-    (maker.read)(field, joints)
+    (maker.read)(field, joints, &Starting { robot })
 }

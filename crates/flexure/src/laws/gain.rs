@@ -3,6 +3,7 @@
 use crate::files::field::{Field, Joints};
 use crate::files::quantity::Quantity;
 use crate::laws::Drive;
+use crate::laws::starting::Starting;
 use crate::units;
 
 /// A gain of a law: one number per joint at a key of `[controller]`.
@@ -112,14 +113,18 @@ impl<const G: usize> GainSet for [Vec<f64>; G] {
 
 /// Gains that can be read.
 pub(crate) trait ReadGains: GainSet {
-    /// Reads them from `[controller]`.
-    fn read(shape: &Self::Shape, field: &Field<'_>, joints: &Joints) -> Option<Self>;
+    /// Reads them from `[controller]`, which has none but the kind where all are to be `starting` ones.
+    fn read(shape: &Self::Shape, field: &Field<'_>, joints: &Joints, starting: &Starting<'_>)
+    -> Option<Self>;
 }
 
 impl<const G: usize> ReadGains for [Vec<f64>; G] {
-    fn read(shape: &[Gain; G], field: &Field<'_>, joints: &Joints) -> Option<Self> {
+    fn read(shape: &[Gain; G], field: &Field<'_>, joints: &Joints, starting: &Starting<'_>) -> Option<Self> {
         let known: Vec<_> = std::iter::once("kind").chain(shape.iter().map(|gain| gain.key)).collect();
         let table = field.table(&known)?;
+        if table.fields().all(|(key, _)| key == "kind") {
+            return Some(Self::start(shape, &starting.drives(field)?));
+        }
         let gains: Vec<_> =
             shape.iter().map(|gain| table.per_joint(gain.key, joints, &gain.quantity)).collect();
         gains.into_iter().collect::<Option<Vec<_>>>()?.try_into().ok()

@@ -8,6 +8,7 @@ use flexure_core::scalar::Scalar;
 
 use crate::files::field::{Field, Joints};
 use crate::laws::gain::GainSet;
+use crate::laws::starting::Starting;
 use crate::laws::{Controller, Drive};
 use crate::robot::padded;
 
@@ -39,7 +40,7 @@ pub trait LawKind {
 #[derive(Clone, Copy)]
 pub(super) struct Maker {
     /// From `[controller]`.
-    pub read: fn(&Field<'_>, &Joints) -> Option<Controller>,
+    pub read: fn(&Field<'_>, &Joints, &Starting<'_>) -> Option<Controller>,
     /// From what each joint has to move.
     pub start: fn(&[Drive]) -> Controller,
 }
@@ -57,8 +58,8 @@ macro_rules! laws {
         const MAKERS: &[(&str, Maker)] = &[$((
             <$file::$kind as LawKind>::NAME,
             Maker {
-                read: |field, joints| {
-                    let gains = ReadGains::read(&<$file::$kind as LawKind>::GAINS, field, joints)?;
+                read: |field, joints, starting| {
+                    let gains = ReadGains::read(&<$file::$kind as LawKind>::GAINS, field, joints, starting)?;
                     Some(Controller::$kind(Box::new(gains)))
                 },
                 start: |drives| {

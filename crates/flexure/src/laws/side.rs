@@ -2,8 +2,9 @@
 
 use crate::files::field::{Field, Joints};
 use crate::files::quantity::Quantity;
-use crate::laws::Phi;
 use crate::laws::gain::{INJECTED, LAMBDA, METRIC};
+use crate::laws::starting::Starting;
+use crate::laws::{Drive, Phi};
 use crate::units;
 
 /// Growth of Π_l.
@@ -60,8 +61,13 @@ impl SideGains {
     }
 }
 
-/// Reads a side of a law with `phi`; none if that could not be read.
-pub(super) fn read(field: &Field<'_>, phi: Option<Phi>, joints: &Joints) -> Option<SideGains> {
+/// Reads a side of a law with `phi`; none if that could not be read. Λ is the `starting` one unless it is given.
+pub(super) fn read(
+    field: &Field<'_>,
+    phi: Option<Phi>,
+    joints: &Joints,
+    starting: &Starting<'_>,
+) -> Option<SideGains> {
     let mut known = vec!["metric", "shaping", "damping"];
     known.extend(extra_keys());
     known.push(METRIC_HARDENING);
@@ -83,10 +89,10 @@ pub(super) fn read(field: &Field<'_>, phi: Option<Phi>, joints: &Joints) -> Opti
             .collect();
         own.into_iter().collect::<Option<Vec<_>>>().filter(|_| unused.is_empty())
     });
-    let metric = metric?;
+    let starting = || Some(starting.drives(field)?.iter().map(Drive::bandwidth).collect());
     Some(SideGains {
-        shaping: shaping?.unwrap_or_else(|| metric.clone()),
-        metric,
+        metric: metric?,
+        shaping: shaping?.or_else(starting)?,
         damping: damping?,
         extra: extra?,
         metric_hardening: hardening?,

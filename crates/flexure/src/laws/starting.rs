@@ -2,9 +2,28 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use crate::files::field::Field;
 use crate::files::{Problem, Problems};
 use crate::laws::{Controller, Drive, MAKERS};
 use crate::robot::Robot;
+
+/// Starting gains for what a file leaves out.
+pub(crate) struct Starting<'a> {
+    /// None if it could not be read: the file is bad already.
+    pub robot: Option<&'a Robot>,
+}
+
+impl Starting<'_> {
+    /// What each joint has to move, for what `field` leaves out; none after it has noted what is wrong.
+    pub fn drives(&self, field: &Field<'_>) -> Option<Vec<Drive>> {
+        let note = |problems: Problems| {
+            for problem in problems {
+                field.error(problem.code_word(), problem.to_string(), problem.hint());
+            }
+        };
+        drives(self.robot?).map_err(note).ok()
+    }
+}
 
 impl Controller {
     /// The law of this kind with gains made from stiffness, motor inertia and link inertia of each joint: where tuning

@@ -9,6 +9,7 @@ use crate::files::field::{Field, Joints};
 use crate::laws::gain::{GainSet, ReadGains};
 use crate::laws::registry::{LawKind, constants};
 use crate::laws::side::{self, SideGains};
+use crate::laws::starting::Starting;
 use crate::laws::{AnyShaping, Drive, Extra, Phi};
 
 /// The kind `vcbc`: [`control::Vcbc`] with any registered φ.
@@ -116,16 +117,20 @@ impl GainSet for VcbcGains {
 }
 
 impl ReadGains for VcbcGains {
-    fn read((): &(), field: &Field<'_>, joints: &Joints) -> Option<Self> {
+    fn read((): &(), field: &Field<'_>, joints: &Joints, starting: &Starting<'_>) -> Option<Self> {
         let table = field.table(&["kind", "phi", "link", "motor"])?;
         let known: Vec<_> = Phi::ALL.iter().map(|phi| (phi.name(), *phi)).collect();
+        if ["link", "motor"].iter().all(|side| table.get(side).is_none()) {
+            let phi = table.optional("phi", |field| field.choice(&known))?.unwrap_or(Phi::Linear);
+            return Some(Self::start(&(), &starting.drives(field)?).shaped_by(phi));
+        }
         let phi = table.choice("phi", &known);
         let link = table
             .required("link", "gains of the link side")
-            .and_then(|field| side::read(&field, phi, joints));
+            .and_then(|field| side::read(&field, phi, joints, starting));
         let motor = table.required("motor", "gains of the motor side").and_then(|field| {
             refuse_hardening(&field)?;
-            side::read(&field, phi, joints)
+            side::read(&field, phi, joints, starting)
         });
         Some(Self { phi: phi?, link: link?, motor: motor? })
     }

@@ -24,8 +24,8 @@ pub struct Advice {
     pub direction: Move,
     /// By which factor, for all joints: with that the loop is stable; none if no factor up to 2¹² makes it so.
     pub factor: Option<f64>,
-    /// A gain that the file leaves to this one, as it is: to be written down before that moves. `controller.motor.shaping = 30.0`.
-    pub keep: Option<String>,
+    /// What it is now in each joint, if the file leaves it to the starting rule: to be written down times the factor.
+    pub now: Option<Vec<f64>>,
     /// Spectral radius of the same law with its starting gains; below 1 these are a way out.
     pub starting_gains: f64,
     /// A control period in s with which the loop is stable as it is, the given one halved as often as needed; none if a 64th of it is not
@@ -85,7 +85,7 @@ pub(super) fn advice(probe: &Probe<'_>, worst: usize) -> Result<Option<Advice>, 
         key: format!("controller.{}", law.gains()[gain].0),
         direction,
         factor,
-        keep: left_to(scenario, gain),
+        now: left_out(scenario, gain),
         starting_gains: probe.worst(&start).0,
         period: period(scenario)?,
         exchange: fastest(law, joint, &drive)
@@ -94,13 +94,10 @@ pub(super) fn advice(probe: &Probe<'_>, worst: usize) -> Result<Option<Advice>, 
     }))
 }
 
-/// The shaping of v-CBC that the file leaves to the metric of the same side.
-fn left_to(scenario: &Scenario, gain: usize) -> Option<String> {
-    let gains = scenario.controller.gains();
-    let shaping = gains[gain].0.strip_suffix("metric")?.to_owned() + "shaping";
-    let (_, values) = gains.iter().find(|(key, _)| *key == shaping)?;
-    let key = format!("controller.{shaping}");
-    (!scenario.places.has(&key)).then(|| format!("{key} = {values:?}"))
+/// A gain that the file leaves to the starting rule.
+fn left_out(scenario: &Scenario, gain: usize) -> Option<Vec<f64>> {
+    let (key, values) = &scenario.controller.gains()[gain];
+    (!scenario.places.has(&format!("controller.{key}"))).then(|| values.to_vec())
 }
 
 /// The joint with the largest part in a mode.

@@ -32,10 +32,12 @@ impl Sampled {
     /// What makes it stable, where it is not.
     pub fn help(&self) -> Option<String> {
         let (advice, gain) = (self.advice.as_ref()?, self.gain.as_ref()?);
-        let Advice { direction, factor, keep, starting_gains, period, exchange, .. } = advice;
-        let keep = keep
-            .as_ref()
-            .map_or(String::new(), |keep| format!(" (write {keep}, which the file leaves to the metric)"));
+        let Advice { direction, factor, now, starting_gains, period, exchange, .. } = advice;
+        let now = now.as_ref().map_or(String::new(), |now| {
+            format!(
+                " (now {now:?} by the starting rule: `flexure check` shows all gains, to be written down)"
+            )
+        });
         let first = match (direction, factor) {
             (Move::Raise, Some(factor)) => {
                 format!("raise {gain}: the loop is stable with {factor} times as much")
@@ -46,11 +48,10 @@ impl Sampled {
             (Move::Raise, None) => format!("raise {gain} first; alone it does not suffice"),
             (Move::Lower, None) => format!("lower {gain} first; alone it does not suffice"),
         };
-        let first = first + &keep;
+        let first = first + &now;
         let start = (*starting_gains < 1.0).then(|| {
             format!(
-                "the starting gains of this law have a spectral radius of {}: `flexure compare SCENARIO --budget 1 --json` shows \
-                 them",
+                "leave the gains out: with its kind alone the law starts from others, of spectral radius {}",
                 short(*starting_gains, 4)
             )
         });

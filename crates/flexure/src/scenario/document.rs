@@ -143,6 +143,12 @@ impl Scenario {
         (act && limits.iter().any(|limit| limit.is_finite())).then(|| limits.clone())
     }
 
+    /// Whether the file leaves the gains to the [starting rule](Controller::default_for): it has none.
+    pub fn has_starting_gains(&self) -> bool {
+        let gains = self.controller.gains();
+        gains.iter().all(|(key, _)| !self.places.has(&format!("controller.{key}")))
+    }
+
     /// The gains of its v-CBC law: what certificates are about.
     ///
     /// # Errors
@@ -225,7 +231,7 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> 
     let end = times.map_or(f64::NAN, |(duration, _)| duration);
     let timed = reference_field.as_ref().and_then(|field| reference::read(field, &joints, base, end));
     let controller = root.required("controller", "a table with the kind");
-    let controller = controller.and_then(|field| controller::read(&field, &joints));
+    let controller = controller.and_then(|field| controller::read(&field, &joints, robot.as_ref()));
     let plant = plant::read(root, &joints, robot.as_ref());
     let context = Context { joints: &joints, robot: robot.as_ref(), times, base };
     let real = real_loop(root, &context, hold, plant.as_ref());

@@ -10,7 +10,7 @@ use flexure::core::robots::Tree;
 use flexure::core::scalar::{Dual, Interval, Jet, Over, Scalar};
 use flexure::eval::evaluate_law;
 use flexure::files::{Problems, StateFile, StateRow};
-use flexure::laws::{CONTROLLERS, Controller, any_law};
+use flexure::laws::{CONTROLLERS, Controller, Phi, any_law};
 use flexure::prove::question::{Question, prove};
 use flexure::robot::load_robot;
 use flexure::robot::{Links, Robot};
@@ -137,6 +137,52 @@ fn starting_gains_follow() {
 
 /// In rad.
 const NEAR: f64 = 0.25;
+
+/// A file that names a kind alone has the starting gains of its robot, and written down they are read as they are.
+#[test]
+fn a_kind_alone_has_starting_gains() {
+    let robot = load_robot("quanser-2dof").expect("built in");
+    let given = |text: &str| read(text).unwrap_or_else(|problems| panic!("{text}: {problems}"));
+    for kind in names() {
+        let scenario = given(&format!("kind = \"{kind}\""));
+        let expected = Controller::default_for(kind, &robot).expect("registered");
+        assert!(scenario.controller == expected && scenario.has_starting_gains(), "{kind}");
+        let written = expected.to_toml();
+        let table = written.strip_prefix("[controller]\n").expect("the table");
+        let scenario = given(table);
+        assert!(scenario.controller == expected && !scenario.has_starting_gains(), "{written}");
+    }
+    for phi in Phi::ALL {
+        let scenario = given(&format!("kind = \"vcbc\"\nphi = \"{}\"", phi.name()));
+        assert_eq!(scenario.controller.phi(), Some(phi.name()));
+        let written = scenario.controller.to_toml();
+        assert_eq!(given(&written[13..]).controller, scenario.controller, "{written}");
+    }
+    // Λ is a rate, whatever the metric is.
+    let side = |metric: f64| format!("metric = {metric}\ndamping = 2");
+    for metric in [20.0, 1e4] {
+        let scenario = given(&format!(
+            "kind = \"vcbc\"\nphi = \"tanh\"\n[controller.link]\n{}\n[controller.motor]\n{}",
+            side(metric),
+            side(metric)
+        ));
+        let gains = scenario.vcbc().expect("v-CBC");
+        let start = Controller::default_for("vcbc", &robot).expect("registered");
+        let rates: Vec<_> = start.gains().into_iter().filter(|(key, _)| key.ends_with("shaping")).collect();
+        assert_eq!([&gains.link.shaping[..], &gains.motor.shaping], [rates[0].1, rates[1].1]);
+    }
+    for (bad, said) in [
+        ("kind = \"pd\"\nstiffness = 2", "missing key controller.damping"),
+        ("kind = \"vcbc\"\nphi = \"tan\"", "controller.phi is 'tan'"),
+        ("kind = \"vcbc\"\n[controller.link]\nmetric = 1\ndamping = 1", "missing key controller.phi"),
+    ] {
+        let problems = read(bad).expect_err(bad).to_string();
+        assert!(problems.contains(said), "{problems}");
+    }
+    let text = format!("{HEAD}kind = \"pd\"").replace("quanser-2dof", "nothing.toml");
+    let problems = scenario_from_text("test.toml", &text, Path::new(".")).expect_err("no robot");
+    assert_eq!(problems.iter().count(), 1, "{problems}");
+}
 
 #[test]
 fn certificates_are_for_v_cbc() {
