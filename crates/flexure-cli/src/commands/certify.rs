@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use flexure::files::Outside;
+use flexure::files::{Outside, read_text};
 use flexure::prove::question::{Direct, Question, Region, SMALLEST_ERROR, prove};
 use flexure::prove::standing::Standing;
 use flexure::prove::summary::ProofSummary;
@@ -55,9 +55,15 @@ pub fn certify(options: &Certify, outside: Outside, json: bool) -> Result<(), Fa
     ended
 }
 
-/// Refuses to write over a file that is no certificate: a scenario, say.
+/// Bytes that a certificate may have.
+const LARGEST_FILE: u64 = 4 << 20;
+
+/// Refuses to write over what is no certificate: a scenario, a pipe.
 fn spare_other_files(path: &Path) -> Result<(), Failure> {
-    let is_other = std::fs::read_to_string(path).is_ok_and(|text| !text.contains("flexure-certificate"));
+    let Ok(found) = path.metadata() else { return Ok(()) };
+    let is_certificate =
+        || read_text(path, LARGEST_FILE).is_ok_and(|text| text.contains("flexure-certificate"));
+    let is_other = !found.is_file() || !is_certificate();
     if !is_other {
         return Ok(());
     }

@@ -4,7 +4,7 @@ use flexure::feasible::{self, Usage};
 use flexure::files::{Assumption, Outside, Problem, Problems};
 use flexure::report::{joint_table, usage_table};
 use flexure::robot::{JointRow, overview, supported};
-use flexure::sampled::{Sampled, probe};
+use flexure::sampled::{Sampled, not_looked_at, probe};
 use flexure::scenario::{self, Checked, Scenario};
 use flexure::simulate::preload;
 use serde::Serialize;
@@ -187,7 +187,12 @@ fn content(file: &str, outside: Outside) -> Result<Found, Problems> {
             let unstable = sampled.as_ref().and_then(|sampled| sampled.problem(&scenario));
             let beyond = feasible::exceeded(&scenario, &reference.usage);
             let exceeded = unstable.into_iter().chain(beyond).collect();
-            let warnings = scenario.warnings.iter().cloned().chain(preload(&scenario)?).collect();
+            let unknown = not_looked_at(&scenario).map(|words| {
+                let help = "a longer control_period or less delay; `flexure run` shows what the loop does";
+                scenario.places.problem("control_period", "sampled", words, help).warning()
+            });
+            let warnings =
+                scenario.warnings.iter().cloned().chain(preload(&scenario)?).chain(unknown).collect();
             let assumed = assumed(&scenario.assumptions);
             let (joints, assumptions, name) = (scenario.robot.joint_count(), assumed.len(), scenario.name);
             let content = Content {

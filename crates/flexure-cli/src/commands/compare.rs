@@ -54,7 +54,7 @@ fn hopeless(leaderboard: &Leaderboard) -> Result<(), Failure> {
         return Ok(());
     }
     let message = format!("no law follows the reference on {}", names.join(", "));
-    let hint =
-        "raise --budget, add --controllers, or make the task easier: a shorter control_period, less delay";
+    let hint = "the reasons stand below the table and in compare.html: where the reference itself is beyond the robot's limits, as `flexure \
+                check` says, no law can; else raise --budget, add --controllers, or shorten control_period and delay";
     Err(Failure::no("lost", message, hint))
 }

@@ -45,6 +45,9 @@ pub fn margins(options: &Margins, outside: Outside, json: bool) -> Result<(), Fa
                 significant(found.allowed_rms_torque_change, 3),
                 found.runs
             ))?;
+            if let Some(sampled) = &found.sampled {
+                print::line(&sampled.line())?;
+            }
         }
     }
     let objections: Vec<_> = loops.iter().filter_map(|found| found.objection(&scenario)).collect();

@@ -8,7 +8,7 @@ use flexure::files::{Outside, Problem, prepare};
 use flexure::imperfections::Imperfection;
 use flexure::report::summary_table;
 use flexure::reproduce::{Experiment, write_experiment};
-use flexure::sampled::Sampled;
+use flexure::sampled::{Sampled, not_looked_at};
 use flexure::scenario::load_scenario_with;
 use flexure::simulate::{Cause, FaultLog, Following, Summary, exceeded, preload};
 use serde::Serialize;
@@ -67,8 +67,9 @@ pub fn run(scenario: &str, outside: Outside, out: &Path, json: bool) -> Result<(
         if let Some(line) = summary_line(&experiment.run.summary) {
             print::line(&line)?;
         }
-        if let Some(sampled) = &experiment.sampled {
-            print::line(&sampled.line())?;
+        let sampled = experiment.sampled.as_ref().map(Sampled::line);
+        if let Some(line) = sampled.or_else(|| not_looked_at(&experiment.scenario)) {
+            print::line(&line)?;
         }
         print::line(&verdict(&experiment.run.summary.following))?;
         for file in &files {
@@ -164,8 +165,9 @@ fn diverged(experiment: &Experiment) -> Option<Problem> {
             Cause::Unsolvable => "unsolvable",
         };
         let unstable = sampled.as_ref().filter(|sampled| !sampled.stable);
-        let hint =
-            unstable.and_then(Sampled::help).unwrap_or_else(|| of_large_signals(divergence.cause).to_owned());
+        let hint = unstable
+            .and_then(Sampled::help)
+            .unwrap_or_else(|| of_large_signals(experiment, divergence.cause));
         let message = match unstable {
             Some(sampled) => format!("{}: {divergence}; {}", scenario.name, sampled.line()),
             None => format!("{}: {divergence}", scenario.name),
@@ -175,15 +177,23 @@ fn diverged(experiment: &Experiment) -> Option<Problem> {
 }
 
 /// What may be wrong where small errors shrink.
-fn of_large_signals(cause: Cause) -> &'static str {
-    match cause {
-        Cause::Unbounded => {
-            "small errors shrink in this loop: it is the large ones, or what stands between law and robot; join the reference \
-             smoothly with [reference.smooth_start], or look at limits, delays and noise"
+fn of_large_signals(Experiment { scenario, sampled, .. }: &Experiment, cause: Cause) -> String {
+    let small = match sampled {
+        Some(_) => {
+            "small errors shrink where the loop was looked at: it is the large ones, or what stands between law and robot; "
         }
-        Cause::Torque => "a sensor that drops out reads NaN: add [guard]",
+        None => "",
+    };
+    let join = match scenario.smooth_start {
+        Some(_) => "",
+        None => "join the reference smoothly with [reference.smooth_start]; ",
+    };
+    let look = match cause {
+        Cause::Unbounded => "look at limits, delays and noise",
+        Cause::Torque => return "a sensor that drops out reads NaN: add [guard]".to_owned(),
         Cause::Unsolvable => {
-            "join the reference smoothly with [reference.smooth_start], and check that it has four continuous derivatives"
+            "check that the reference has four continuous derivatives; a shorter control_period, slower gains"
         }
-    }
+    };
+    format!("{small}{join}{look}")
 }

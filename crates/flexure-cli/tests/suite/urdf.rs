@@ -98,8 +98,8 @@ fn golden_file_on_the_urdf() {
             format!(
                 "robot = 'robot.toml'\nduration = 1.0\ncontrol_period = 0.001\n[initial]\nq_l = {offset}\n\
                  [reference]\nkind = 'sine'\noffset = {offset}\namplitude = {amplitude}\nfrequency = {frequency}\n\
-                 [controller]\nkind = 'vcbc'\nphi = {}\n[controller.link]\nmetric = {Lambda_l}\ndamping = {K_ld}\n\
-                 [controller.motor]\nmetric = {Lambda_m}\ndamping = {K_md}\n",
+                 [controller]\nkind = 'vcbc'\nphi = {}\n[controller.link]\nmetric = {Lambda_l}\nshaping = {Lambda_l}\ndamping = {K_ld}\n\
+                 [controller.motor]\nmetric = {Lambda_m}\nshaping = {Lambda_m}\ndamping = {K_md}\n",
                 case["phi"]
             ),
         );

@@ -2,7 +2,7 @@
 
 use super::Reference;
 use crate::linalg::Vector;
-use crate::scalar::{Jet, Over, Piecewise, Scalar};
+use crate::scalar::{Float, Jet, Over, Piecewise, Scalar};
 
 /// From a motion to rest: position, velocity, acceleration and jerk at `start` are those of `from`, its fourth derivative
 /// is zero there, and from `start + duration` on everything stands still.
@@ -21,6 +21,24 @@ pub struct Stop<C, const N: usize> {
     pub start: C,
     /// Time T in which it comes to rest in s; `duration` > 0 is the caller's duty.
     pub duration: C,
+}
+
+impl<C: Float, const N: usize> Stop<C, N> {
+    /// The same with accelerations and jerks cut so that neither carries a joint on by more than `farthest` > 0 in rad. A light link
+    /// that swings on its spring has large ones, which say nothing of where it goes within T.
+    #[must_use]
+    pub fn within(self, farthest: C) -> Self {
+        let square = self.duration * self.duration;
+        // Of the Taylor coefficients q̈/2 and q⃛/6.
+        let acceleration = farthest * C::from_ratio(14, 3) / square;
+        let jerk = farthest * C::from_ratio(14, 1) / (square * self.duration);
+        let cut = |x: C, most: C| Piecewise::clamp(x, -most, most);
+        let from = self.from.map(|jet| {
+            let [q, v, a, j] = [0, 1, 2, 3].map(|k| jet.coefficient(k));
+            Jet::new([q, v, cut(a, acceleration), cut(j, jerk)])
+        });
+        Self { from, ..self }
+    }
 }
 
 impl<C: Scalar, const N: usize> Reference<C, N> for Stop<C, N> {

@@ -35,7 +35,7 @@ pub struct Score {
     pub chatter: f64,
     /// Fraction of control periods in which a torque limit was active.
     pub saturated_fraction: f64,
-    /// Whether it follows its reference with every seed: only then is it ranked.
+    /// Whether it follows its reference with every seed and is stable as it is sampled: only then is it ranked.
     pub follows: bool,
     /// Why not, in words.
     pub reasons: Vec<String>,
@@ -106,6 +106,9 @@ impl Score {
         };
         let (summary, diverged_at) = (&run.summary, run.divergence.map(|divergence| divergence.time));
         let ended = |figure: f64| if diverged_at.is_none() { figure } else { f64::NAN };
+        let sampled = probe(&tuned.controller)?;
+        let unstable = sampled.as_ref().filter(|sampled| !sampled.stable);
+        let told = summary.following.reasons.iter().map(|reason| reason.words.clone());
         let gains = tuned.controller.gains();
         Ok(Self {
             law: law.to_owned(),
@@ -117,8 +120,8 @@ impl Score {
             rms_torque: ended(summary.rms_u_m),
             chatter: ended(summary.rms_torque_change / summary.rms_u_m.max(f64::MIN_POSITIVE)),
             saturated_fraction: ended(summary.saturated_fraction),
-            follows,
-            reasons: summary.following.reasons.iter().map(|reason| reason.words.clone()).collect(),
+            follows: follows && unstable.is_none(),
+            reasons: unstable.map(Sampled::line).into_iter().chain(told).collect(),
             diverged_at,
             failure: None,
             evaluations: tuned.evaluations,
@@ -126,7 +129,7 @@ impl Score {
                 .into_iter()
                 .map(|(key, values)| TunedGain { key, values: values.to_vec() })
                 .collect(),
-            sampled: probe(&tuned.controller)?,
+            sampled,
             seeds,
         })
     }

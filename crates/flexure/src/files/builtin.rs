@@ -1,5 +1,7 @@
 //! Robots and scenarios that need no files: their texts. One line adds one.
 
+use std::path::Path;
+
 use crate::files::diagnostic::Problem;
 use crate::files::suggest;
 
@@ -47,7 +49,12 @@ pub(crate) fn find(
 ) -> Result<&'static str, Problem> {
     registry.iter().find(|(known, _)| *known == name).map(|&(_, text)| text).ok_or_else(|| {
         let message = format!("no built-in {what} is called {}", suggest::quoted(name));
-        let help = suggest::hint(name, registry.iter().map(|&(known, _)| known));
-        Problem::new("unknown-name", message, format!("{help}; a path ends in .toml or begins with ./"))
+        let help = if Path::new(name).exists() {
+            format!("for the file or folder of that name write ./{name}")
+        } else {
+            let known = suggest::hint(name, registry.iter().map(|&(known, _)| known));
+            format!("{known}; a path ends in .toml or begins with ./")
+        };
+        Problem::new("unknown-name", message, help)
     })
 }

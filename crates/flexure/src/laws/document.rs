@@ -8,19 +8,17 @@ use crate::robot::Robot;
 impl Controller {
     /// What files have of it: `[controller]` with every gain.
     pub fn to_toml(&self) -> String {
-        let mut text = format!("[controller]\nkind = \"{}\"\n", self.kind());
-        if let Some(phi) = self.phi() {
-            text += &format!("phi = \"{phi}\"\n");
-        }
+        let phi = self.phi().map(|phi| format!("phi = \"{phi}\"\n")).unwrap_or_default();
+        let mut text = format!("[controller]\nkind = \"{}\"\n{phi}", self.kind());
         let mut table = "";
         let gains = self.gains();
         for (path, values) in &gains {
             let (within, key) = path.rsplit_once('.').unwrap_or(("", path));
             if within != table {
-                text += &format!("[controller.{within}]\n");
+                text.extend(["[controller.", within, "]\n"]);
                 table = within;
             }
-            text += &format!("{key} = {values:?}\n");
+            text.extend([key, " = ", &format!("{values:?}"), "\n"]);
         }
         text
     }

@@ -214,9 +214,14 @@ impl Margins {
 
     /// Says that the loop does not even hold as it is, if so.
     pub fn objection(&self, scenario: &Scenario) -> Option<Problem> {
-        (self.delay == Edge::Nowhere).then(|| {
+        let unstable = self.sampled.as_ref().filter(|sampled| !sampled.stable);
+        (self.delay == Edge::Nowhere || unstable.is_some()).then(|| {
             let how = match self.rms_e_l {
                 None => "diverges as it is".to_owned(),
+                Some(_) if self.reasons.is_empty() => {
+                    let line = unstable.map_or_else(String::new, Sampled::line);
+                    format!("follows for as long as the run is, but {line}")
+                }
                 Some(_) => format!("does not follow its reference: {}", self.reasons.join("; ")),
             };
             let message = format!("{}, {}: the loop {how}: it has no margins", self.name, self.law());

@@ -6,7 +6,7 @@ use crate::compare::{Leaderboard, Loss, Score, TaskScores, is_vcbc};
 use crate::files::number::{NONE, engineering, short, significant};
 use crate::report::effort::{chatter_figure, effort_figure};
 use crate::report::html::{AssumedNumber, assumptions};
-use crate::report::leaderboard_table::{range, ranks_with_one};
+use crate::report::leaderboard_table::{place, range, ranks_with_one, spectral_radius};
 
 const TITLE: &str = "Control laws of flexible-joint robots on the same bench";
 
@@ -72,18 +72,22 @@ fn ranking(board: &Leaderboard) -> Markup {
             thead { tr {
                 th { "law" } th { "place" } th { "mean rank" } th { "mean rank" br; span.unit { "with one seed" } } th { "best on" br; span.unit { "tasks" } }
                 th { "median factor" br; span.unit { "to the best" } } th { "does not follow on" br; span.unit { "tasks" } }
+                th { "spectral radius" br; span.unit { "of the sampled loop" } }
             } }
             tbody { @for standing in &board.ranking { tr {
                 th scope="row" { (name(&standing.law)) }
-                td { (standing.place) } td { (short(standing.mean_rank, 3)) } td { (ranks_with_one(standing)) } td { (standing.wins) }
+                td { (place(board, standing)) } td { (short(standing.mean_rank, 3)) } td { (ranks_with_one(standing)) } td { (standing.wins) }
                 td { (finite(standing.median_factor)) } td { (standing.unfinished) }
+                td { (spectral_radius(board, &standing.law)) }
             } } }
         } }
         p.note {
             "Mean rank: over the tasks, 1 for the smallest penalised error, the median over the seeds. Errors that overlap over the \
              seeds with those of the best of a group, or are within 1 % of them, tie and share the mean of their ranks, and so do \
              laws that do not follow, at the end. Laws whose mean ranks with one seed overlap share a place with the first of them. \
-             Median factor: a law's penalised error over the best law's; — if the law does not follow on half of the tasks."
+             Median factor: a law's penalised error over the best law's; — if the law does not follow on half of the tasks. \
+             Spectral radius: of the loop that holds its torque for a control period, the largest over the tasks; loops that are \
+             unstable as sampled are not ranked, whether they follow until the run ends or not."
         }
     }
 }

@@ -1,5 +1,7 @@
 //! A comparison of laws on a terminal.
 
+use std::fmt::Write;
+
 use comfy_table::{Cell, Row};
 
 use crate::compare::{Leaderboard, Score, Spread, Standing, TIE, TaskScores};
@@ -7,7 +9,7 @@ use crate::files::number::{NONE, short, significant};
 use crate::report::table::{headed, right};
 
 /// Tasks side by side.
-const MOST_TASKS: usize = 7;
+const MOST_TASKS: usize = 4;
 
 /// Errors of every law on every task, then the ranking: at most 100 columns wide, without colours.
 pub fn leaderboard_table(board: &Leaderboard) -> String {
@@ -24,7 +26,14 @@ pub fn leaderboard_table(board: &Leaderboard) -> String {
     );
     text.push_str(&seeds(board));
     text.push('\n');
-    text.push_str(&ranking(&board.ranking));
+    text.push_str(&ranking(board));
+    for task in board.hopeless() {
+        let _ = write!(text, "\nno law follows on {}:", task.task);
+        for score in &task.scores {
+            let why = score.failure.as_ref().or(score.reasons.first());
+            let _ = write!(text, "\n  {}: {}", score.law, why.map_or("", String::as_str));
+        }
+    }
     text
 }
 
@@ -81,7 +90,19 @@ pub(super) fn ranks_with_one(standing: &Standing) -> String {
     if low == high { low } else { format!("{low} … {high}") }
 }
 
-fn ranking(ranking: &[Standing]) -> String {
+/// A law's place; none if it follows on no task.
+pub(super) fn place(board: &Leaderboard, standing: &Standing) -> String {
+    if standing.unfinished < board.tasks.len() { standing.place.to_string() } else { NONE.to_owned() }
+}
+
+/// The largest spectral radius of a law's sampled loops over the tasks.
+pub(super) fn spectral_radius(board: &Leaderboard, law: &str) -> String {
+    let scores = board.tasks.iter().flat_map(|task| &task.scores).filter(|score| score.law == law);
+    let radii = scores.filter_map(|score| score.sampled.as_ref()).map(|sampled| sampled.spectral_radius);
+    radii.max_by(f64::total_cmp).map_or(NONE.to_owned(), |radius| short(radius, 5))
+}
+
+fn ranking(board: &Leaderboard) -> String {
     let titles = [
         "place",
         "law",
@@ -90,9 +111,10 @@ fn ranking(ranking: &[Standing]) -> String {
         "best on\ntasks",
         "median factor\nto the best",
         "does not\nfollow on",
+        "spectral\nradius",
     ];
     let mut table = headed(titles.into_iter());
-    for standing in ranking {
+    for standing in &board.ranking {
         let factor = Some(standing.median_factor).filter(|factor| factor.is_finite());
         let numbers = [
             short(standing.mean_rank, 3),
@@ -100,8 +122,9 @@ fn ranking(ranking: &[Standing]) -> String {
             standing.wins.to_string(),
             factor.map_or(NONE.to_owned(), |factor| significant(factor, 3)),
             standing.unfinished.to_string(),
+            spectral_radius(board, &standing.law),
         ];
-        let first = [right(standing.place.to_string()), Cell::new(&standing.law)];
+        let first = [right(place(board, standing)), Cell::new(&standing.law)];
         table.add_row(Row::from(first.into_iter().chain(numbers.map(right)).collect::<Vec<_>>()));
     }
     table.to_string()

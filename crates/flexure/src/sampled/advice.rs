@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::files::Problems;
+use crate::imperfections::{Imperfection, Sampling};
 use crate::laws::{Controller, drives};
 use crate::linalg::{Dense, Mode, dominant_mode};
 use crate::sampled::exchange::fastest;
@@ -136,6 +137,10 @@ fn period(scenario: &Scenario) -> Result<Option<f64>, Problems> {
     let mut shorter = scenario.clone();
     for _ in 0..HALVINGS {
         shorter.control_period *= 0.5;
+        // Sensors stay as slow as they are.
+        for sampling in shorter.imperfections.iter_mut().filter_map(Imperfection::of_mut::<Sampling>) {
+            sampling.periods = sampling.periods.saturating_mul(2);
+        }
         let Some(probe) = Probe::new(&shorter)? else { return Ok(None) };
         if probe.worst(&scenario.controller).0 < 1.0 {
             return Ok(Some(shorter.control_period));

@@ -2,9 +2,11 @@
 //!
 //! A controller acts at instants; between them its torque stays, comes late, and is computed from what sensors and estimators
 //! made of the motion. The exact linearisation of all that from one instant to the next has a spectral radius ρ: small errors grow or
-//! shrink by it, control period for control period. It is looked at where the robot starts, and along the reference. A loop
-//! with ρ ≥ 1 is of no use, whatever is proved of the same law in continuous time; ρ < 1 is necessary, not sufficient: limits,
-//! noise and large errors are not small signals.
+//! shrink by it, control period for control period. It is looked at where the robot starts, and along the reference.
+//!
+//! ρ ≥ 1 where the robot stands is the end of the loop, whatever is proved of the same law in continuous time. A place that it passes
+//! may have ρ > 1 for a while: there it counts what the maps from place to place make of small errors one after the other
+//! ([`growth`]). ρ < 1 is necessary, not sufficient: limits, noise and large errors are not small signals.
 //!
 //! The parts are the loop's own code on numbers that carry a derivative along ([`Tangent`](crate::core::scalar::Tangent)), the plant
 //! between two instants is the exponential of its Jacobian.
@@ -12,6 +14,7 @@
 mod advice;
 mod devices;
 mod exchange;
+mod growth;
 mod lifted;
 mod map;
 mod words;
@@ -55,9 +58,9 @@ pub struct Sampled {
     pub time: f64,
     /// Where: at the initial motion, or on the reference.
     pub place: Place,
-    /// Whether small errors shrink everywhere that was looked at.
+    /// Whether small errors shrink: everywhere, or on the whole where the robot passes places at which they grow a little.
     pub stable: bool,
-    /// Rate at which they do at least [1/s]; negative where they grow.
+    /// Rate at which they do at least [1/s], on the whole where there are such places; negative where they grow.
     pub rate: f64,
     /// The joint that moves most in the mode of this radius, where it is not stable.
     pub joint: Option<String>,
@@ -86,18 +89,27 @@ pub enum Place {
 pub fn probe(scenario: &Scenario) -> Result<Option<Sampled>, Problems> {
     let Some(probe) = Probe::new(scenario)? else { return Ok(None) };
     let (radius, worst) = probe.worst(&scenario.controller);
-    let stable = radius < 1.0 + ROUNDING;
+    let growth = if radius < 1.0 + ROUNDING { Some(radius) } else { probe.passed(worst) };
+    let stable = growth.is_some();
     let advice = if stable { None } else { advice::advice(&probe, worst)? };
     Ok(Some(Sampled {
         spectral_radius: radius,
         time: probe.spots[worst].time,
         place: probe.spots[worst].place,
         stable,
-        rate: -radius.ln() / scenario.control_period,
+        rate: -growth.unwrap_or(radius).ln() / scenario.control_period,
         joint: advice.as_ref().map(|advice| advice.joint_name.clone()),
         gain: advice.as_ref().map(|advice| advice.key.clone()),
         advice,
     }))
+}
+
+/// Why the sampled loop of `scenario` is not looked at, if it is not and its law acts at instants.
+pub fn not_looked_at(scenario: &Scenario) -> Option<String> {
+    let waiting = Devices::of(scenario).waiting.saturating_mul(scenario.robot.joint_count());
+    (scenario.hold == Hold::ZeroOrder && waiting > TOO_MANY).then(|| {
+        format!("sampled loop: not looked at, {waiting} torques of all joints are on their way at a time, more than {TOO_MANY}")
+    })
 }
 
 /// The spectral radius at every place that [`probe`] looks at: time in s, place and radius; nothing where it does not look.
@@ -108,6 +120,16 @@ pub fn radii(scenario: &Scenario) -> Result<Vec<(f64, Place, f64)>, Problems> {
     let Some(probe) = Probe::new(scenario)? else { return Ok(Vec::new()) };
     let law = &scenario.controller;
     Ok(probe.spots.iter().map(|spot| (spot.time, spot.place, probe.radius(spot, law))).collect())
+}
+
+/// Parts of a run at which it is looked at: its ends, and multiples of the golden section in between, which fall on other phases of
+/// whatever repeats.
+fn times(places: u32) -> Vec<f64> {
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let inside = (1..places - 1).map(|i| (f64::from(i) * golden).fract());
+    let mut times: Vec<_> = inside.chain([0.0, 1.0]).collect();
+    times.sort_by(f64::total_cmp);
+    times
 }
 
 /// Everything about a scenario that its gains do not change.
@@ -138,7 +160,7 @@ impl<'a> Probe<'a> {
         let (lifted, arm) = (lifted(scenario)?, scenario.robot.arm()?);
         let mut probe = Self { scenario, lifted, arm, devices, spots: Vec::new() };
         let period = scenario.control_period;
-        let on_reference = (0..places).map(|i| f64::from(i) / f64::from(places - 1) * scenario.duration);
+        let on_reference = times(places).into_iter().map(|part| part * scenario.duration);
         let spots: Vec<_> = [(0.0, Place::Start)]
             .into_iter()
             .chain(on_reference.map(|time| (time, Place::Reference)))
@@ -180,6 +202,12 @@ impl<'a> Probe<'a> {
         let motors = |k: usize| q_m.iter().map(move |q| q[k]);
         let motion = links(0).chain(motors(0)).chain(links(1)).chain(motors(1)).collect();
         Nominal { motion, u_m: u_m.iter().map(|u| u[0]).collect() }
+    }
+
+    /// How far apart the links are on the reference at two times, in rad.
+    fn moved(&self, from: f64, to: f64) -> f64 {
+        let [from, to] = [from, to].map(|time| self.lifted.reference(time));
+        from.iter().zip(&to).fold(0.0, |farthest: f64, (a, b)| farthest.max((b[0] - a[0]).abs()))
     }
 
     /// Spectral radius of a spot with `law`, per control period.

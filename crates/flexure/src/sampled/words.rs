@@ -17,8 +17,10 @@ impl Sampled {
         let radius = short(self.spectral_radius, digits);
         match (self.stable, &self.joint) {
             (true, _) => {
+                let whole =
+                    if self.spectral_radius < 1.0 { "" } else { " on the whole way along the reference" };
                 format!(
-                    "sampled loop: spectral radius {radius} {at}; small errors shrink by {} 1/s",
+                    "sampled loop: spectral radius {radius} {at}; small errors shrink by {} 1/s{whole}",
                     short(self.rate, 4)
                 )
             }

@@ -277,6 +277,11 @@ where
         self.law.torque(&self.robot, t, x, &self.reference.at(t))
     }
 
+    /// Whether the law has taken over from the guard: it then joins the reference again.
+    pub(crate) fn has_rejoined(&self) -> bool {
+        self.state.rejoined.is_some()
+    }
+
     /// The reference; after a stop it is joined from how the robot moved when the law took over.
     fn reference_at(&self, t: f64) -> Vector<Jet<f64, 5>, N> {
         match (&self.state.rejoined, &self.guard) {

@@ -88,6 +88,10 @@ impl<const N: usize> Guarded<N> {
     }
 }
 
+/// How far the accelerations that a robot has when the law takes over may carry the reference on in rad: a robot that is stopped is slow,
+/// and links that swing on their springs stay where they are.
+const FARTHEST: f64 = 0.1;
+
 /// From the whole motion of the links, position to jerk, which positions and velocities of both sides decide.
 fn coming_to_rest<L: Links<f64, N>, const N: usize>(
     robot: &Fjr<f64, L, N>,
@@ -96,7 +100,7 @@ fn coming_to_rest<L: Links<f64, N>, const N: usize>(
     settle: f64,
 ) -> Stop<f64, N> {
     let from = robot.link_motion(&robot.links.factor(&x.q_l), x);
-    Stop { from, start: t, duration: settle }
+    Stop { from, start: t, duration: settle }.within(FARTHEST)
 }
 
 /// The law of a loop at a control instant.

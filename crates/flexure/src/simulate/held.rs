@@ -204,6 +204,7 @@ where
         check("motion", "4n", observed.motion.len(), 4 * n)?;
         for (name, vector) in [
             ("reference", &observed.reference),
+            ("followed", &observed.followed),
             ("command", &observed.command),
             ("applied", &observed.applied),
         ] {
@@ -213,7 +214,13 @@ where
         let action = instant.action;
         observed.t = instant.t;
         write_motion(instant.motion, n, &mut observed.motion);
-        write(&action.reference.map(|jet| jet.coefficient(0)), &mut observed.reference);
+        let positions = |q_ld: Vector<Jet<f64, 5>, N>| q_ld.map(|jet| jet.coefficient(0));
+        write(&positions(action.reference), &mut observed.followed);
+        if self.simulation.controller().has_rejoined() {
+            write(&positions(self.reference_at(instant.t)), &mut observed.reference);
+        } else {
+            observed.reference.clone_from(&observed.followed);
+        }
         write(&action.u_m, &mut observed.command);
         write(&action.applied.last(), &mut observed.applied);
         (observed.certificate, observed.stopped) = (action.certificate, action.stopped);

@@ -164,8 +164,10 @@ pub struct Observed {
     pub t: f64,
     /// True motion, 4n numbers [rad, rad/s].
     pub motion: Vec<f64>,
-    /// Reference in rad, n numbers.
+    /// Where the links shall be by the scenario in rad, n numbers.
     pub reference: Vec<f64>,
+    /// The reference that the law follows in rad, n numbers: the same, but after a stop of the guard, until that is joined again.
+    pub followed: Vec<f64>,
     /// Torque that leaves the controller [N m], n numbers.
     pub command: Vec<f64>,
     /// Torque of the motors at the end of the period [N m], n numbers.
@@ -185,6 +187,7 @@ impl Observed {
             t: 0.0,
             motion: zeros(4 * n),
             reference: zeros(n),
+            followed: zeros(n),
             command: zeros(n),
             applied: zeros(n),
             certificate: true,

@@ -35,9 +35,11 @@ kind = "vcbc"
 phi = "tanh"
 [controller.link]
 metric = 50.0
+shaping = 50.0
 damping = 10.0
 [controller.motor]
 metric = 60.0
+shaping = 60.0
 damping = 10.0
 "#;
 

@@ -200,6 +200,19 @@ fn a_slow_loop_is_found_out() {
     assert!(slow.joint.is_some() && slow.gain.is_some());
 }
 
+/// Wherever it is looked at along a reference that repeats, phases are not all the same.
+#[test]
+fn places_fall_on_all_phases() {
+    for repeats in [2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 24.0] {
+        let found = radii(&two_link(0.01, "kind = \"sine\"\namplitude = 0.0\nfrequency = 1.0", "")).unwrap();
+        let phase = |time: f64| (time / 1.2 * repeats).fract();
+        let mut phases: Vec<_> = found.iter().map(|(time, ..)| phase(*time)).collect();
+        phases.sort_by(f64::total_cmp);
+        let widest = phases.windows(2).fold(0.0_f64, |widest, pair| widest.max(pair[1] - pair[0]));
+        assert!(widest < 0.2, "{repeats} repetitions: {widest} of a phase unseen");
+    }
+}
+
 /// What is advised was tried: done one at a time, each makes the loop stable.
 #[test]
 fn advice_helps() {
@@ -249,4 +262,45 @@ fn advice_helps() {
         factors > 5 && periods > 5 && starts > 5,
         "{factors} factors, {periods} periods, {starts} starts"
     );
+}
+
+/// Two loops that start 0.1 µrad apart, along a reference that takes the arm through all postures of its elbow: what becomes of that is what
+/// the verdict says, where the largest radius is above 1, too.
+#[test]
+fn small_errors_do_on_the_way_what_the_verdict_says() {
+    const APART: f64 = 1e-7; // rad
+    let sine = "kind = \"sine\"\namplitude = [0.5, 1.6]\nfrequency = [2.0, 3.0]\n[reference.smooth_start]\nduration = 0.5";
+    let (mut shrunk, mut passed, mut grew) = (0, 0, 0);
+    for law in ["vcbc", "cascade", "feedback-linearization", "backstepping"] {
+        for milliseconds in [4, 8, 10, 14, 20, 32] {
+            let mut scenario = two_link(f64::from(milliseconds) * 1e-3, sine, "");
+            scenario.duration = 8.0;
+            scenario.controller =
+                entrants(&[law.to_owned()]).unwrap()[0].controller(&scenario.robot).unwrap();
+            let found = probe(&scenario).unwrap().unwrap();
+            let end = |start: f64| {
+                let mut scenario = scenario.clone();
+                scenario.initial.q_l[1] += start;
+                scenario.initial.q_m[1] += start;
+                let mut held = scenario.open().unwrap();
+                let mut seen = Observed::new(2);
+                while seen.t < 7.9 && held.step().is_ok() {
+                    held.observe(&mut seen).unwrap();
+                }
+                (seen.t, seen.motion)
+            };
+            let [(until, one), (_, other)] = [end(0.0), end(APART)];
+            let distance = one[..4].iter().zip(&other).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+            let what = format!("{law} at {milliseconds} ms: {}, apart {distance}", found.line());
+            if found.stable {
+                assert!(until > 7.8 && distance < APART, "{what}");
+                passed += i32::from(found.spectral_radius > 1.0);
+                shrunk += 1;
+            } else {
+                assert!(until < 7.8 || distance > 100.0 * APART, "{what}");
+                grew += 1;
+            }
+        }
+    }
+    assert!(shrunk >= 8 && passed >= 4 && grew >= 8, "{shrunk} shrunk, {passed} of them passed, {grew} grew");
 }

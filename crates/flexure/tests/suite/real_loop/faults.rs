@@ -194,9 +194,9 @@ fn course(scenario: &Scenario, mut see: impl FnMut(&Observed)) {
     }
 }
 
-/// Largest error of the links in rad.
+/// Largest distance of the links from the reference that the law follows in rad.
 fn error(observed: &Observed) -> f64 {
-    let links = observed.motion.iter().zip(&observed.reference);
+    let links = observed.motion.iter().zip(&observed.followed);
     links.fold(0.0, |worst, (q_l, q_ld)| worst.max((q_l - q_ld).abs()))
 }
 
