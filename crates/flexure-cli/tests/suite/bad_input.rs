@@ -218,6 +218,8 @@ fn arguments() {
         (&["list", "bogus"], "possible values: robots, scenarios"),
         (&["run", "two-link-tahn"], "did you mean 'two-link-tanh'?"),
         (&["run", ""], "no built-in scenario is called ''"),
+        (&["certify", "two-link-linear", "--out", "/dev/full"], "exists and is no certificate"),
+        (&["certify", "two-link-linear", "--out", "/dev/zero"], "exists and is no certificate"),
         (&["model", "quanser", "--states", "-"], "no built-in robot is called 'quanser'"),
     ] {
         let outcome = place.run(args);

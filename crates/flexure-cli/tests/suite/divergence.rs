@@ -60,3 +60,43 @@ fn a_loop_that_diverges_at_once_has_no_figures_and_a_trace_of_a_header() {
     let table = place.run(&["run", "far.toml"]).stdout;
     assert!(table.contains('—') && !table.contains("NaN"), "{table}");
 }
+
+/// It stands still where it shall, for so short a time that nothing shows: yet small errors would grow, and every command says no.
+#[test]
+fn a_loop_that_is_unstable_is_a_no_even_if_its_run_ends_before() {
+    let place = Place::new();
+    let standing = [
+        HALF_RATE,
+        ("duration = 10.0", "duration = 0.02"),
+        ("amplitude = [1.0, 1.0]", "amplitude = [0.0, 0.0]"),
+    ];
+    place.scenario("still.toml", &standing);
+    let outcome = place.run(&["run", "still.toml", "--json"]);
+    assert_eq!(outcome.code, Some(1), "{outcome:?}");
+    let summary = outcome.json();
+    assert_eq!((&summary["follows"], &summary["sampled"]["stable"]), (&true.into(), &false.into()));
+    let compare: &[&str] = &["compare", "still.toml", "--controllers", "vcbc", "--budget", "1"];
+    for command in [&["check", "still.toml"][..], &["margins", "still.toml"], &["certify", "still.toml"]] {
+        let outcome = place.run(command);
+        assert_eq!(outcome.code, Some(1), "{command:?}: {outcome:?}");
+        outcome.said(&["unstable"]);
+    }
+    // The search finds other gains: whether these are stable decides.
+    let outcome = place.run(&[compare, &["--json"]].concat());
+    let score = &outcome.json()["tasks"][0]["scores"][0];
+    assert_eq!(score["follows"], score["sampled"]["stable"], "{score}");
+}
+
+/// With 40 ms of delay at 1 kHz nobody looks at the sampled loop: that is said, and nothing is said to shrink.
+#[test]
+fn a_loop_that_is_not_looked_at_says_so() {
+    let place = Place::new();
+    let late = "[[imperfection]]\nkind = \"delay\"\ncomputation = 0.04\n\n[sources]";
+    place.scenario("late.toml", &[("duration = 10.0", "duration = 2.0"), ("[sources]", late)]);
+    let words = "sampled loop: not looked at, 80 torques";
+    let checked = place.run(&["check", "late.toml"]).done();
+    assert!(checked.stderr.contains("not looked at"), "{checked:?}");
+    let outcome = place.run(&["run", "late.toml"]);
+    assert_eq!(outcome.code, Some(1), "{outcome:?}");
+    assert!(outcome.stdout.contains(words) && !outcome.stderr.contains("small errors shrink"), "{outcome:?}");
+}

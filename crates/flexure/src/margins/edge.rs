@@ -45,6 +45,9 @@ pub struct Way {
 /// The bracket is narrowed to this part of its outer end.
 const RESOLUTION: f64 = 0.01;
 
+/// What is less than this part of the first step is nothing.
+const LEAST: f64 = 1e-6;
+
 /// Factor from one change to the next until one fails.
 const GROWTH: f64 = 1.5;
 
@@ -80,7 +83,12 @@ impl Way {
             bad *= growth;
             bad = if short_of_last(bad) { bad } else { self.last };
         }
-        while (bad - good).abs() > RESOLUTION * good.abs().max(bad.abs()) {
+        // Of a loop that bears nothing at all the bracket would shrink for ever.
+        let least = LEAST * (self.first - self.from).abs();
+        let is_wide = |good: f64, bad: f64| {
+            (bad - good).abs() > RESOLUTION * good.abs().max(bad.abs()) && (bad - self.from).abs() > least
+        };
+        while is_wide(good, bad) {
             let middle = 0.5 * (good + bad);
             tried += 1;
             if holds(middle)? {
@@ -113,6 +121,15 @@ mod tests {
             assert!(inside(holds) && !inside(fails));
             assert!((holds - fails).abs() <= 0.01 * holds.max(fails));
         }
+    }
+
+    #[test]
+    fn what_bears_nothing_is_found_soon() {
+        let (found, tried) = Way::outward(0.0, 1e-4, 1.0).edge(&|_| Ok(false)).expect("nothing goes wrong");
+        assert!(
+            tried < 30 && matches!(found, Edge::Between { holds: 0.0, fails } if fails < 1e-9),
+            "{found:?}"
+        );
     }
 
     #[test]

@@ -273,3 +273,18 @@ fn certificates_hold_where_the_drive_gives_what_the_law_asks() {
         assert!((run.summary.suspended_fraction - suspended).abs() < 1e-12, "{name}: the column's share");
     }
 }
+
+/// A guard stops the arm for a while: what it is late by counts, though the law follows the reference that it joins again.
+#[test]
+fn errors_count_from_the_reference_of_the_scenario() {
+    let lost = "[guard]\nstop_damping = 4.0\n[[imperfection]]\nkind = \"dropout\"\nfrom = 2.5\nuntil = 2.6\n";
+    let run = with("two-link-tanh-smooth", &[("duration = 10.0", "duration = 5.0")], lost)
+        .simulate()
+        .expect("good");
+    let followed = run.trace.joints("e_l");
+    let largest = followed.iter().flat_map(|e| e.iter()).fold(0.0, |most: f64, e| most.max(e.abs()));
+    assert!(run.summary.max_abs_e_l > largest + 0.05, "{} and {largest} rad", run.summary.max_abs_e_l);
+    let reason = run.summary.following.reasons.first().expect("it is late");
+    assert_eq!(reason.measure, Some(Measure::Error));
+    assert!(run.summary.final_abs_e_l < 1e-6, "joined again: {} rad", run.summary.final_abs_e_l);
+}

@@ -218,9 +218,10 @@ fn places_fall_on_all_phases() {
 fn advice_helps() {
     let late = "[[imperfection]]\nkind = \"delay\"\ncomputation = 0.0007\n";
     let filter = "[[imperfection]]\nkind = \"velocity-filter\"\norder = 2\ncutoff = 90.0\ndamping = 0.9\n";
+    let slow = "[[imperfection]]\nkind = \"sampling\"\nside = \"link\"\nperiod = 0.02\n";
     let (mut factors, mut periods, mut starts) = (0, 0, 0);
     for law in ["vcbc", "vcbc:tanh", "cascade", "backstepping", "feedback-linearization"] {
-        for (milliseconds, more) in [(2, late), (5, ""), (5, filter), (20, "")] {
+        for (milliseconds, more) in [(2, late), (5, ""), (5, filter), (5, slow), (20, "")] {
             let mut scenario = standing(f64::from(milliseconds) * 1e-3, more);
             let start = entrants(&[law.to_owned()]).unwrap()[0].controller(&scenario.robot).unwrap();
             for (gain, factor) in [(0, 1.0), (0, 1e-3), (1, 20.0)] {

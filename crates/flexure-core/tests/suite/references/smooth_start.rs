@@ -1,7 +1,7 @@
 //! References that are joined from elsewhere.
 
 use flexure_core::linalg::Vector;
-use flexure_core::reference::{PointToPoint, Reference, SmoothStart, Smoothstep};
+use flexure_core::reference::{PointToPoint, Reference, SmoothStart, Smoothstep, Stop};
 use flexure_core::scalar::Jet;
 
 use super::{FROM, SINE, SMOOTH_START, assert_close, instants};
@@ -72,4 +72,25 @@ fn smooth_start_to_a_set_point_is_the_nonic_motion() {
     for t in instants() {
         assert_eq!(start.at::<6>(t), motion.at(t), "at {t} s");
     }
+}
+
+/// Accelerations and jerks of a link that swings carry a reference no farther than is said; what is small stays as it is.
+#[test]
+fn a_swinging_link_throws_no_reference() {
+    let swinging = Stop {
+        from: Vector([Jet::new([0.3, 0.1, 4e3, -7e5]), Jet::new([-0.6, -0.2, 0.5, -0.3])]),
+        start: 1.0,
+        duration: 0.25,
+    };
+    let calm = swinging.within(0.05);
+    assert_eq!(calm.from[1], swinging.from[1], "small");
+    assert_eq!([0, 1].map(|k| calm.from[0].coefficient(k)), [0.3, 0.1], "where it is and how fast");
+    let (mut thrown, mut farthest) = (0.0_f64, 0.0_f64);
+    for k in 0..=100 {
+        let t = 1.0 + 0.0025 * f64::from(k);
+        thrown = thrown.max((swinging.on(t)[0] - 0.3).abs());
+        farthest = farthest.max((calm.on(t)[0] - 0.3).abs());
+    }
+    // T q̇ / 2 by the velocity, 0.05 rad each by acceleration and jerk.
+    assert!(farthest <= 0.0125 + 0.1 && thrown > 10.0, "{farthest} and {thrown} rad");
 }
