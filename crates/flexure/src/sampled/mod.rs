@@ -6,7 +6,7 @@
 //!
 //! ρ ≥ 1 where the robot stands is the end of the loop, whatever is proved of the same law in continuous time. A place that it passes
 //! may have ρ > 1 for a while: there it counts what the maps from place to place make of small errors one after the other
-//! ([`growth`]). ρ < 1 is necessary, not sufficient: limits, noise and large errors are not small signals.
+//! (`growth.rs`). ρ < 1 is necessary, not sufficient: limits, noise and large errors are not small signals.
 //!
 //! The parts are the loop's own code on numbers that carry a derivative along ([`Tangent`](crate::core::scalar::Tangent)), the plant
 //! between two instants is the exponential of its Jacobian.
