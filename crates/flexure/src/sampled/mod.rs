@@ -88,8 +88,7 @@ pub enum Place {
 /// As [`Scenario::open`].
 pub fn probe(scenario: &Scenario) -> Result<Option<Sampled>, Problems> {
     let Some(probe) = Probe::new(scenario)? else { return Ok(None) };
-    let (radius, worst) = probe.worst(&scenario.controller);
-    let growth = if radius < 1.0 + ROUNDING { Some(radius) } else { probe.passed(worst) };
+    let (radius, worst, growth) = probe.found();
     let stable = growth.is_some();
     let advice = if stable { None } else { advice::advice(&probe, worst)? };
     Ok(Some(Sampled {
@@ -102,6 +101,14 @@ pub fn probe(scenario: &Scenario) -> Result<Option<Sampled>, Problems> {
         gain: advice.as_ref().map(|advice| advice.key.clone()),
         advice,
     }))
+}
+
+/// Whether the sampled loop of `scenario` is stable, or not looked at.
+///
+/// # Errors
+/// As [`Scenario::open`].
+pub(crate) fn is_stable(scenario: &Scenario) -> Result<bool, Problems> {
+    Ok(Probe::new(scenario)?.is_none_or(|probe| probe.found().2.is_some()))
 }
 
 /// Why the sampled loop of `scenario` is not looked at, if it is not and its law acts at instants.
@@ -227,6 +234,13 @@ impl<'a> Probe<'a> {
             Place::Reference => self.on_reference(spot.time).motion,
         };
         around.cycle(&self.lifted.law(law, spot.time, &motion))
+    }
+
+    /// The largest spectral radius that counts, where it is, and by what small errors shrink a control period, if they do.
+    fn found(&self) -> (f64, usize, Option<f64>) {
+        let (radius, worst) = self.worst(&self.scenario.controller);
+        let growth = if radius < 1.0 + ROUNDING { Some(radius) } else { self.passed(worst) };
+        (radius, worst, growth)
     }
 
     /// The largest spectral radius with `law` that counts, and where it is; what is no number is larger than any.

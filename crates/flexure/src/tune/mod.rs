@@ -11,6 +11,7 @@ use crate::feasible;
 use crate::files::Problems;
 use crate::laws::Controller;
 use crate::progress::Progress;
+use crate::sampled::is_stable;
 use crate::scenario::Scenario;
 use crate::simulate::{Criteria, Run, Summary, measure_by};
 
@@ -87,7 +88,7 @@ pub(crate) fn tune_from(
     let criteria = Criteria::of(&trial)?;
     // Whatever is wrong with the scenario is so for all gains.
     let start = measure_by(&trial, &criteria)?;
-    let (start_cost, start_error) = (cost(&start), penalised_error(&start.summary));
+    let (start_cost, start_error) = (judged(&trial, &start), penalised_error(&start.summary));
     let gains: Vec<Vec<f64>> =
         scenario.controller.gains().into_iter().map(|(_, values)| values.to_vec()).collect();
     let powers = scenario.controller.speed_powers();
@@ -110,7 +111,8 @@ pub(crate) fn tune_from(
             return f64::INFINITY;
         }
         trial.controller = scaled(exponents);
-        costs.at(exponents, || measure_by(&trial, &criteria).map_or(f64::INFINITY, |run| cost(&run)))
+        costs
+            .at(exponents, || measure_by(&trial, &criteria).map_or(f64::INFINITY, |run| judged(&trial, &run)))
     };
     let best = search(1 + gains.len(), HALF_WIDTH, budget, seed, &at);
     if broken.get() {
@@ -125,7 +127,13 @@ pub(crate) fn tune_from(
     })
 }
 
-/// What it costs not to follow: more than loops that do can, whose logarithm lies between those of 10⁻¹² and 10¹² rad.
+/// What a run of a scenario costs; one whose sampled loop is unstable has only ended before that shows.
+fn judged(scenario: &Scenario, run: &Run) -> f64 {
+    let unstable = run.summary.following.follows && !is_stable(scenario).unwrap_or(false);
+    cost(run) + if unstable { LOST } else { 0.0 }
+}
+
+/// What it costs not to follow, or not for long: more than loops that do can, whose logarithm lies between those of 10⁻¹² and 10¹² rad.
 const LOST: f64 = 100.0;
 
 /// What it costs to diverge: more than any logarithm of finite numbers, which are below 710, and [`LOST`].
