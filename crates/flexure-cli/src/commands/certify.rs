@@ -9,6 +9,7 @@ use flexure::prove::summary::ProofSummary;
 use flexure::report::{proof_table, write_certificate};
 use flexure::sampled::probe;
 use flexure::scenario::{Scenario, load_scenario_with};
+use flexure::verify;
 use serde::Serialize;
 
 use super::print;
@@ -55,14 +56,11 @@ pub fn certify(options: &Certify, outside: Outside, json: bool) -> Result<(), Fa
     ended
 }
 
-/// Bytes that a certificate may have.
-const LARGEST_FILE: u64 = 4 << 20;
-
 /// Refuses to write over what is no certificate: a scenario, a pipe.
 fn spare_other_files(path: &Path) -> Result<(), Failure> {
     let Ok(found) = path.metadata() else { return Ok(()) };
     let is_certificate =
-        || read_text(path, LARGEST_FILE).is_ok_and(|text| text.contains("flexure-certificate"));
+        || read_text(path, verify::LARGEST).is_ok_and(|text| text.contains("flexure-certificate"));
     let is_other = !found.is_file() || !is_certificate();
     if !is_other {
         return Ok(());

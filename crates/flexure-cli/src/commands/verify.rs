@@ -11,9 +11,6 @@ use serde::Serialize;
 use super::print;
 use crate::failure::{Failure, Place};
 
-/// Bytes that a certificate may have.
-const LARGEST: u64 = 4 << 20;
-
 /// Characters of a text of the file beyond these are not shown.
 const MOST_SHOWN: usize = 1000;
 
@@ -46,7 +43,7 @@ struct Against {
 }
 
 pub fn verify(file: &Path, against: Option<&str>, outside: Outside, json: bool) -> Result<(), Failure> {
-    let text = read_text(file, LARGEST)?;
+    let text = read_text(file, verify::LARGEST)?;
     match verify::verify(&text) {
         Ok(report) => {
             let against = against.map(|scenario| compared(&text, scenario, outside)).transpose()?;

@@ -17,8 +17,11 @@ impl Sampled {
         let radius = short(self.spectral_radius, digits);
         match (self.stable, &self.joint) {
             (true, _) => {
-                let whole =
-                    if self.spectral_radius < 1.0 { "" } else { " on the whole way along the reference" };
+                let whole = if self.spectral_radius < 1.0 {
+                    ""
+                } else {
+                    " on the whole way along the reference; a robot that stood there would not be stable"
+                };
                 format!(
                     "sampled loop: spectral radius {radius} {at}; small errors shrink by {} 1/s{whole}",
                     short(self.rate, 4)

@@ -182,11 +182,11 @@ const KEYS: [&str; 17] = [
     "subject",
 ];
 
-/// Largest file, in bytes.
-const LARGEST: usize = 4 << 20;
+/// Bytes that a certificate may have.
+pub const LARGEST: u64 = 4 << 20;
 
 pub(super) fn read(text: &str) -> Result<Certificate, Rejected> {
-    if text.len() > LARGEST {
+    if text.len() as u64 > LARGEST {
         return Err(Field::root(&Node::Null).bad("is larger than 4 MiB"));
     }
     let node: Node = serde_json::from_str(text).map_err(|error| Rejected::Malformed {

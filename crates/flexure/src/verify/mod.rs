@@ -28,6 +28,7 @@ mod vector;
 mod verdict;
 mod words;
 
+pub use document::LARGEST;
 pub use subject::quoted;
 pub use verdict::{CheckReport, Claim, Rejected};
 
