@@ -38,6 +38,7 @@ fn main() -> ExitCode {
         Command::Verify { certificate, against } => {
             commands::verify(&certificate, against.as_deref(), outside, json)
         }
+        Command::Tune(options) => commands::tune(&options, outside, json),
         Command::Margins(options) => commands::margins(&options, outside, json),
         Command::List { kind } => commands::list(kind, json),
     };

@@ -158,6 +158,16 @@ impl<'a> Field<'a> {
         }
     }
 
+    /// Whether text stands here.
+    pub fn is_text(&self) -> bool {
+        matches!(self.value, DeValue::String(_))
+    }
+
+    /// Whether an array stands here.
+    pub fn is_array(&self) -> bool {
+        matches!(self.value, DeValue::Array(_))
+    }
+
     /// True or false.
     pub fn boolean(&self) -> Option<bool> {
         let DeValue::Boolean(value) = self.value else {

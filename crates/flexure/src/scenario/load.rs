@@ -24,13 +24,19 @@ pub fn load_scenario(path_or_name: &str) -> Result<Scenario, Problems> {
 /// # Errors
 /// With everything that is wrong, in the robot's file as well.
 pub fn load_scenario_with(path_or_name: &str, outside: Outside) -> Result<Scenario, Problems> {
+    let (source, base) = source(path_or_name, outside)?;
+    document::read(&source, &base)
+}
+
+/// The text of the scenario at a path or of that name, and what paths in it are relative to.
+pub(crate) fn source(path_or_name: &str, outside: Outside) -> Result<(Source, Base), Problems> {
     if builtin::is_name(path_or_name) {
         let known = [SCENARIOS, TASKS].concat();
         let text = builtin::find(path_or_name, &known, "scenario")?;
-        return document::read(&Source::new(path_or_name, text), &Base::BuiltIn);
+        return Ok((Source::new(path_or_name, text), Base::BuiltIn));
     }
     let path = Path::new(path_or_name);
-    document::read(&source::read(path, bounds::LIMIT)?, &Base::of(path, outside))
+    Ok((source::read(path, bounds::LIMIT)?, Base::of(path, outside)))
 }
 
 impl Scenario {

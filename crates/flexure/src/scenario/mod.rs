@@ -15,10 +15,10 @@
 mod accept;
 mod agreement;
 mod any;
-mod document;
+pub(crate) mod document;
 mod guard;
 mod initial;
-mod load;
+pub(crate) mod load;
 mod plant;
 
 pub use accept::Accept;
