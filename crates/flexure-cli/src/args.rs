@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use flexure::compare::{BUDGET, SEEDS};
 use flexure::files::Outside;
+use flexure::robot::DriveClass;
 
 /// Model, design, simulate and compare controllers for robots with elastic joints.
 #[derive(Debug, Parser)]
@@ -76,6 +77,9 @@ pub enum Command {
         /// Hold a joint still at a position, rad or m; may be given several times.
         #[arg(long, value_name = "JOINT=POSITION", value_parser = lock)]
         lock: Vec<(String, f64)>,
+        /// Class of drives, of `flexure list drives`, that stands in for what a URDF does not say; listed as assumed.
+        #[arg(long, value_name = "DRIVES", value_parser = drives)]
+        assume: Option<&'static DriveClass>,
     },
     /// Validate robot and scenario files; show the joints of robots.
     Check {
@@ -192,6 +196,12 @@ pub enum Kind {
     References,
     Controllers,
     Imperfections,
+    Drives,
+}
+
+/// The name of a class of drives.
+fn drives(name: &str) -> Result<&'static DriveClass, String> {
+    DriveClass::named(name).map_err(|problem| format!("{problem}; {}", problem.hint()))
 }
 
 /// `JOINT=POSITION`.

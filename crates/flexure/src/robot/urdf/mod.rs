@@ -3,6 +3,8 @@
 //! Only what moves and what it weighs is read; shapes, meshes, sensors and plug-ins are passed over. A file of unknown
 //! origin is harmless: size, nesting and number of elements are bounded, nothing is recursed into, expanded or opened.
 
+mod drive_table;
+mod effort;
 mod joint;
 mod link;
 mod node;

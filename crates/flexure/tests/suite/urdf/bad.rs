@@ -173,7 +173,7 @@ fn mimics_that_lead_nowhere() {
     ] {
         let folder = Folder::with(&urdf);
         let problems =
-            flexure::robot::import(folder.path().join("arm.urdf").to_str().unwrap(), &[]).unwrap_err();
+            flexure::robot::import(folder.path().join("arm.urdf").to_str().unwrap(), &[], None).unwrap_err();
         assert!(problems.to_string().contains("joint 'turn' mimics joint"), "{problems}");
     }
 }
