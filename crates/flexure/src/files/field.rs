@@ -79,6 +79,11 @@ impl<'a> Field<'a> {
         self.log.accept(&self.path, x, quantity, self.span.clone())
     }
 
+    /// Whether text stands here.
+    pub fn is_text(&self) -> bool {
+        matches!(self.value, DeValue::String(_))
+    }
+
     /// Whether `nan` stands here, for a number that is still to be supplied.
     pub fn is_nan(&self) -> bool {
         is_nan(self.value)

@@ -22,4 +22,4 @@ pub use overview::{JointRow, overview};
 pub use sized::{MAX_JOINTS, supported};
 pub(crate) use sized::{padded, vector};
 pub use slices::Mismatch;
-pub use urdf::{Import, import, import_text};
+pub use urdf::{Import, ImportOptions, import, import_text};

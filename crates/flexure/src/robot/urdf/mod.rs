@@ -12,7 +12,7 @@ mod sidecar;
 mod tree;
 mod xml;
 
-pub use sidecar::{Import, import, import_text};
+pub use sidecar::{Import, ImportOptions, import, import_text};
 pub(crate) use tree::{Locks, Urdf};
 
 /// Largest URDF that is read \[bytes\].

@@ -21,6 +21,8 @@ use crate::robot::urdf::{LIMIT, Locks, Urdf, effort};
 pub struct Import {
     /// The file; numbers still to be supplied are `nan`, which every reader refuses.
     pub toml: String,
+    /// The text of the URDF.
+    pub urdf: String,
     /// What the robot is called.
     pub name: String,
     /// The moving joints with what is known of their drives: what the URDF says, and torque limits that were assumed.
@@ -41,56 +43,54 @@ impl Import {
     }
 }
 
-/// Drafts a robot file from the URDF at `path`, with some joints held still at a position [rad or m]. Joints that others
-/// mimic are held still too. Drives of the class `assume`, if one is given, stand in for what a URDF does not say.
+/// What is wanted of a draft.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ImportOptions<'a> {
+    /// Joints that are held still, with their positions [rad or m].
+    pub locks: &'a [(String, f64)],
+    /// Drives of this class stand in for what a URDF does not say.
+    pub assume: Option<&'static DriveClass>,
+    /// The path of the URDF as the draft names it, relative to the draft; as it was read if none is given.
+    pub file: Option<&'a str>,
+}
+
+/// Drafts a robot file from the URDF at `path`. Joints that others mimic are held still too.
 ///
 /// # Errors
 /// With everything that is wrong with the URDF or the locks.
-pub fn import(
-    path: &str,
-    locks: &[(String, f64)],
-    assume: Option<&'static DriveClass>,
-) -> Result<Import, Problems> {
-    drafted(path, &source::read(Path::new(path), LIMIT)?, locks, assume)
+pub fn import(path: &str, options: &ImportOptions<'_>) -> Result<Import, Problems> {
+    drafted(path, &source::read(Path::new(path), LIMIT)?, options)
 }
 
 /// As [`import`], from the `text` of the URDF; `path` stands for it in messages and in the draft.
 ///
 /// # Errors
 /// With everything that is wrong with the URDF or the locks.
-pub fn import_text(
-    path: &str,
-    text: &str,
-    locks: &[(String, f64)],
-    assume: Option<&'static DriveClass>,
-) -> Result<Import, Problems> {
-    drafted(path, &Source::new(path, text), locks, assume)
+pub fn import_text(path: &str, text: &str, options: &ImportOptions<'_>) -> Result<Import, Problems> {
+    drafted(path, &Source::new(path, text), options)
 }
 
-fn drafted(
-    path: &str,
-    source: &Source,
-    locks: &[(String, f64)],
-    class: Option<&'static DriveClass>,
-) -> Result<Import, Problems> {
+fn drafted(path: &str, source: &Source, options: &ImportOptions<'_>) -> Result<Import, Problems> {
     let log = Log::new(source);
+    let locks = options.locks;
     let draft = super::with(&log, |urdf| {
         let site = Site { path: "lock".to_owned(), ..urdf.site.clone() };
         let sound: Vec<_> = locks.iter().map(|(name, q)| urdf.can_hold(name, *q, &site)).collect();
         sound.into_iter().collect::<Option<()>>()?;
         let locks: Locks<'_> = locks.iter().map(|(name, q)| (&**name, *q)).collect();
-        draft(urdf, path, locks, class)
+        draft(urdf, path, locks, options)
     });
     let (draft, warnings) = log.finish(draft)?;
-    Ok(Import { warnings, ..draft })
+    Ok(Import { warnings, urdf: source.text.to_string(), ..draft })
 }
 
 fn draft<'a>(
     urdf: Urdf<'a>,
     path: &str,
     mut locks: Locks<'a>,
-    class: Option<&'static DriveClass>,
+    options: &ImportOptions<'_>,
 ) -> Option<Import> {
+    let class = options.assume;
     let mimicked: Locks<'_> =
         urdf.mimicked(&locks).into_iter().map(|(name, drive)| (name, drive.nearest(0.0))).collect();
     locks.extend(&mimicked);
@@ -101,7 +101,7 @@ fn draft<'a>(
     let Assembled { mut joints, links, .. } = urdf.assemble(&locks, decimals)?;
 
     let (mut toml, mut missing) = (String::new(), Vec::new());
-    head(&mut toml, path, &name, &locks, &mimicked, class);
+    head(&mut toml, options.file.unwrap_or(path), &name, &locks, &mimicked, class);
     let mut noted = Noted::default();
     for (i, joint) in joints.iter_mut().enumerate() {
         let known = joint.drive.torque_limit;
@@ -118,7 +118,7 @@ fn draft<'a>(
         joint.drive.torque_limit = known.or(torque);
     }
     sources(&mut toml, path, class, &noted);
-    Some(Import { toml, name, joints, class, missing, warnings: Vec::new() })
+    Some(Import { toml, urdf: String::new(), name, joints, class, missing, warnings: Vec::new() })
 }
 
 /// What `[sources]` has to say.

@@ -1,14 +1,18 @@
 //! Robot files drafted from URDFs.
 
 use flexure::robot::load_robot;
-use flexure::robot::{import, robot_from_text};
+use flexure::robot::{ImportOptions, import, robot_from_text};
 
 use super::{ARM, Folder};
+
+fn held(locks: &[(String, f64)]) -> ImportOptions<'_> {
+    ImportOptions { locks, ..ImportOptions::default() }
+}
 
 fn drafted(urdf: &str, locks: &[(String, f64)]) -> (Folder, String) {
     let folder = Folder::with(urdf);
     let path = folder.path().join("arm.urdf");
-    let draft = import(path.to_str().unwrap(), locks, None).unwrap_or_else(|problems| panic!("{problems}"));
+    let draft = import(path.to_str().unwrap(), &held(locks)).unwrap_or_else(|problems| panic!("{problems}"));
     (folder, draft.toml)
 }
 
@@ -92,7 +96,10 @@ fn odd_names_survive() {
 #[test]
 fn the_draft_of_the_panda_is_the_panda() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots");
-    let toml = import(&format!("{folder}/panda.urdf"), &[], None).unwrap().toml.replace("nan", "0.5");
+    let toml = import(&format!("{folder}/panda.urdf"), &ImportOptions::default())
+        .unwrap()
+        .toml
+        .replace("nan", "0.5");
     let robot = robot_from_text("draft.toml", &toml, folder.as_ref()).unwrap();
     let panda = load_robot("panda").unwrap();
     assert_eq!((robot.links, robot.limits), (panda.links, panda.limits));
@@ -103,13 +110,13 @@ fn bad_locks_are_refused() {
     let folder = Folder::with(ARM);
     let path = folder.path().join("arm.urdf");
     for (name, objection) in [("trun", "is no joint of the URDF"), ("mount", "is a fixed joint")] {
-        let problems = import(path.to_str().unwrap(), &[(name.to_owned(), 0.0)], None).unwrap_err();
+        let problems = import(path.to_str().unwrap(), &held(&[(name.to_owned(), 0.0)])).unwrap_err();
         assert!(problems.to_string().contains(&format!("'{name}' {objection}")), "{problems}");
     }
-    let draft = import(path.to_str().unwrap(), &[("turn".to_owned(), 2.6)], None).unwrap();
+    let draft = import(path.to_str().unwrap(), &held(&[("turn".to_owned(), 2.6)])).unwrap();
     assert!(draft.warnings[0].to_string().contains("'turn' is at 2.6, outside the limits -2 to 2.5"));
-    assert!(import(path.to_str().unwrap(), &[("turn".to_owned(), -2.0)], None).unwrap().warnings.is_empty());
+    assert!(import(path.to_str().unwrap(), &held(&[("turn".to_owned(), -2.0)])).unwrap().warnings.is_empty());
     let all = [("turn".to_owned(), 0.0), ("slide".to_owned(), 0.0)];
-    let problems = import(path.to_str().unwrap(), &all, None).unwrap_err();
+    let problems = import(path.to_str().unwrap(), &held(&all)).unwrap_err();
     assert!(problems.to_string().contains("no joint of the robot moves"), "{problems}");
 }
