@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use flexure::compare::{BUDGET, SEEDS};
 use flexure::files::Outside;
+use flexure::robot::DriveClass;
 
 /// Model, design, simulate and compare controllers for robots with elastic joints.
 #[derive(Debug, Parser)]
@@ -69,14 +70,8 @@ pub enum Command {
     },
     /// Prove how fast the closed loop contracts, and where; write a certificate that others can check.
     Certify(Certify),
-    /// Draft a robot file from a URDF, with every number that is still to be supplied marked.
-    Import {
-        /// URDF file.
-        urdf: String,
-        /// Hold a joint still at a position, rad or m; may be given several times.
-        #[arg(long, value_name = "JOINT=POSITION", value_parser = lock)]
-        lock: Vec<(String, f64)>,
-    },
+    /// Draft a robot file from a URDF, and a scenario for it; what is still to be supplied is marked.
+    Import(Import),
     /// Validate robot and scenario files; show the joints of robots.
     Check {
         /// Files, or names of built-in robots and scenarios.
@@ -108,6 +103,27 @@ pub struct Output {
     /// Folder for the files that are written; created if missing.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct Import {
+    /// URDF file.
+    pub urdf: String,
+    /// Hold a joint still at a position, rad or m; may be given several times.
+    #[arg(long, value_name = "JOINT=POSITION", value_parser = lock)]
+    pub lock: Vec<(String, f64)>,
+    /// Class of drives, of `flexure list drives`, that stands in for what a URDF does not say; listed as assumed.
+    #[arg(long, value_name = "DRIVES", value_parser = drives)]
+    pub assume: Option<&'static DriveClass>,
+    /// Draft a scenario, too: files instead of standard output.
+    #[arg(long)]
+    pub scenario: bool,
+    /// Folder for NAME.toml and NAME-scenario.toml, or the robot file, PATH.toml; default with --scenario: the current folder.
+    #[arg(long, value_name = "PATH")]
+    pub out: Option<PathBuf>,
+    /// Replace files that exist.
+    #[arg(long)]
+    pub force: bool,
 }
 
 #[derive(Debug, Args)]
@@ -212,6 +228,12 @@ pub enum Kind {
     References,
     Controllers,
     Imperfections,
+    Drives,
+}
+
+/// The name of a class of drives.
+fn drives(name: &str) -> Result<&'static DriveClass, String> {
+    DriveClass::named(name).map_err(|problem| format!("{problem}; {}", problem.hint()))
 }
 
 /// `JOINT=POSITION`.

@@ -34,7 +34,7 @@ fn main() -> ExitCode {
         Command::Model { robot, states } => commands::model(&robot, outside, &states, json),
         Command::Certify(options) => commands::certify(&options, outside, json),
         Command::Check { files } => commands::check(&files, outside, json),
-        Command::Import { urdf, lock } => commands::import(&urdf, &lock, json),
+        Command::Import(options) => commands::import(&options, json),
         Command::Verify { certificate, against } => {
             commands::verify(&certificate, against.as_deref(), outside, json)
         }

@@ -6,6 +6,7 @@ use flexure::files::{Entry, ROBOTS, SCENARIOS, TASKS};
 use flexure::imperfections::IMPERFECTIONS;
 use flexure::laws::{CONTROLLERS, SHAPING};
 use flexure::references::REFERENCES;
+use flexure::robot::DRIVES;
 
 use super::print;
 use crate::args::Kind;
@@ -19,6 +20,7 @@ pub fn list(kind: Option<Kind>, json: bool) -> Result<(), Failure> {
         (Kind::Shaping, "shaping", entries(SHAPING)),
         (Kind::References, "references", entries(REFERENCES)),
         (Kind::Imperfections, "imperfections", entries(IMPERFECTIONS)),
+        (Kind::Drives, "drives", entries(&DRIVES.iter().map(|class| class.entry).collect::<Vec<_>>())),
     ]
     .into_iter()
     .filter(|(own, ..)| kind.is_none_or(|kind| kind == *own))

@@ -6,6 +6,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use miette::Diagnostic;
+use tempfile::NamedTempFile;
 
 use crate::files::leftover;
 
@@ -27,6 +28,12 @@ pub enum WriteError {
         /// File that was to be written.
         path: PathBuf,
     },
+    /// There is such a file, and it shall stay.
+    #[error("{} exists", path.display())]
+    Exists {
+        /// File that was to be written.
+        path: PathBuf,
+    },
     /// Writing failed on the way.
     #[error("cannot write {}: {cause}", path.display())]
     Content {
@@ -40,13 +47,17 @@ pub enum WriteError {
 
 impl Diagnostic for WriteError {
     fn code<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
-        Some(Box::new("error[write]"))
+        Some(Box::new(match self {
+            Self::Exists { .. } => "error[exists]",
+            Self::Folder { .. } | Self::NotAFile { .. } | Self::Content { .. } => "error[write]",
+        }))
     }
 
     fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
         Some(Box::new(match self {
             Self::Folder { .. } => "name a folder in which files can be created",
             Self::NotAFile { .. } => "name a file that does not exist yet, or one to replace",
+            Self::Exists { .. } => "name another place, or replace what is there with --force",
             Self::Content { .. } => "is the disk full, or the file in use?",
         }))
     }
@@ -63,6 +74,16 @@ pub fn write_atomic(
     if fs::metadata(path).is_ok_and(|existing| !existing.is_file()) {
         return Err(WriteError::NotAFile { path: path.into() });
     }
+    let file = written(path, write)?;
+    file.persist(path).map_err(|error| WriteError::Content { path: path.into(), cause: error.error })?;
+    Ok(())
+}
+
+/// A temporary file beside `path` with what `write` writes, down on the disk.
+fn written(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<NamedTempFile, WriteError> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let failed = |cause| WriteError::Content { path: path.into(), cause };
     let file =
@@ -71,7 +92,34 @@ pub fn write_atomic(
     write(&mut buffered).map_err(failed)?;
     let file = buffered.into_inner().map_err(|error| failed(error.into_error()))?;
     file.as_file().sync_all().map_err(failed)?;
-    file.persist(path).map_err(|error| failed(error.error))?;
+    Ok(file)
+}
+
+/// Writes texts that belong together: none is written if one cannot be. Files that exist are replaced if `replace`, one by one, and
+/// are an error otherwise; folders must be there.
+///
+/// # Errors
+/// As [`write_atomic`], and for what exists.
+pub fn write_together(files: &[(PathBuf, &str)], replace: bool) -> Result<(), WriteError> {
+    for (path, _) in files {
+        match fs::metadata(path) {
+            Ok(existing) if !existing.is_file() => return Err(WriteError::NotAFile { path: path.into() }),
+            Ok(_) if !replace => return Err(WriteError::Exists { path: path.into() }),
+            Ok(_) | Err(_) => {}
+        }
+    }
+    let written = files.iter().map(|(path, text)| written(path, |out| out.write_all(text.as_bytes())));
+    let written: Vec<_> = written.collect::<Result<_, _>>()?;
+    for (i, (file, (path, _))) in written.into_iter().zip(files).enumerate() {
+        let named = if replace { file.persist(path) } else { file.persist_noclobber(path) };
+        if let Err(error) = named {
+            if !replace {
+                // What was not there before is not there now.
+                files.iter().take(i).for_each(|(path, _)| drop(fs::remove_file(path)));
+            }
+            return Err(WriteError::Content { path: path.into(), cause: error.error });
+        }
+    }
     Ok(())
 }
 
@@ -102,7 +150,7 @@ mod tests {
     use std::fs;
     use std::io;
 
-    use super::{WriteError, write_atomic};
+    use super::{WriteError, write_atomic, write_together};
 
     #[test]
     fn whole_or_not_at_all() {
@@ -118,6 +166,25 @@ mod tests {
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "the temporary file is gone");
         write_atomic(&path, |out| out.write_all(b"new")).unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"new");
+    }
+
+    #[test]
+    fn together_or_not_at_all() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let count = || fs::read_dir(folder.path()).unwrap().count();
+        let pair = [(at("a"), "1"), (at("b"), "2")];
+        fs::write(at("b"), "old").unwrap();
+        assert!(matches!(write_together(&pair, false), Err(WriteError::Exists { path }) if path == at("b")));
+        assert_eq!((count(), fs::read(at("b")).unwrap()), (1, b"old".to_vec()));
+        write_together(&pair, true).unwrap();
+        assert_eq!(
+            (count(), fs::read(at("a")).unwrap(), fs::read(at("b")).unwrap()),
+            (2, b"1".to_vec(), b"2".to_vec())
+        );
+        let nowhere = [(at("c"), "3"), (at("none").join("d"), "4")];
+        assert!(matches!(write_together(&nowhere, false), Err(WriteError::Folder { .. })));
+        assert_eq!(count(), 2, "c is not there");
     }
 
     #[test]

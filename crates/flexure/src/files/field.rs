@@ -79,6 +79,23 @@ impl<'a> Field<'a> {
         self.log.accept(&self.path, x, quantity, self.span.clone())
     }
 
+    /// Whether text stands here.
+    pub fn is_text(&self) -> bool {
+        matches!(self.value, DeValue::String(_))
+    }
+
+    /// Whether `nan` stands here, for a number that is still to be supplied.
+    pub fn is_nan(&self) -> bool {
+        is_nan(self.value)
+    }
+
+    /// Where `nan` stands in the array here.
+    pub fn nans(&self) -> Vec<usize> {
+        let DeValue::Array(array) = self.value else { return Vec::new() };
+        let nan = array.iter().enumerate().filter(|(_, entry)| is_nan(entry.get_ref()));
+        nan.map(|(i, _)| i).collect()
+    }
+
     /// The whole number from `least` to `most`, called `what` in hints.
     pub fn whole(&self, what: &str, least: u64, most: u64) -> Option<u64> {
         let expected = format!("a whole number from {least} to {most}");
@@ -214,4 +231,8 @@ impl<'a> Field<'a> {
             }
         }
     }
+}
+
+fn is_nan(value: &DeValue<'_>) -> bool {
+    matches!(value, DeValue::Float(float) if float.as_str().trim_start_matches(['+', '-']) == "nan")
 }

@@ -25,7 +25,7 @@ mod states;
 pub(crate) mod suggest;
 pub(crate) mod table;
 
-pub use atomic::{WriteError, create_folder, prepare, write_atomic};
+pub use atomic::{WriteError, create_folder, prepare, write_atomic, write_together};
 pub use base::Outside;
 pub use builtin::{ROBOTS, SCENARIOS, TASKS};
 pub use diagnostic::{Problem, Problems};

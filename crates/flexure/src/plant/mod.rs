@@ -13,3 +13,4 @@ pub use plant::Plant;
 pub(crate) use plant::Sides;
 pub use push::{Push, Shape};
 pub use spring::Hysteresis;
+pub(crate) use spring::deflection;

@@ -101,13 +101,7 @@ impl<L: Links<f64, N>, const N: usize> Plant<L, N> {
     /// Deflection in rad at which the springs give `torque` [N m]; the middle of the play for none.
     pub fn deflection_under(&self, torque: &Vector<f64, N>) -> Vector<f64, N> {
         Vector::from_fn(|i| {
-            let (stiffness, hardening) = (self.robot.stiffness[i], self.spring_hardening[i]);
-            // Newton's iteration from beyond the root of a function that is convex there: monotone.
-            let wound = (0..100).fold(torque[i] / stiffness, |wound, _| {
-                let square = hardening * wound * wound;
-                wound - ((stiffness + square) * wound - torque[i]) / (stiffness + 3.0 * square)
-            });
-            if wound == 0.0 { wound } else { wound + 0.5 * self.spring_gap[i] * wound.signum() }
+            deflection(torque[i], self.robot.stiffness[i], self.spring_hardening[i], self.spring_gap[i])
         })
     }
 
@@ -127,4 +121,14 @@ impl<L: Links<f64, N>, const N: usize> Plant<L, N> {
             Piecewise::min(T::constant(half), Piecewise::max(T::constant(-half), zeta[i]))
         })
     }
+}
+
+/// Deflection in rad at which a spring K ε + k ε³ with play gives `torque` [N m]; the middle of the play for none.
+pub(crate) fn deflection(torque: f64, stiffness: f64, hardening: f64, play: f64) -> f64 {
+    // Newton's iteration from beyond the root of a function that is convex there: monotone.
+    let wound = (0..100).fold(torque / stiffness, |wound, _| {
+        let square = hardening * wound * wound;
+        wound - ((stiffness + square) * wound - torque) / (stiffness + 3.0 * square)
+    });
+    if wound == 0.0 { wound } else { wound + 0.5 * play * wound.signum() }
 }

@@ -1,9 +1,11 @@
 //! `[joints]` of a robot file: springs, motors and limits, for all joints at once or joint by joint.
 
+use std::cell::RefCell;
+
 use crate::files::field::{Field, Joints};
 use crate::files::quantity::{self, Quantity};
-use crate::files::suggest;
 use crate::files::table::Table;
+use crate::files::{Problem, suggest};
 use crate::robot::links::{DriveDefaults, MovingJoint};
 
 /// What a robot file says of its joints, one entry per moving joint.
@@ -56,6 +58,8 @@ struct Reader<'a> {
     by_name: Vec<(usize, Table<'a>)>,
     joints: Joints,
     moving: &'a [MovingJoint],
+    /// Numbers that stand as `nan` for what is still to be supplied: where, the joint, the key.
+    wanted: RefCell<Vec<(Field<'a>, usize, &'static str)>>,
 }
 
 /// Reads `[joints]`; `moving` are the joints of the links, none if those could not be read.
@@ -63,7 +67,8 @@ pub(crate) fn read(field: &Field<'_>, joints: &Joints, moving: Option<&[MovingJo
     let table = field.any_table()?;
     let by_name = by_name(&table, moving);
     let moving = moving.unwrap_or_default();
-    let reader = Reader { table, by_name: by_name?, joints: joints.clone(), moving };
+    let wanted = RefCell::default();
+    let reader = Reader { table, by_name: by_name?, joints: joints.clone(), moving, wanted };
     let damping_of_links =
         reader.is_silent("link_damping") && moving.iter().all(|joint| joint.drive.damping.is_some());
     let none = |_: &DriveDefaults| None;
@@ -77,6 +82,7 @@ pub(crate) fn read(field: &Field<'_>, joints: &Joints, moving: Option<&[MovingJo
         reader.required("gear_ratio", &quantity::GEAR_RATIO, none).map(Some)
     };
     let limits = reader.limits();
+    reader.say_what_is_wanted();
     Some(Drives {
         stiffness: stiffness?,
         motor_inertia: motor_inertia?,
@@ -86,6 +92,27 @@ pub(crate) fn read(field: &Field<'_>, joints: &Joints, moving: Option<&[MovingJo
         limits: limits?,
         damping_of_links,
     })
+}
+
+/// What to do about numbers that are missing.
+const SUPPLY: &str = "take them from data sheets or measurements, joint by joint or one for all in [joints]; `flexure import URDF \
+                      --assume harmonic-drive` writes a file with numbers that are typical of such drives";
+
+/// One error for all numbers that are still to be supplied: joints with the keys that they lack. A line a joint, or one for
+/// all if all lack the same.
+pub(crate) fn wanted(lacking: &[(&str, Vec<&str>)]) -> Problem {
+    let count = lacking.iter().map(|(_, keys)| keys.len()).sum::<usize>();
+    let numbers = if count == 1 { "1 number is".to_owned() } else { format!("{count} numbers are") };
+    let line =
+        |(name, keys): &(&str, Vec<&str>)| format!("\n  joint {}: {}", suggest::key(name), keys.join(", "));
+    let table: String = match lacking {
+        [(first, keys), .., (last, _)] if lacking.iter().all(|(_, other)| other == keys) => {
+            let (first, last) = (suggest::key(first), suggest::key(last));
+            format!("\n  each of {} joints, {first} to {last}: {}", lacking.len(), keys.join(", "))
+        }
+        lacking => lacking.iter().map(line).collect(),
+    };
+    Problem::new("missing-number", format!("{numbers} still to be supplied (nan):{table}"), SUPPLY)
 }
 
 /// The tables `[joints.NAME]` with the index of the joint; notes an error at a key that is neither a number per joint
@@ -125,7 +152,7 @@ impl Reader<'_> {
     /// What is known of `key`: joint by joint, else for all joints, else by the file of the links.
     fn values(
         &self,
-        key: &str,
+        key: &'static str,
         quantity: &Quantity,
         default: impl Fn(&DriveDefaults) -> Option<f64>,
     ) -> Option<Vec<Option<f64>>> {
@@ -133,13 +160,24 @@ impl Reader<'_> {
         let mut sound = Some(());
         let is_joint = self.moving.iter().any(|joint| joint.name == key);
         if let Some(field) = self.table.get(key).filter(|field| !(is_joint && field.value.is_table())) {
-            match field.per_joint(&self.joints, quantity) {
-                Some(given) => values = given.into_iter().map(Some).collect(),
-                None => sound = None,
+            let wanting = self.wanting(&field);
+            if wanting.is_empty() {
+                match field.per_joint(&self.joints, quantity) {
+                    Some(given) => values = given.into_iter().map(Some).collect(),
+                    None => sound = None,
+                }
+            } else {
+                self.wanted.borrow_mut().extend(wanting.into_iter().map(|i| (field.clone(), i, key)));
+                sound = None;
             }
         }
         for (index, table) in &self.by_name {
             let Some(field) = table.get(key) else { continue };
+            if field.is_nan() {
+                self.wanted.borrow_mut().push((field, *index, key));
+                sound = None;
+                continue;
+            }
             match (field.number(quantity), values.get_mut(*index)) {
                 (Some(x), Some(value)) => *value = Some(x),
                 _ => sound = None,
@@ -148,9 +186,29 @@ impl Reader<'_> {
         sound.map(|()| values)
     }
 
+    /// The joints for which `field`, one number or one for each, says `nan`.
+    fn wanting(&self, field: &Field<'_>) -> Vec<usize> {
+        if field.is_nan() {
+            return (0..self.moving.len()).collect();
+        }
+        field.nans()
+    }
+
+    /// One error for all numbers that are still to be supplied, joint by joint.
+    fn say_what_is_wanted(&self) {
+        let wanted = self.wanted.borrow();
+        let Some((first, ..)) = wanted.first() else { return };
+        let of_joint = |index: usize| -> Vec<&str> {
+            wanted.iter().filter(|(_, joint, _)| *joint == index).map(|(_, _, key)| *key).collect()
+        };
+        let lacking = self.moving.iter().enumerate().map(|(i, joint)| (joint.name.as_str(), of_joint(i)));
+        let lacking: Vec<_> = lacking.filter(|(_, keys)| !keys.is_empty()).collect();
+        first.log.push(self::wanted(&lacking).at(&first.log.source, first.span.clone()));
+    }
+
     fn required(
         &self,
-        key: &str,
+        key: &'static str,
         quantity: &Quantity,
         default: impl Fn(&DriveDefaults) -> Option<f64>,
     ) -> Option<Vec<f64>> {

@@ -2,6 +2,7 @@
 
 mod arm;
 pub(crate) mod document;
+pub(crate) mod drives;
 pub(crate) mod joints;
 pub(crate) mod links;
 mod load;
@@ -12,6 +13,7 @@ pub(crate) mod urdf;
 
 pub use arm::{Arm, PortHamiltonian};
 pub use document::{Robot, robot_from_text};
+pub use drives::{DRIVES, DriveClass, Typical, TypicalDrive};
 pub use joints::Limits;
 pub use links::{Body, DriveDefaults, JointKind, Links, MovingJoint, Pendulum, PlanarTwoLink};
 pub(crate) use load::robot;
@@ -20,4 +22,4 @@ pub use overview::{JointRow, overview};
 pub use sized::{MAX_JOINTS, supported};
 pub(crate) use sized::{padded, vector};
 pub use slices::Mismatch;
-pub use urdf::{Import, import, import_text};
+pub use urdf::{Import, ImportOptions, import, import_text};

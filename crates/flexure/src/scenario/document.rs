@@ -22,7 +22,7 @@ use crate::robot::{self, Robot, links};
 use crate::scenario::accept::{self, Accept};
 use crate::scenario::agreement;
 use crate::scenario::guard::{self, GuardSettings};
-use crate::scenario::initial::{self, Initial};
+use crate::scenario::initial::{self, Initial, Rest};
 use crate::scenario::plant::{self, Plant};
 
 /// Farthest that a reference without smooth start may be from the robot at t = 0 \[rad\].
@@ -232,7 +232,6 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> 
     });
     let hold = hold.map(Option::unwrap_or_default);
     let mut assumed = robot.as_ref().map(Robot::assumptions).unwrap_or_default();
-    let initial = initial::read(root, &joints, places, &mut assumed);
     let reference_field = root.required("reference", "a table with the kind");
     let end = times.map_or(f64::NAN, |(duration, _)| duration);
     let timed = reference_field.as_ref().and_then(|field| reference::read(field, &joints, base, end));
@@ -241,6 +240,13 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> 
     let plant = plant::read(root, &joints, robot.as_ref());
     let context = Context { joints: &joints, robot: robot.as_ref(), times, base };
     let real = real_loop(root, &context, hold, plant.as_ref());
+    let rest = match (&robot, &plant, &real, &timed) {
+        (Some(robot), Some(plant), Some(real), Some(timed)) => {
+            Some(Rest::of(robot, plant, &real.imperfections, &timed.reference))
+        }
+        _ => None,
+    };
+    let initial = initial::read(root, &joints, places, rest.as_ref(), &mut assumed);
     let accept = accept::read(root, &joints, times);
     let own = provenance::assumptions(root, places);
     if let (Some(field), Some(timed), Some(initial)) = (reference_field, &timed, &initial)
@@ -384,7 +390,7 @@ fn check_start(field: &Field<'_>, robot: Option<&Robot>, reference: &Reference, 
         field.error(
             "far",
             message,
-            "add [reference.smooth_start] with duration = 2.0, or set [initial] q_l and q_m",
+            "add [reference.smooth_start] with duration = 2.0, or initial = \"at rest\", which is where the reference starts",
         );
     }
 }

@@ -3,6 +3,8 @@
 //! Only what moves and what it weighs is read; shapes, meshes, sensors and plug-ins are passed over. A file of unknown
 //! origin is harmless: size, nesting and number of elements are bounded, nothing is recursed into, expanded or opened.
 
+mod drive_table;
+mod effort;
 mod joint;
 mod link;
 mod node;
@@ -10,7 +12,7 @@ mod sidecar;
 mod tree;
 mod xml;
 
-pub use sidecar::{Import, import, import_text};
+pub use sidecar::{Import, ImportOptions, import, import_text};
 pub(crate) use tree::{Locks, Urdf};
 
 /// Largest URDF that is read \[bytes\].

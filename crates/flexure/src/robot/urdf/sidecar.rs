@@ -8,53 +8,89 @@ use crate::files::site::Site;
 use crate::files::source::{self, Source};
 use crate::files::suggest::{key, text};
 use crate::files::{Problem, Problems};
+use crate::robot::DriveClass;
 use crate::robot::document::DAMPING;
-use crate::robot::links::{Assembled, DriveDefaults, JointKind, MovingJoint};
-use crate::robot::urdf::{LIMIT, Locks, Urdf};
-use crate::units;
+use crate::robot::drives::rounded;
+use crate::robot::joints::wanted;
+use crate::robot::links::{Assembled, DriveDefaults, MovingJoint};
+use crate::robot::urdf::drive_table::Drafted;
+use crate::robot::urdf::{LIMIT, Locks, Urdf, effort};
 
 /// A robot file that lacks what a URDF does not say.
 #[derive(Clone, Debug)]
 pub struct Import {
     /// The file; numbers still to be supplied are `nan`, which every reader refuses.
     pub toml: String,
-    /// Names of the moving joints.
-    pub joints: Vec<String>,
+    /// The text of the URDF.
+    pub urdf: String,
+    /// What the robot is called.
+    pub name: String,
+    /// The moving joints with what is known of their drives: what the URDF says, and torque limits that were assumed.
+    pub joints: Vec<MovingJoint>,
+    /// The class of drives that stands in for what a URDF does not say, if one does.
+    pub class: Option<&'static DriveClass>,
+    /// Keys of numbers that are still to be supplied, for each joint that lacks some.
+    pub missing: Vec<(String, Vec<&'static str>)>,
     /// What is suspicious in the URDF.
     pub warnings: Vec<Problem>,
 }
 
-/// Drafts a robot file from the URDF at `path`, with some joints held still at a position [rad or m]. Joints that others
-/// mimic are held still too.
+impl Import {
+    /// A warning that lists the numbers which are still to be supplied, if there are any.
+    pub fn still_missing(&self) -> Option<Problem> {
+        let lacking: Vec<_> = self.missing.iter().map(|(name, keys)| (name.as_str(), keys.clone())).collect();
+        (!lacking.is_empty()).then(|| wanted(&lacking).warning())
+    }
+}
+
+/// What is wanted of a draft.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ImportOptions<'a> {
+    /// Joints that are held still, with their positions [rad or m].
+    pub locks: &'a [(String, f64)],
+    /// Drives of this class stand in for what a URDF does not say.
+    pub assume: Option<&'static DriveClass>,
+    /// The path of the URDF as the draft names it, relative to the draft; as it was read if none is given.
+    pub file: Option<&'a str>,
+}
+
+/// Drafts a robot file from the URDF at `path`. Joints that others mimic are held still too.
 ///
 /// # Errors
 /// With everything that is wrong with the URDF or the locks.
-pub fn import(path: &str, locks: &[(String, f64)]) -> Result<Import, Problems> {
-    drafted(path, &source::read(Path::new(path), LIMIT)?, locks)
+pub fn import(path: &str, options: &ImportOptions<'_>) -> Result<Import, Problems> {
+    drafted(path, &source::read(Path::new(path), LIMIT)?, options)
 }
 
 /// As [`import`], from the `text` of the URDF; `path` stands for it in messages and in the draft.
 ///
 /// # Errors
 /// With everything that is wrong with the URDF or the locks.
-pub fn import_text(path: &str, text: &str, locks: &[(String, f64)]) -> Result<Import, Problems> {
-    drafted(path, &Source::new(path, text), locks)
+pub fn import_text(path: &str, text: &str, options: &ImportOptions<'_>) -> Result<Import, Problems> {
+    drafted(path, &Source::new(path, text), options)
 }
 
-fn drafted(path: &str, source: &Source, locks: &[(String, f64)]) -> Result<Import, Problems> {
+fn drafted(path: &str, source: &Source, options: &ImportOptions<'_>) -> Result<Import, Problems> {
     let log = Log::new(source);
+    let locks = options.locks;
     let draft = super::with(&log, |urdf| {
         let site = Site { path: "lock".to_owned(), ..urdf.site.clone() };
         let sound: Vec<_> = locks.iter().map(|(name, q)| urdf.can_hold(name, *q, &site)).collect();
         sound.into_iter().collect::<Option<()>>()?;
         let locks: Locks<'_> = locks.iter().map(|(name, q)| (&**name, *q)).collect();
-        draft(urdf, path, locks)
+        draft(urdf, path, locks, options)
     });
-    let ((toml, joints), warnings) = log.finish(draft)?;
-    Ok(Import { toml, joints, warnings })
+    let (draft, warnings) = log.finish(draft)?;
+    Ok(Import { warnings, urdf: source.text.to_string(), ..draft })
 }
 
-fn draft<'a>(urdf: Urdf<'a>, path: &str, mut locks: Locks<'a>) -> Option<(String, Vec<String>)> {
+fn draft<'a>(
+    urdf: Urdf<'a>,
+    path: &str,
+    mut locks: Locks<'a>,
+    options: &ImportOptions<'_>,
+) -> Option<Import> {
+    let class = options.assume;
     let mimicked: Locks<'_> =
         urdf.mimicked(&locks).into_iter().map(|(name, drive)| (name, drive.nearest(0.0))).collect();
     locks.extend(&mimicked);
@@ -62,24 +98,65 @@ fn draft<'a>(urdf: Urdf<'a>, path: &str, mut locks: Locks<'a>) -> Option<(String
     let is_name = |name: &&str| !name.trim().is_empty() && !name.contains(char::is_control);
     let name = urdf.name.filter(is_name).map_or_else(|| stem.into_owned(), str::to_owned);
     let decimals = urdf.site.log.decimals();
-    let Assembled { joints, .. } = urdf.assemble(&locks, decimals)?;
+    let Assembled { mut joints, links, .. } = urdf.assemble(&locks, decimals)?;
 
-    let mut toml = String::new();
-    head(&mut toml, path, &name, &locks, &mimicked);
-    for joint in &joints {
-        drive(&mut toml, joint);
+    let (mut toml, mut missing) = (String::new(), Vec::new());
+    head(&mut toml, options.file.unwrap_or(path), &name, &locks, &mimicked, class);
+    let mut noted = Noted::default();
+    for (i, joint) in joints.iter_mut().enumerate() {
+        let known = joint.drive.torque_limit;
+        let torque = class.map(|_| known.unwrap_or_else(|| rounded(effort::assumed(links.tree(), i))));
+        let typical = class.zip(torque).map(|(class, torque)| class.drive(joint.kind, torque));
+        let drafted = Drafted { joint, typical, torque_limit: torque.filter(|_| known.is_none()) };
+        let lacking = drafted.write(&mut toml);
+        noted.damping |= drafted.damping_of_urdf().is_some();
+        noted.typical_damping |= class.is_some() && drafted.damping_of_urdf().is_none();
+        noted.effort |= drafted.torque_limit.is_some();
+        if !lacking.is_empty() {
+            missing.push((joint.name.clone(), lacking));
+        }
+        joint.drive.torque_limit = known.or(torque);
     }
-    sources(&mut toml, path, joints.iter().any(|joint| joint.drive.damping.is_some()));
-    Some((toml, joints.into_iter().map(|joint| joint.name).collect()))
+    sources(&mut toml, path, class, &noted);
+    Some(Import { toml, urdf: String::new(), name, joints, class, missing, warnings: Vec::new() })
+}
+
+/// What `[sources]` has to say.
+#[derive(Default)]
+struct Noted {
+    /// The URDF's damping is some link's.
+    damping: bool,
+    /// Damping of the class is some link's.
+    typical_damping: bool,
+    /// Some torque limit is assumed.
+    effort: bool,
 }
 
 /// Everything above the joints. Writing to a string cannot fail.
-fn head(toml: &mut String, path: &str, name: &str, locks: &Locks<'_>, mimicked: &Locks<'_>) {
+fn head(
+    toml: &mut String,
+    path: &str,
+    name: &str,
+    locks: &Locks<'_>,
+    mimicked: &Locks<'_>,
+    class: Option<&DriveClass>,
+) {
+    let _ = match class {
+        None => write!(
+            toml,
+            "# A robot file to complete. Every nan stands for a number that a URDF does not hold and that is still to be\n\
+             # supplied; `flexure check` refuses the file until all of them are. Everything is on the link side of the gear.\n"
+        ),
+        Some(class) => write!(
+            toml,
+            "# A robot file whose joints are taken to be {}: numbers that a URDF does not hold are\n\
+             # typical of such drives, not measured, and listed as assumed. Everything is on the link side of the gear.\n",
+            class.entry.summary
+        ),
+    };
     let _ = write!(
         toml,
-        "# A robot file to complete. Every nan stands for a number that a URDF does not hold and that is still to be\n\
-         # supplied; `flexure check` refuses the file until all of them are. Everything is on the link side of the gear.\n\n\
-         name = {}\n\
+        "\nname = {}\n\
          gravity = [0.0, 0.0, -9.81]        # m/s², in the base frame of the URDF\n\n\
          [links]\n\
          kind = \"urdf\"\n\
@@ -97,57 +174,39 @@ fn head(toml: &mut String, path: &str, name: &str, locks: &Locks<'_>, mimicked: 
 }
 
 /// `[sources]`, as far as they are known.
-fn sources(toml: &mut String, path: &str, damping: bool) {
+fn sources(toml: &mut String, path: &str, class: Option<&DriveClass>, noted: &Noted) {
     let file = Path::new(path).file_name().unwrap_or_default().to_string_lossy();
     let _ = write!(
         toml,
         "\n[sources]  # where numbers come from; begin with \"assumed: \" what nothing vouches for\nlinks = {}\n",
         text(&format!("{file} as it was imported"))
     );
-    if damping {
-        let _ = writeln!(toml, "link_damping = {}", text(&format!("assumed: {DAMPING}")));
+    let mut assumed = |key: &str, note: &str| {
+        let _ = writeln!(toml, "{key} = {}", text(&format!("assumed: {note}")));
+    };
+    let own = class.map(|class| class.link_damping.source).filter(|_| noted.typical_damping);
+    match (noted.damping, own) {
+        (true, Some(own)) => assumed("link_damping", &format!("{DAMPING}; where it has none, {own}")),
+        (true, None) => assumed("link_damping", DAMPING),
+        (false, Some(own)) => assumed("link_damping", own),
+        (false, None) => {}
     }
-    let _ = writeln!(toml, "# stiffness = \"data sheet of …\"");
-}
-
-/// The table of one joint.
-fn drive(toml: &mut String, MovingJoint { name, kind, drive }: &MovingJoint) {
-    let (word, gear) = match kind {
-        JointKind::Revolute => ("revolute", "the rotor's times the gear ratio squared"),
-        JointKind::Prismatic => {
-            ("prismatic", "the rotor's inertia in kg m² times the gear ratio in rad/m squared")
-        }
-    };
-    let [stiffness, inertia, damping, torque, velocity, position] =
-        [units::STIFFNESS, units::INERTIA, units::DAMPING, units::TORQUE, units::SPEED, units::ANGLE]
-            .map(|unit| unit.of(*kind).raised);
-    let _ = writeln!(toml, "\n[joints.{}]  # {word}", key(name));
-    let mut line = |key: &str, value: String, comment: String| {
-        let _ = writeln!(toml, "{:<34} # {comment}", format!("{key} = {value}"));
-    };
-    let wanted = || "nan".to_owned();
-    line("stiffness", wanted(), format!("SUPPLY: spring constant, {stiffness}"));
-    line("motor_inertia", wanted(), format!("SUPPLY: {inertia}, {gear}"));
-    line("motor_damping", wanted(), format!("SUPPLY: {damping}"));
-    match drive.damping {
-        Some(damping_l) => {
-            line("link_damping", format!("{damping_l:?}"), format!("{damping}, the URDF's damping"));
-        }
-        None => line("link_damping", wanted(), format!("SUPPLY: {damping}")),
+    if noted.effort {
+        assumed("torque_limit", effort::SOURCE);
     }
-    let mut given = |key: &str, value: Option<f64>, unit: &str| {
-        if let Some(value) = value {
-            line(
-                &format!("# {key}"),
-                format!("{value:?}"),
-                format!("{unit}, holds as it stands in the URDF"),
-            );
-        }
+    let Some(class) = class else {
+        let _ = writeln!(toml, "# stiffness = \"data sheet of …\"");
+        return;
     };
-    given("torque_limit", drive.torque_limit, torque);
-    given("velocity_limit", drive.velocity_limit, velocity);
-    given("position_lower", drive.position_lower, position);
-    given("position_upper", drive.position_upper, position);
+    for (key, typical) in [
+        ("stiffness", class.stiffness),
+        ("motor_inertia", class.motor_inertia),
+        ("motor_damping", class.motor_damping),
+        ("torque_rate_limit", class.torque_rate),
+        ("gear_ratio", class.gear_ratio),
+    ] {
+        assumed(key, typical.source);
+    }
 }
 
 impl DriveDefaults {

@@ -172,8 +172,11 @@ fn mimics_that_lead_nowhere() {
         with("slide", "<mimic joint=\"none\"/>"),
     ] {
         let folder = Folder::with(&urdf);
-        let problems =
-            flexure::robot::import(folder.path().join("arm.urdf").to_str().unwrap(), &[]).unwrap_err();
+        let problems = flexure::robot::import(
+            folder.path().join("arm.urdf").to_str().unwrap(),
+            &flexure::robot::ImportOptions::default(),
+        )
+        .unwrap_err();
         assert!(problems.to_string().contains("joint 'turn' mimics joint"), "{problems}");
     }
 }
