@@ -175,11 +175,6 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// Whether text stands here.
-    pub fn is_text(&self) -> bool {
-        matches!(self.value, DeValue::String(_))
-    }
-
     /// Whether an array stands here.
     pub fn is_array(&self) -> bool {
         matches!(self.value, DeValue::Array(_))
