@@ -160,15 +160,24 @@ impl Bench {
 }
 
 impl Outlooks<'_> {
-    /// Largest spectral radius of the loops under `controller`.
+    /// By what small errors grow in the loops under `controller` in a control period, at most.
     pub fn nominal(&self, controller: &Controller) -> f64 {
         largest(self.nominal.iter(), controller)
+    }
+
+    /// A first idea of that.
+    pub fn first_idea(&self, controller: &Controller) -> f64 {
+        whole(self.nominal.iter().map(|outlook| outlook.first_idea(controller)))
     }
 }
 
 /// Those that are not looked at count as stable; what is no number does not.
 fn largest<'a>(outlooks: impl Iterator<Item = &'a Outlook<'a>>, controller: &Controller) -> f64 {
-    let radii = outlooks.map(|outlook| outlook.radius(controller).unwrap_or(0.0));
+    whole(outlooks.map(|outlook| outlook.growth(controller)))
+}
+
+fn whole(radii: impl Iterator<Item = Option<f64>>) -> f64 {
+    let radii = radii.map(|radius| radius.unwrap_or(0.0));
     radii.map(|radius| if radius.is_nan() { f64::INFINITY } else { radius }).fold(0.0, f64::max)
 }
 

@@ -39,13 +39,12 @@ pub use trade::{Effect, Trade};
 /// Loops that are run in the search for gains.
 pub const BUDGET: usize = 60;
 
-/// Logarithms of the speeds that are looked at first, and of the factors on the metric of the motors.
+/// Logarithms of the speeds that are looked at first; and, of v-CBC, those of the factors on metric and damping of the motors, and the
+/// powers of the balance.
 const SPEEDS: [f64; 9] = [-3.0, -2.4, -1.8, -1.2, -0.8, -0.4, 0.0, 0.4, 0.8];
-const EXCHANGES: [(f64, f64); 15] = [
-    (-1.4, 0.0), (-0.7, 0.0), (0.0, 0.0), (0.7, 0.0), (1.4, 0.0),
-    (-1.4, 0.5), (-0.7, 0.5), (0.0, 0.5), (0.7, 0.5), (1.4, 0.5),
-    (-1.4, 1.0), (-0.7, 1.0), (0.0, 1.0), (0.7, 1.0), (1.4, 1.0),
-];
+const METRICS: [f64; 5] = [-1.4, -0.7, 0.0, 0.7, 1.4];
+const DAMPINGS: [f64; 2] = [0.0, 0.9];
+const BALANCES: [f64; 3] = [0.0, 0.5, 1.0];
 
 /// How far the search goes from the best of these, as a logarithm.
 const HALF_WIDTH: f64 = 1.2;
@@ -73,13 +72,9 @@ impl Search<'_> {
     fn run(&self, given: &[Controller], budget: usize, seed: u64, progress: Progress<'_>) -> Result<Found, Problems> {
         let dimension = self.family.dimension();
         let mut best: Option<Trial> = None;
-        let mut consider = |trial: Trial| {
-            if best.as_ref().is_none_or(|best| trial.cost < best.cost) {
-                best = Some(trial);
-            }
-        };
         for controller in given.iter().take(budget) {
-            consider(self.bench.try_out(self.outlooks, controller.clone(), f64::ln, f64::INFINITY)?);
+            let trial = self.bench.try_out(self.outlooks, controller.clone(), f64::ln, f64::INFINITY)?;
+            keep(&mut best, trial);
         }
         tell(progress, 0.02)?;
         let ridge = self.ridge();
@@ -88,38 +83,40 @@ impl Search<'_> {
             first.par_iter().map(|x| self.at(x, f64::INFINITY)).collect::<Result<_, Problems>>()?;
         let center = tried.iter().zip(&first).min_by(|(a, _), (b, _)| a.cost.total_cmp(&b.cost));
         let center = center.map_or_else(|| vec![0.0; dimension], |(_, x)| (*x).clone());
-        tried.into_iter().for_each(&mut consider);
+        tried.into_iter().for_each(|trial| keep(&mut best, trial));
         let used = given.len() + first.len();
         let left = budget.saturating_sub(used);
         let (best, tried, broken, failed) =
             (RefCell::new(best), Cell::new(0_usize), Cell::new(false), RefCell::new(None));
-        let cost = |step: &[f64]| {
-            tried.set(tried.get() + 1);
+        let costs = |steps: &[Vec<f64>]| {
+            tried.set(tried.get() + steps.len());
             if progress((used + tried.get()) as f64 / budget as f64).is_break() {
                 broken.set(true);
             }
             if broken.get() {
-                return f64::INFINITY;
+                return vec![f64::INFINITY; steps.len()];
             }
-            let x: Vec<f64> = center.iter().zip(step).map(|(x, step)| x + step).collect();
             let least = best.borrow().as_ref().map_or(f64::INFINITY, |best| best.cost);
-            match self.at(&x, least) {
-                Ok(trial) => {
-                    let cost = trial.cost;
-                    if cost < least {
-                        *best.borrow_mut() = Some(trial);
-                    }
-                    cost
+            let at = |step: &Vec<f64>| {
+                let x: Vec<f64> = center.iter().zip(step).map(|(x, step)| x + step).collect();
+                self.at(&x, least)
+            };
+            let trials: Result<Vec<Trial>, Problems> = steps.par_iter().map(at).collect();
+            match trials {
+                Ok(trials) => {
+                    let costs = trials.iter().map(|trial| trial.cost).collect();
+                    trials.into_iter().for_each(|trial| keep(&mut best.borrow_mut(), trial));
+                    costs
                 }
                 Err(problems) => {
                     *failed.borrow_mut() = Some(problems);
                     broken.set(true);
-                    f64::INFINITY
+                    vec![f64::INFINITY; steps.len()]
                 }
             }
         };
         if left > 0 {
-            search(dimension, HALF_WIDTH, left, seed, &cost);
+            search(dimension, HALF_WIDTH, left, seed, &costs);
         }
         if let Some(problems) = failed.into_inner() {
             return Err(problems);
@@ -139,24 +136,16 @@ impl Search<'_> {
     /// one that is closest.
     fn ridge(&self) -> Vec<Vec<f64>> {
         let origin = if self.pace == Pace::Proved { self.family.base_rate() } else { 0.0 };
-        let (exchange, balance) = (self.family.exchange(), self.family.balance());
-        let members = SPEEDS.iter().flat_map(|speed| {
-            let exchanges = if exchange.is_some() { &EXCHANGES[..] } else { &[(0.0, 0.0)] };
-            exchanges.iter().map(move |(factor, balanced)| {
-                let mut x = vec![0.0; self.family.dimension()];
-                x[0] = origin + speed;
-                if let (Some(exchange), Some(balance)) = (exchange, balance) {
-                    x[exchange] = *factor;
-                    x[balance] = *balanced;
-                }
-                x
-            })
-        });
-        let members: Vec<Vec<f64>> = members.collect();
-        let radii: Vec<f64> = members
-            .par_iter()
-            .map(|x| self.outlooks.nominal(&self.family.at(x, self.pace)))
-            .collect();
+        let scales: Vec<[f64; 3]> = if self.family.has_balance() {
+            let pairs = METRICS.iter().flat_map(|metric| DAMPINGS.iter().map(move |damping| (metric, damping)));
+            pairs.flat_map(|(metric, damping)| BALANCES.map(|balance| [*metric, *damping, balance])).collect()
+        } else {
+            vec![[0.0; 3]]
+        };
+        let at = |speed: &f64| scales.iter().map(|scale| self.family.numbers(origin + speed, *scale)).collect::<Vec<_>>();
+        let members: Vec<Vec<f64>> = SPEEDS.iter().flat_map(at).collect();
+        let radii: Vec<f64> =
+            members.par_iter().map(|x| self.outlooks.first_idea(&self.family.at(x, self.pace))).collect();
         let each = members.len() / SPEEDS.len();
         let best = |(members, radii): (&[Vec<f64>], &[f64])| {
             let least = members.iter().zip(radii).min_by(|(_, a), (_, b)| a.total_cmp(b));
@@ -171,6 +160,13 @@ impl Search<'_> {
         }
         let closest = ridge.into_iter().min_by(|(_, a), (_, b)| a.total_cmp(b));
         closest.map(|(x, _)| x).into_iter().collect()
+    }
+}
+
+/// Keeps the better one.
+fn keep(best: &mut Option<Trial>, trial: Trial) {
+    if best.as_ref().is_none_or(|best| trial.cost < best.cost) {
+        *best = Some(trial);
     }
 }
 

@@ -114,7 +114,8 @@ pub(crate) fn tune_from(
         costs
             .at(exponents, || measure_by(&trial, &criteria).map_or(f64::INFINITY, |run| judged(&trial, &run)))
     };
-    let best = search(1 + gains.len(), HALF_WIDTH, budget, seed, &at);
+    let all = |points: &[Vec<f64>]| points.iter().map(|exponents| at(exponents)).collect();
+    let best = search(1 + gains.len(), HALF_WIDTH, budget, seed, &all);
     if broken.get() {
         return Err(Problems::interrupted());
     }
