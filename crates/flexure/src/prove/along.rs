@@ -10,6 +10,7 @@ use flexure_core::scalar::{Interval, Scalar};
 use serde::Serialize;
 
 use crate::files::{Problem, Problems};
+use crate::progress::Progress;
 use crate::prove::closed_loop::along_reference;
 use crate::prove::engine::envelope::closed_loop::{Place, Slope, TrackingLoop};
 use crate::prove::engine::envelope::slab::QUANTITIES;
@@ -66,14 +67,20 @@ pub struct Limit {
 }
 
 /// Bounds along the reference of `scenario` in the tube {W ≤ `level`}, `level` in J, looking at `budget` slabs of time at
-/// most.
+/// most. Where `progress` breaks it off they are those of the slabs so far, which hold and are less tight; none if not all of the
+/// run was looked at yet.
 ///
 /// # Errors
 /// If the robot has too many joints, the samples of the reference make no path, Π_l is not constant, or the reference's
 /// third derivative jumps, which no tube outlives.
-pub fn along(scenario: &Scenario, level: &Number, budget: usize) -> Result<Along, Problems> {
+pub fn along(
+    scenario: &Scenario,
+    level: &Number,
+    budget: usize,
+    progress: Progress<'_>,
+) -> Result<Option<Along>, Problems> {
     let level = level.bounds().hi();
-    Ok(bounds(scenario, &*enclosed(scenario)?, level, budget))
+    Ok(bounds(scenario, &*enclosed(scenario)?, level, budget, progress))
 }
 
 /// An upper bound of W in J at the scenario's initial state: 0 where the robot starts on its reference, but for rounding.
@@ -117,12 +124,18 @@ pub(crate) fn uneven_metric(scenario: &Scenario) -> Option<Problem> {
     Some(scenario.places.problem("controller.link.metric_hardening", "metric", message, help))
 }
 
-fn bounds(scenario: &Scenario, system: &dyn TrackingLoop, level: f64, budget: usize) -> Along {
+fn bounds(
+    scenario: &Scenario,
+    system: &dyn TrackingLoop,
+    level: f64,
+    budget: usize,
+    progress: Progress<'_>,
+) -> Option<Along> {
     let robot = &scenario.robot;
     let given = [&robot.limits.velocity, &robot.limits.deflection, &robot.limits.torque];
     let limits: Vec<Interval> = given.into_iter().flatten().map(|&limit| robot.bounds(limit)).collect();
     let duration = scenario.bounds(scenario.duration).hi();
-    let course = course(system, &AlongRequest { level, duration, limits, budget });
+    let course = course(system, &AlongRequest { level, duration, limits, budget }, progress)?;
     let n = system.joints();
     let peaks = |quantity: usize| {
         let of = |f: &dyn Fn(usize) -> f64| (quantity * n..(quantity + 1) * n).map(f).collect();
@@ -141,7 +154,7 @@ fn bounds(scenario: &Scenario, system: &dyn TrackingLoop, level: f64, budget: us
         })
     };
     let [velocity, deflection, torque] = [0, 1, 2].map(peaks);
-    Along {
+    Some(Along {
         level,
         error: ErrorTube::new(system, level, &vec![Interval::ZERO; n]).errors()[..n]
             .iter()
@@ -152,7 +165,7 @@ fn bounds(scenario: &Scenario, system: &dyn TrackingLoop, level: f64, budget: us
         torque,
         limits: (0..n).flat_map(|i| (0..QUANTITIES.len()).map(move |k| (i, k))).filter_map(limit).collect(),
         slabs: course.spent,
-    }
+    })
 }
 
 /// Whether quantity `k` keeps `limit`.

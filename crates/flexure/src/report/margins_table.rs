@@ -40,6 +40,7 @@ fn upper(edge: &Edge, scale: f64) -> String {
     match edge {
         Edge::Between { holds, .. } => significant(scale * holds, 3),
         Edge::Beyond { holds } => format!("> {}", significant(scale * holds, 3)),
+        Edge::Open { holds } => format!("≥ {}", significant(scale * holds, 3)),
         Edge::Nowhere => NONE.to_owned(),
     }
 }
@@ -48,6 +49,7 @@ fn range(low: &Edge, high: &Edge) -> String {
     let low = match low {
         Edge::Between { holds, .. } => significant(*holds, 3),
         Edge::Beyond { holds } => format!("< {}", significant(*holds, 3)),
+        Edge::Open { holds } => format!("≤ {}", significant(*holds, 3)),
         Edge::Nowhere => return NONE.to_owned(),
     };
     format!("{low} … {}", upper(high, 1.0))

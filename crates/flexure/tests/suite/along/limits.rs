@@ -2,6 +2,7 @@
 
 use flexure::core::linalg::Vector;
 use flexure::core::model::Motion;
+use flexure::progress::unwatched;
 use flexure::prove::along::{Limit, along};
 use flexure::prove::engine::verdict::Verdict;
 use flexure::scenario::load_scenario;
@@ -13,7 +14,7 @@ use super::{floats, level};
 fn verdict(key: &str, share: f64) -> Limit {
     let mut scenario = load_scenario("two-link-coupled-tanh-smooth").unwrap();
     let level = level(&scenario, 0.01);
-    let found = along(&scenario, &level, 600).unwrap();
+    let found = along(&scenario, &level, 600, &unwatched).unwrap().unwrap();
     assert!(found.limits.is_empty());
     let limits = &mut scenario.robot.limits;
     let (peaks, place) = match key {
@@ -22,7 +23,7 @@ fn verdict(key: &str, share: f64) -> Limit {
         _ => (&found.velocity, &mut limits.velocity),
     };
     place[1] = peaks.nominal[1] + share * (peaks.bound[1] - peaks.nominal[1]);
-    let found = along(&scenario, &level, 600).unwrap();
+    let found = along(&scenario, &level, 600, &unwatched).unwrap().unwrap();
     let [limit] = &found.limits[..] else { panic!("{:?}", found.limits) };
     assert_eq!((limit.joint, limit.key), (1, key));
     if let Verdict::Refuted(witness) = &limit.verdict {
