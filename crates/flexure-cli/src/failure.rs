@@ -10,6 +10,7 @@ use miette::{Diagnostic, MietteHandlerOpts, Report};
 use textwrap::WordSplitter;
 
 use crate::complaint::Errors;
+use crate::interrupt;
 
 /// Problems beyond these are counted, not shown.
 const MOST_SHOWN: usize = 10;
@@ -22,6 +23,8 @@ pub enum Failure {
     No(Vec<Report>),
     /// The answer was not found within the budget: exit code 3.
     Undecided(Vec<Report>),
+    /// It was broken off by Ctrl-C; what was printed is a part of the answer: exit code 130.
+    Interrupted(Vec<Report>),
     /// Whoever read the output went away: nothing to say.
     Gone,
 }
@@ -42,30 +45,50 @@ impl Failure {
         Self::No(vec![Said { code, message, hint: hint.to_owned(), place: None }.into()])
     }
 
+    /// It was broken off, as a sentence and a hint tell.
+    pub fn interrupted(message: String, hint: &str) -> Self {
+        Self::Interrupted(vec![
+            Said { code: "interrupted", message, hint: hint.to_owned(), place: None }.into(),
+        ])
+    }
+
     /// What is to be said with `--json`, if there is anything.
     pub fn errors(&self) -> Option<Errors> {
         match self {
             Self::Input(reports) | Self::No(reports) | Self::Undecided(reports) => Errors::of(reports),
+            Self::Interrupted(reports) => Errors::of(reports).map(Errors::interrupted),
             Self::Gone => None,
         }
     }
 
-    /// Says it on stderr and gives the exit code.
-    pub fn report(self) -> ExitCode {
-        let (reports, code) = match self {
-            Self::Input(reports) => (reports, 2),
-            Self::No(reports) => (reports, 1),
-            Self::Undecided(reports) => (reports, 3),
-            Self::Gone => return ExitCode::SUCCESS,
-        };
-        say_all(reports);
-        ExitCode::from(code)
+    /// The exit code that says it.
+    pub fn code(&self) -> ExitCode {
+        ExitCode::from(match self {
+            Self::Gone => 0,
+            Self::No(_) => 1,
+            Self::Input(_) => 2,
+            Self::Undecided(_) => 3,
+            Self::Interrupted(_) => interrupt::EXIT_CODE,
+        })
+    }
+
+    /// Says it on stderr.
+    pub fn say(self) {
+        match self {
+            Self::Input(reports)
+            | Self::No(reports)
+            | Self::Undecided(reports)
+            | Self::Interrupted(reports) => say_all(reports),
+            Self::Gone => {}
+        }
     }
 }
 
 impl From<Problems> for Failure {
     fn from(problems: Problems) -> Self {
-        Self::Input(problems.into_iter().map(Report::new).collect())
+        let is_interrupted = problems.is_interrupted();
+        let reports = problems.into_iter().map(Report::new).collect();
+        if is_interrupted { Self::Interrupted(reports) } else { Self::Input(reports) }
     }
 }
 

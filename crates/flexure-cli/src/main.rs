@@ -4,6 +4,7 @@ mod args;
 mod commands;
 mod complaint;
 mod failure;
+mod interrupt;
 mod progress;
 
 use std::process::ExitCode;
@@ -26,6 +27,7 @@ fn main() -> ExitCode {
         }
     };
     let (json, outside) = (cli.json, cli.outside());
+    interrupt::install(json);
     let done = match cli.command {
         Command::Reproduce(output) => commands::reproduce(&output.out, json),
         Command::Run { scenario, output } => commands::run(&scenario, outside, &output.out, json),
@@ -40,10 +42,17 @@ fn main() -> ExitCode {
         }
         Command::Margins(options) => commands::margins(&options, outside, json),
         Command::List { kind } => commands::list(kind, json),
+        Command::Completions { shell } => commands::completions(shell, json),
+        Command::Man { folder } => commands::man(folder.as_deref(), json),
     };
+    interrupt::speak();
     let errors = done.as_ref().err().and_then(Failure::errors).filter(|_| json);
     match done.and(print::end(errors)) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(),
+        Err(failure) => {
+            let code = failure.code();
+            failure.say();
+            code
+        }
     }
 }

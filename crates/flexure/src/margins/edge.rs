@@ -187,7 +187,8 @@ mod tests {
 
     #[test]
     fn what_bears_nothing_is_found_soon() {
-        let (found, tried) = Way::outward(0.0, 1e-4, 1.0).edge(&|_, _| Ok(false)).expect("nothing goes wrong");
+        let (found, tried) =
+            Way::outward(0.0, 1e-4, 1.0).edge(&|_, _| Ok(false)).expect("nothing goes wrong");
         assert!(
             tried < 30 && matches!(found, Edge::Between { holds: 0.0, fails } if fails < 1e-9),
             "{found:?}"

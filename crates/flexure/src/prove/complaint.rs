@@ -12,7 +12,8 @@ impl Proof {
         match self.found(scenario) {
             Some((problem, true)) => Some((problem, true)),
             _ if self.broken_off => {
-                let message = format!("{}: broken off before all that was asked was looked at", scenario.name);
+                let message =
+                    format!("{}: broken off before all that was asked was looked at", scenario.name);
                 let help = "what was proved until then stands; no certificate is written";
                 Some((Problem::new(INTERRUPTED, message, help), false))
             }

@@ -4,10 +4,11 @@ use comfy_table::Cell;
 
 use crate::files::number::{NONE, significant};
 use crate::margins::{Edge, Margins};
+use crate::report::columns::laid_out;
 use crate::report::table::{headed, right};
 
-/// One row a loop, at most 100 columns wide.
-pub fn margins_table(margins: &[Margins]) -> String {
+/// One row a loop, in so many columns.
+pub fn margins_table(margins: &[Margins], width: usize) -> String {
     let titles = [
         "loop",
         "rms\n|e_l|\n[mrad]",
@@ -32,7 +33,7 @@ pub fn margins_table(margins: &[Margins]) -> String {
             right(milli(loop_.noise_to_torque, 1e-3)),
         ]);
     }
-    table.to_string()
+    laid_out(&table, 1, width)
 }
 
 /// The farthest change at which the loop holds, in units of 1/`scale`.

@@ -5,6 +5,7 @@
 mod assumptions;
 mod axes;
 mod certificates;
+mod columns;
 pub mod comparison;
 mod curve;
 pub mod decimate;
@@ -33,6 +34,7 @@ mod ticks;
 
 pub use assumptions::assumptions;
 pub use certificates::CertificateReport;
+pub use columns::WIDTH;
 pub use comparison::comparison;
 pub use effort::{chatter_figure, effort_figure};
 pub use figure::{FigureOptions, four_panel};

@@ -7,11 +7,12 @@ use crate::prove::along::Along;
 use crate::prove::engine::certificate::{LoopSide, Norm, StructureName};
 use crate::prove::engine::verdict::Verdict;
 use crate::prove::summary::{BlockSummary, ProofSummary, WitnessSummary};
+use crate::report::columns::laid_out;
 use crate::report::table::{headed, right};
 use crate::units::{self, Unit};
 
-/// What was proved, refuted or left undecided, at most 100 columns wide.
-pub fn proof_table(summary: &ProofSummary) -> String {
+/// What was proved, refuted or left undecided; the table in so many columns.
+pub fn proof_table(summary: &ProofSummary, width: usize) -> String {
     let mut text = format!("{}: {}\n", summary.name, summary.verdict);
     if let Some(left_out) = left_out(summary) {
         // Writing to a text cannot fail.
@@ -21,7 +22,7 @@ pub fn proof_table(summary: &ProofSummary) -> String {
         let _ = writeln!(text, "{}", sampled.line());
     }
     if let (Some(contraction), Some(convergence)) = (summary.blocks, summary.convergence_blocks) {
-        text += &rates(summary, contraction, convergence);
+        text += &rates(summary, contraction, convergence, width);
     }
     for line in lines(summary) {
         let _ = write!(text, "\n{line}");
@@ -34,8 +35,8 @@ fn left_out(summary: &ProofSummary) -> Option<String> {
     (!summary.left_out.is_empty()).then(|| summary.left_out.join(", ").replace('_', " "))
 }
 
-/// What was proved of several scenarios, a row each.
-pub fn certificate_table(summaries: &[ProofSummary]) -> String {
+/// What was proved of several scenarios, a row each, in so many columns.
+pub fn certificate_table(summaries: &[ProofSummary], width: usize) -> String {
     let titles = [
         "proved",
         "errors\nup to\n[rad]",
@@ -61,10 +62,15 @@ pub fn certificate_table(summaries: &[ProofSummary]) -> String {
             rate(summary.direct.as_ref().and_then(|direct| direct.rate)),
         ]);
     }
-    table.to_string()
+    laid_out(&table, 1, width)
 }
 
-fn rates(summary: &ProofSummary, contraction: BlockSummary, convergence: BlockSummary) -> String {
+fn rates(
+    summary: &ProofSummary,
+    contraction: BlockSummary,
+    convergence: BlockSummary,
+    width: usize,
+) -> String {
     let mut table = headed(["block", "contraction\n[1/s]", "convergence\n[1/s]"].into_iter());
     let number = |x: Option<f64>| right(x.map_or(NONE.to_owned(), |x| significant(x, 6)));
     let mut row = |name: &str, contraction, convergence| {
@@ -76,7 +82,7 @@ fn rates(summary: &ProofSummary, contraction: BlockSummary, convergence: BlockSu
     row("σ_m  motor momenta", Some(contraction.sigma_m), Some(convergence.sigma_m));
     row("closed loop", summary.contraction_rate, summary.convergence_rate);
     row("the paper's formula", Some(summary.paper_rate), None);
-    table.to_string()
+    laid_out(&table, 1, width)
 }
 
 fn lines(summary: &ProofSummary) -> Vec<String> {
