@@ -167,13 +167,53 @@ pub fn say<'a>(problems: impl IntoIterator<Item = &'a Problem>) {
 fn say_all(reports: Vec<Report>) {
     // Nobody can be told that stderr is gone.
     let mut err = io::stderr().lock();
-    let rest = reports.len().saturating_sub(MOST_SHOWN);
-    for report in reports.into_iter().take(MOST_SHOWN) {
-        let _ = writeln!(err, "{report:?}");
+    let groups = alike(reports);
+    let rest: usize = groups.iter().skip(MOST_SHOWN).map(Vec::len).sum();
+    for group in groups.iter().take(MOST_SHOWN) {
+        let shown = if group.len() < MANY_ALIKE { group.len() } else { 1 };
+        for report in &group[..shown] {
+            let _ = writeln!(err, "{report:?}");
+        }
+        if shown < group.len() {
+            let _ = writeln!(err, "  and {} more of this kind:", group.len() - shown);
+        }
+        for report in group[shown..].iter().take(MOST_SHOWN) {
+            let _ = writeln!(err, "    {}", in_a_line(report));
+        }
+        if group.len() > shown + MOST_SHOWN {
+            let _ = writeln!(err, "    …");
+        }
     }
     if rest > 0 {
         let _ = writeln!(err, "and {rest} more");
     }
+}
+
+/// So many problems of a kind are one message.
+const MANY_ALIKE: usize = 3;
+
+/// Problems that have code and hint in common, each beside the first of its kind.
+fn alike(reports: Vec<Report>) -> Vec<Vec<Report>> {
+    let kind = |report: &Report| {
+        (report.code().map(|code| code.to_string()), report.help().map(|help| help.to_string()))
+    };
+    let mut groups: Vec<Vec<Report>> = Vec::new();
+    for report in reports {
+        match groups.iter_mut().find(|group| kind(&group[0]) == kind(&report)) {
+            Some(group) => group.push(report),
+            None => groups.push(vec![report]),
+        }
+    }
+    groups
+}
+
+/// A problem with its place, without the line of the file.
+fn in_a_line(report: &Report) -> String {
+    let place = report.downcast_ref::<Problem>().and_then(|problem| {
+        let (line, column) = problem.line_column()?;
+        Some(format!("{}:{line}:{column}: ", problem.file()?))
+    });
+    place.unwrap_or_default() + &report.to_string()
 }
 
 /// Decides how problems are drawn: on a terminal in colour and in its width; elsewhere a sentence is a line, so that it

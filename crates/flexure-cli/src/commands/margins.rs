@@ -35,7 +35,7 @@ pub fn margins(options: &Margins, outside: Outside, json: bool) -> Result<(), Fa
         let progress = Progress::new(&scenario.name, weights);
         measured(&scenario, &chosen, options, &|part, fraction| progress.set(part, fraction))?
     };
-    let words = "broken off: what is behind ≥ and ≤ was seen to hold, more was not looked at";
+    let words = "broken off: as far as ≥ and ≤ say the loop was seen to hold";
     if json {
         print::json(&Outcome { loops: loops.clone() })?;
     } else {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use flexure::files::prepare;
+use flexure::files::{Problems, prepare};
 use flexure::prove::summary::ProofSummary;
 use flexure::report::{certificate_table, summary_table};
 use flexure::reproduce::{
@@ -38,6 +38,9 @@ pub fn reproduce(out: &Path, json: bool) -> Result<(), Failure> {
         .par_iter()
         .map(|experiment| write_experiment(out, experiment))
         .collect::<Result<_, _>>()?;
+    if experiments.is_empty() {
+        return Err(Problems::interrupted().into());
+    }
     if !broken_off.is_empty() {
         return interrupted(&experiments, files, json);
     }
@@ -74,9 +77,7 @@ fn interrupted(experiments: &[Experiment], files: Vec<Vec<PathBuf>>, json: bool)
         print::json(&Finished { scenarios })?;
     } else {
         print::line(&message)?;
-        if !experiments.is_empty() {
-            print::line(&table(experiments))?;
-        }
+        print::line(&table(experiments))?;
     }
     Err(Failure::interrupted(message, "their traces and figures are written, no report is"))
 }

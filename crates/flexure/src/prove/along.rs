@@ -149,7 +149,8 @@ fn bounds(
     let limit = |(joint, quantity): (usize, usize)| {
         let limit = given[quantity][joint];
         limit.is_finite().then(|| {
-            let verdict = verdict(scenario, system, &course, level, quantity * n + joint, limit);
+            let is_watched = || progress(1.0).is_continue();
+            let verdict = verdict(scenario, system, &course, level, quantity * n + joint, limit, &is_watched);
             Limit { joint, key: keys[quantity], limit, verdict }
         })
     };
@@ -168,7 +169,7 @@ fn bounds(
     })
 }
 
-/// Whether quantity `k` keeps `limit`.
+/// Whether quantity `k` keeps `limit`; a state that exceeds it is looked for as long as it `goes_on`.
 fn verdict(
     scenario: &Scenario,
     system: &dyn TrackingLoop,
@@ -176,6 +177,7 @@ fn verdict(
     level: f64,
     k: usize,
     limit: f64,
+    goes_on: &dyn Fn() -> bool,
 ) -> Verdict<f64, Exceeding> {
     let exact = scenario.robot.bounds(limit);
     let (bound, time) = course.bound(k);
@@ -183,7 +185,7 @@ fn verdict(
         return Verdict::Proved(bound);
     }
     let (seen, _) = course.seen(k);
-    let found = (seen > exact.hi())
+    let found = (seen > exact.hi() && goes_on())
         .then(|| exceeding::first(scenario, &candidates(system, level, course, k), level, k, exact.hi()))
         .flatten();
     found.map_or_else(

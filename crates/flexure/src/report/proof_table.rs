@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::files::number::{NONE, engineering, short, significant};
-use crate::prove::along::Along;
+use crate::prove::along::{Along, Limit};
 use crate::prove::engine::certificate::{LoopSide, Norm, StructureName};
 use crate::prove::engine::verdict::Verdict;
 use crate::prove::summary::{BlockSummary, ProofSummary, WitnessSummary};
@@ -179,30 +179,52 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
 fn bounds(along: &Along) -> Vec<String> {
     let mut lines = vec![
         format!(
-            "along        while W ≤ {} J: |q̇_l| ≤ {} rad/s",
+            "along        while W ≤ {} J: |q̇_l| {}",
             short(along.level, 3),
-            list(&along.velocity.bound)
+            bounded(&along.velocity.bound, "rad/s")
         ),
-        format!("along        |q_m − q_l| ≤ {} rad", list(&along.deflection.bound)),
+        format!("along        |q_m − q_l| {}", bounded(&along.deflection.bound, "rad")),
         format!(
-            "along        |u_m| ≤ {} N m, {} N m without disturbance",
-            list(&along.torque.bound),
+            "along        |u_m| {}, {} N m without disturbance",
+            bounded(&along.torque.bound, "N m"),
             list(&along.torque.nominal)
         ),
     ];
-    lines.extend(along.limits.iter().map(|limit| {
-        let (joint, key, unit) =
-            (limit.joint + 1, limit.key, Unit::of_key(limit.key).unwrap_or(units::NONE).plain);
-        let verdict = match &limit.verdict {
-            Verdict::Proved(bound) => format!("never reached, at most {} {unit}", short(*bound, 3)),
-            Verdict::Refuted(state) => {
-                format!("exceeded: {} {unit} at t = {} s", short(state.value, 3), short(state.t, 4))
-            }
-            Verdict::Undecided(_) => "not decided".to_owned(),
-        };
-        format!("limit        {key} {} {unit} of joint {joint}: {verdict}", short(limit.limit, 4))
-    }));
+    let undecided = along.limits.iter().filter(|limit| matches!(limit.verdict, Verdict::Undecided(_)));
+    lines.extend(along.limits.iter().filter_map(limit));
+    lines.extend(open(undecided));
     lines
+}
+
+/// What is known of a limit.
+fn limit(limit: &Limit) -> Option<String> {
+    let (joint, key, unit) =
+        (limit.joint + 1, limit.key, Unit::of_key(limit.key).unwrap_or(units::NONE).plain);
+    let verdict = match &limit.verdict {
+        Verdict::Proved(bound) => format!("never reached, at most {} {unit}", short(*bound, 3)),
+        Verdict::Refuted(state) => {
+            format!("exceeded: {} {unit} at t = {} s", short(state.value, 3), short(state.t, 4))
+        }
+        Verdict::Undecided(_) => return None,
+    };
+    Some(format!("limit        {key} {} {unit} of joint {joint}: {verdict}", short(limit.limit, 4)))
+}
+
+/// Limits of which nothing is known, a line for those of a kind.
+fn open<'a>(limits: impl Iterator<Item = &'a Limit>) -> Vec<String> {
+    let mut joints: Vec<(&str, Vec<String>)> = Vec::new();
+    for Limit { key, joint, .. } in limits {
+        let joint = (joint + 1).to_string();
+        match joints.iter_mut().find(|(known, _)| known == key) {
+            Some((_, of_kind)) => of_kind.push(joint),
+            None => joints.push((key, vec![joint])),
+        }
+    }
+    let line = |(key, joints): (&str, Vec<String>)| {
+        let s = if joints.len() == 1 { "" } else { "s" };
+        format!("limit        {key} of joint{s} {}: not decided", joints.join(", "))
+    };
+    joints.into_iter().map(line).collect()
 }
 
 fn witness(witness: &WitnessSummary) -> String {
@@ -226,6 +248,15 @@ fn shortened(text: &str) -> String {
         short.push('…');
     }
     short
+}
+
+/// Bounds, if there are any: where one is not finite none are.
+fn bounded(bounds: &[f64], unit: &str) -> String {
+    if bounds.iter().all(|bound| bound.is_finite()) {
+        format!("≤ {} {unit}", list(bounds))
+    } else {
+        "not bounded".to_owned()
+    }
 }
 
 /// Numbers with blanks; one if all are the same.

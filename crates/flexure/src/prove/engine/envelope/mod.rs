@@ -55,19 +55,21 @@ pub fn course(system: &dyn TrackingLoop, request: &AlongRequest, progress: Progr
     let first = request.budget.clamp(1, FIRST);
     let cut =
         |i: usize| if i == first { request.duration } else { request.duration * (i as f64 / first as f64) };
-    let slab = |(from, to): (f64, f64)| {
-        let time = Interval::new(from, to).unwrap_or(Interval::ENTIRE);
-        Slab::new(system, request.level, time)
-    };
-    // In parallel, but in the order of time: the outcome does not depend on the number of cores.
-    let begin: Vec<_> = (0..first).map(|i| (cut(i), cut(i + 1))).collect();
     // The budget is the end that is known.
     let looked_at = AtomicUsize::new(0);
     let goes_on = |more: usize| {
         let seen = looked_at.fetch_add(more, Ordering::Relaxed) as f64;
         progress(seen / request.budget.max(1) as f64).is_continue()
     };
-    let begun = begin.into_par_iter().map(|times| goes_on(1).then(|| Piece::new(slab(times), None)));
+    let slab = |(from, to): (f64, f64)| {
+        let time = Interval::new(from, to).unwrap_or(Interval::ENTIRE);
+        Slab::watched(system, request.level, time, &|| goes_on(0))
+    };
+    // In parallel, but in the order of time: the outcome does not depend on the number of cores.
+    let begin: Vec<_> = (0..first).map(|i| (cut(i), cut(i + 1))).collect();
+    let begun = begin
+        .into_par_iter()
+        .map(|times| goes_on(1).then(|| slab(times)).flatten().map(|slab| Piece::new(slab, None)));
     let mut pieces: Vec<Piece> = begun.collect::<Option<_>>()?;
     let mut spent = first;
     loop {
@@ -81,7 +83,11 @@ pub fn course(system: &dyn TrackingLoop, request: &AlongRequest, progress: Progr
                 return vec![piece];
             }
             let (left, right) = piece.slab.time.split();
-            [left, right].map(|half| Piece::new(slab((half.lo(), half.hi())), Some(&piece))).into()
+            let half = |half: Interval| slab((half.lo(), half.hi()));
+            match half(left).zip(half(right)) {
+                Some((left, right)) => [left, right].map(|half| Piece::new(half, Some(&piece))).into(),
+                None => vec![piece],
+            }
         };
         pieces = pieces.into_par_iter().enumerate().flat_map_iter(halves).collect();
     }
