@@ -78,9 +78,7 @@ pub enum Command {
         #[arg(long, value_name = "FILE")]
         states: PathBuf,
     },
-    #[command(
-        after_help = "Examples:\n  flexure certify two-link-tanh --error-box 3 --direct\n  flexure certify planar-2r-tanh --disturbance 0.1"
-    )]
+    #[command(after_help = "Example:\n  flexure certify two-link-tanh --error-box 3 --direct")]
     /// Prove how fast the closed loop contracts, and where; write a certificate that others can check.
     Certify(Certify),
     #[command(after_help = "Example:\n  flexure import panda.urdf --lock panda_finger_joint1=0 > panda.toml")]
@@ -112,7 +110,7 @@ pub enum Command {
         against: Option<String>,
     },
     #[command(
-        after_help = "Examples:\n  flexure margins two-link-hardware\n  flexure margins task-soft --controllers pd,cascade --budget 5"
+        after_help = "Examples:\n  flexure margins two-link-hardware\n  flexure margins task-soft --controllers cascade --budget 5"
     )]
     /// Measure how much delay, gain error, stiffness error and noise a loop bears, by bisection in simulation.
     Margins(Margins),

@@ -1,4 +1,4 @@
-//! The command `flexure`: arguments, printing, exit codes, progress. Everything else is in the library.
+//! The command `flexure`: arguments, printing, exit codes, progress, Ctrl-C. Everything else is in the library.
 
 mod args;
 mod commands;

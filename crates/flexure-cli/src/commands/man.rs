@@ -44,7 +44,12 @@ pub fn man(folder: Option<&Path>, json: bool) -> Result<(), Failure> {
 
 /// The page of a command, as troff.
 fn page(command: &Command) -> Result<String, io::Error> {
+    let name = command.get_display_name().unwrap_or(command.get_name());
+    let source = format!("flexure {}", env!("CARGO_PKG_VERSION"));
+    let page = Man::new(command.clone()).title(name.to_uppercase()).source(source).manual("Flexure");
     let mut text = Vec::new();
-    Man::new(command.clone()).render(&mut text)?;
-    Ok(String::from_utf8_lossy(&text).into_owned())
+    page.render(&mut text)?;
+    let text = String::from_utf8_lossy(&text);
+    // A page without a date has an empty one, and what comes last are exit codes and examples.
+    Ok(text.replacen(" 1  \"", " 1 \"\" \"", 1).replacen(".SH EXTRA", ".SH NOTES", 1))
 }

@@ -21,11 +21,15 @@ const NUMBERS: [Column; 5] = [
 ];
 const AT_LIMIT: Column = ("at\nlimit\n[%]", |summary| number(100.0 * summary.saturated_fraction));
 const UNKNOWN: Column = ("unknown\nto the\nlaw", |summary| words(&summary.plant));
-const PROVED: Column = ("rate\nproved\n[1/s]", |summary| match summary.rate_certified {
-    // Far from the reference a rate of tanh is positive and nothing else.
-    Some(rate) if rate < 1e-3 => "<0.001".to_owned(),
-    rate => optional(rate),
-});
+const PROVED: Column = ("rate\nproved\n[1/s]", |summary| proved_rate(summary.rate_certified));
+
+/// A proved rate [1/s], if there is one: far from the reference that of tanh is positive and nothing else.
+pub(super) fn proved_rate(rate: Option<f64>) -> String {
+    match rate {
+        Some(rate) if rate < 1e-3 => "<0.001".to_owned(),
+        rate => optional(rate),
+    }
+}
 
 /// One row a run, in so many columns, without colours: the same text on a terminal and in a file. Torque limits,
 /// proved rates and what a plant has that the law does not know have a column where any run has them.
