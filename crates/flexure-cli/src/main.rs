@@ -1,9 +1,10 @@
-//! The command `flexure`: arguments, printing, exit codes, progress. Everything else is in the library.
+//! The command `flexure`: arguments, printing, exit codes, progress, Ctrl-C. Everything else is in the library.
 
 mod args;
 mod commands;
 mod complaint;
 mod failure;
+mod interrupt;
 mod progress;
 
 use std::process::ExitCode;
@@ -26,6 +27,7 @@ fn main() -> ExitCode {
         }
     };
     let (json, outside) = (cli.json, cli.outside());
+    interrupt::install(json);
     let done = match cli.command {
         Command::Reproduce(output) => commands::reproduce(&output.out, json),
         Command::Run { scenario, output } => commands::run(&scenario, outside, &output.out, json),
@@ -41,10 +43,17 @@ fn main() -> ExitCode {
         Command::Tune(options) => commands::tune(&options, outside, json),
         Command::Margins(options) => commands::margins(&options, outside, json),
         Command::List { kind } => commands::list(kind, json),
+        Command::Completions { shell } => commands::completions(shell, json),
+        Command::Man { folder } => commands::man(folder.as_deref(), json),
     };
+    interrupt::speak();
     let errors = done.as_ref().err().and_then(Failure::errors).filter(|_| json);
     match done.and(print::end(errors)) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(),
+        Err(failure) => {
+            let code = failure.code();
+            failure.say();
+            code
+        }
     }
 }

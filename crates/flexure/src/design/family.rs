@@ -55,7 +55,8 @@ impl Family {
         1 + self.own.len() + usize::from(self.is_vcbc())
     }
 
-    fn is_vcbc(&self) -> bool {
+    /// Whether it is of v-CBC.
+    pub fn is_vcbc(&self) -> bool {
         matches!(self.base, Controller::Vcbc(_))
     }
 
@@ -75,11 +76,6 @@ impl Family {
             x[1 + self.own.len()] = balance;
         }
         x
-    }
-
-    /// Whether members have other numbers than their speed and factors on single gains.
-    pub fn has_balance(&self) -> bool {
-        self.is_vcbc()
     }
 
     /// The member at `x`.

@@ -28,6 +28,7 @@ pub(crate) mod table;
 pub use atomic::{WriteError, create_folder, prepare, write_atomic, write_together};
 pub use base::Outside;
 pub use builtin::{ROBOTS, SCENARIOS, TASKS};
+pub(crate) use diagnostic::INTERRUPTED;
 pub use diagnostic::{Problem, Problems};
 pub use document::Places;
 pub use entry::Entry;

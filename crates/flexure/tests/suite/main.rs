@@ -5,6 +5,7 @@
 mod along;
 mod architecture;
 mod bad_files;
+mod broken_off;
 mod built_in;
 mod certify;
 mod closed_forms;
