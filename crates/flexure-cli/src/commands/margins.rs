@@ -58,8 +58,8 @@ pub fn margins(options: &Margins, outside: Outside, json: bool) -> Result<(), Fa
 /// What the table does not say.
 fn show(found: &Found) -> Result<(), Failure> {
     print::line(&format!(
-        "{} holds: it follows, with an rms error of at most {} mrad and torques of at most {} N m that change by at most {} N m \
-         (rms) a control period; {} runs",
+        "{} holds: it follows, with an rms error of at most {} mrad and torques of at most {} N m\n\
+         that change by at most {} N m (rms) a control period; {} runs",
         found.law(),
         significant(1e3 * found.allowed_rms_e_l, 3),
         significant(found.allowed_max_u_m, 3),

@@ -106,7 +106,8 @@ fn tables_are_as_wide_as_the_terminal() {
     let place = Place::new();
     let plain = place.run(&["check", "panda"]).done().stdout;
     for columns in [40_usize, 60, 80, 200] {
-        let script = format!("script -qec 'stty cols {columns} && flexure check panda' /dev/null </dev/null");
+        let script =
+            format!("script -qec 'stty cols {columns} rows 24 && flexure check panda' /dev/null </dev/null");
         let output = shell(&place, "bash", &script);
         let text = String::from_utf8(output.stdout).unwrap().replace('\r', "");
         assert!(output.status.success(), "{text}");

@@ -124,6 +124,9 @@ pub(crate) fn uneven_metric(scenario: &Scenario) -> Option<Problem> {
     Some(scenario.places.problem("controller.link.metric_hardening", "metric", message, help))
 }
 
+/// Part of the work that slabs take, about, where states beyond limits are looked for, too.
+const COURSE: f64 = 0.6;
+
 fn bounds(
     scenario: &Scenario,
     system: &dyn TrackingLoop,
@@ -135,7 +138,9 @@ fn bounds(
     let given = [&robot.limits.velocity, &robot.limits.deflection, &robot.limits.torque];
     let limits: Vec<Interval> = given.into_iter().flatten().map(|&limit| robot.bounds(limit)).collect();
     let duration = scenario.bounds(scenario.duration).hi();
-    let course = course(system, &AlongRequest { level, duration, limits, budget }, progress)?;
+    let course = course(system, &AlongRequest { level, duration, limits, budget }, &|fraction| {
+        progress(COURSE * fraction)
+    })?;
     let n = system.joints();
     let peaks = |quantity: usize| {
         let of = |f: &dyn Fn(usize) -> f64| (quantity * n..(quantity + 1) * n).map(f).collect();
@@ -149,7 +154,8 @@ fn bounds(
     let limit = |(joint, quantity): (usize, usize)| {
         let limit = given[quantity][joint];
         limit.is_finite().then(|| {
-            let is_watched = || progress(1.0).is_continue();
+            let done = (joint * QUANTITIES.len() + quantity) as f64 / (n * QUANTITIES.len()) as f64;
+            let is_watched = || progress(COURSE + (1.0 - COURSE) * done).is_continue();
             let verdict = verdict(scenario, system, &course, level, quantity * n + joint, limit, &is_watched);
             Limit { joint, key: keys[quantity], limit, verdict }
         })

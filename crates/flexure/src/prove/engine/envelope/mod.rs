@@ -57,29 +57,29 @@ pub fn course(system: &dyn TrackingLoop, request: &AlongRequest, progress: Progr
         |i: usize| if i == first { request.duration } else { request.duration * (i as f64 / first as f64) };
     // The budget is the end that is known.
     let looked_at = AtomicUsize::new(0);
-    let goes_on = |more: usize| {
-        let seen = looked_at.fetch_add(more, Ordering::Relaxed) as f64;
+    let goes_on = || {
+        let seen = looked_at.load(Ordering::Relaxed) as f64;
         progress(seen / request.budget.max(1) as f64).is_continue()
     };
     let slab = |(from, to): (f64, f64)| {
         let time = Interval::new(from, to).unwrap_or(Interval::ENTIRE);
-        Slab::watched(system, request.level, time, &|| goes_on(0))
+        let slab = Slab::watched(system, request.level, time, &goes_on);
+        looked_at.fetch_add(1, Ordering::Relaxed);
+        slab
     };
     // In parallel, but in the order of time: the outcome does not depend on the number of cores.
     let begin: Vec<_> = (0..first).map(|i| (cut(i), cut(i + 1))).collect();
-    let begun = begin
-        .into_par_iter()
-        .map(|times| goes_on(1).then(|| slab(times)).flatten().map(|slab| Piece::new(slab, None)));
+    let begun = begin.into_par_iter().map(|times| slab(times).map(|slab| Piece::new(slab, None)));
     let mut pieces: Vec<Piece> = begun.collect::<Option<_>>()?;
     let mut spent = first;
     loop {
         let marked = marked(&pieces, request, (request.budget - spent.min(request.budget)) / 2);
-        if marked.is_empty() || !goes_on(0) {
+        if marked.is_empty() || !goes_on() {
             break;
         }
         spent += 2 * marked.len();
         let halves = |(i, piece): (usize, Piece)| {
-            if !marked.contains(&i) || !goes_on(2) {
+            if !marked.contains(&i) {
                 return vec![piece];
             }
             let (left, right) = piece.slab.time.split();
