@@ -10,6 +10,7 @@ pub mod files;
 pub mod imperfections;
 pub mod laws;
 pub mod linalg;
+pub mod logs;
 pub mod margins;
 pub mod plant;
 pub mod progress;

@@ -5,13 +5,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms of `src`, from the bottom up: each may use those above it in this list, and none below.
-const ROOMS: [&str; 21] = [
+const ROOMS: [&str; 22] = [
     "units",         // how numbers are measured and how that is written
     "files",         // text with places, problems that point at it, files that appear whole
     "linalg",        // matrices of run-time sizes
     "verify",        // the checker of certificates
     "progress",      // how far long jobs are
     "robot",         // robot files, URDFs, Arm
+    "logs",          // what was measured on a robot
     "plant",         // what is simulated: joints as they are
     "references",    // where the links shall be
     "laws",          // control laws and their gains
