@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use flexure::compare::{BUDGET, SEEDS};
 use flexure::files::Outside;
+use flexure::replay::HORIZON;
 
 /// Model, design, simulate and compare controllers for robots with elastic joints.
 #[derive(Debug, Parser)]
@@ -94,6 +95,8 @@ pub enum Command {
     },
     /// Measure how much delay, gain error, stiffness error and noise a loop bears, by bisection in simulation.
     Margins(Margins),
+    /// Lay a log of the robot over the simulation: closed loop, prediction from window to window, residuals.
+    Replay(Replay),
     /// List what is registered.
     List {
         /// What to list; everything if left out.
@@ -182,6 +185,23 @@ pub struct Margins {
     /// With --controllers: seed of the search.
     #[arg(long, default_value_t = 0, requires = "controllers")]
     pub seed: u64,
+}
+
+#[derive(Debug, Args)]
+pub struct Replay {
+    /// Scenario file, or the name of a built-in scenario.
+    pub scenario: String,
+    /// Log of the robot: CSV, a trace of `flexure run` or any other with --columns.
+    #[arg(long, value_name = "FILE")]
+    pub log: PathBuf,
+    /// Which column is what: a TOML file, or q_l=link_pos_{},q_l.unit=deg,u_m=tau_{} and so on.
+    #[arg(long, value_name = "MAP")]
+    pub columns: Option<String>,
+    /// Length of the windows over which the robot is predicted from the logged torque, s.
+    #[arg(long, value_name = "SECONDS", default_value_t = HORIZON, allow_negative_numbers = true)]
+    pub horizon: f64,
+    #[command(flatten)]
+    pub output: Output,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

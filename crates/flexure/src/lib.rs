@@ -16,6 +16,7 @@ pub mod plant;
 pub mod progress;
 pub mod prove;
 pub mod references;
+pub mod replay;
 pub mod report;
 pub mod reproduce;
 pub mod robot;
