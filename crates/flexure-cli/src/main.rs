@@ -39,6 +39,7 @@ fn main() -> ExitCode {
             commands::verify(&certificate, against.as_deref(), outside, json)
         }
         Command::Margins(options) => commands::margins(&options, outside, json),
+        Command::Excite(options) => commands::excite(&options, outside, json),
         Command::Replay(options) => commands::replay(&options, outside, json),
         Command::List { kind } => commands::list(kind, json),
     };

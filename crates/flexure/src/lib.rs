@@ -5,6 +5,7 @@ pub use flexure_core as core;
 pub mod compare;
 pub mod estimators;
 pub mod eval;
+pub mod excite;
 pub mod feasible;
 pub mod files;
 pub mod imperfections;

@@ -7,8 +7,11 @@ use crate::logs::channel::Channel;
 use crate::logs::log::Log;
 use crate::robot::{JointKind, Robot};
 
-/// Of a limit, more than this is no overshoot but another unit.
+/// Of a position limit, more than this is no overshoot but another unit.
 const BEYOND: f64 = 2.0;
+
+/// Of a limit of speed or torque.
+const FAR_BEYOND: f64 = 5.0;
 
 /// A joint that turned farther than this \[rad\], about eight turns, is not one of an arm.
 const FAR: f64 = 50.0;
@@ -91,7 +94,7 @@ fn beyond(log: &Log, robot: &Robot, i: usize, channel: Channel, values: &[f64]) 
     } else {
         "are these degrees, or motors before the gear? --columns with unit = \"deg\" or motor_side = true"
     };
-    if share > BEYOND {
+    if share > if is_position { BEYOND } else { FAR_BEYOND } {
         return Some(problem(log, "scale", what, help));
     }
     Some(

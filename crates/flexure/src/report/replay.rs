@@ -60,13 +60,18 @@ pub fn replay_figure(replay: &Replay) -> Scene {
         },
     ];
     let options = FigureOptions {
-        title: format!("{} against {}", replay.scenario, replay.log),
+        title: format!("{} against {}", replay.scenario, file_name(&replay.log)),
         subtitle: format!(
             "log, closed loop of the scenario, and the robot under the logged torque predicted {} ahead at most",
             duration(replay.horizon)
         ),
     };
     four(t, &panels, &options, &legend(&replay.joints, joints))
+}
+
+/// The last part of a path.
+fn file_name(path: &str) -> &str {
+    Path::new(path).file_name().and_then(|name| name.to_str()).unwrap_or(path)
 }
 
 /// The signals `prefix` where they are numbers: a prediction that broke off goes on with the next window.

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms of `src`, from the bottom up: each may use those above it in this list, and none below.
-const ROOMS: [&str; 23] = [
+const ROOMS: [&str; 24] = [
     "units",         // how numbers are measured and how that is written
     "files",         // text with places, problems that point at it, files that appear whole
     "linalg",        // matrices of run-time sizes
@@ -22,6 +22,7 @@ const ROOMS: [&str; 23] = [
     "feasible",      // does a reference keep the robot's limits, and how fast may it be
     "simulate",      // Loop, runs, traces
     "replay",        // a log over the simulation
+    "excite",        // the motion that tells most
     "sampled",       // is the loop stable that holds its torque
     "eval",          // law and model at given states
     "prove",         // certificates
