@@ -9,6 +9,7 @@ mod compare;
 mod divergence;
 mod eval_model;
 mod hostile;
+mod logs;
 mod margins;
 mod outside;
 mod pinocchio;

@@ -18,7 +18,9 @@ pub(super) fn weights<const P: usize>(cases: &[Vec<Matrix<f64, P, P>>]) -> Vec<f
             *weight *= trace / P as f64;
         }
         let sum: f64 = weights.iter().sum();
-        weights.iter_mut().for_each(|weight| *weight /= sum);
+        for weight in &mut weights {
+            *weight /= sum;
+        }
     }
     weights
 }

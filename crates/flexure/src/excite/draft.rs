@@ -27,6 +27,9 @@ const REACH: (f64, f64) = (0.5, 0.5);
 /// Part of the power that goes into the slowest lines, for friction: where joints move far and turn around.
 const SLOW: f64 = 0.3;
 
+/// Part that all lines share: what the model does not foresee shows where nothing is zero.
+const EVEN: f64 = 0.1;
+
 /// How many lines those are.
 const SLOW_LINES: usize = 2;
 
@@ -42,8 +45,9 @@ const TORQUE_NOISE: f64 = 1e-3;
 /// Part of the torque limit that must be left beside the weight.
 const FREE: f64 = 0.1;
 
-/// Times that a motion is made smaller because the loop does not follow it.
-const HALVINGS: usize = 4;
+/// What a joint is made smaller by beyond need, and the least that it is made smaller to at a time.
+const SAFE: f64 = 0.98;
+const LEAST: f64 = 0.3;
 
 /// What a joint does.
 struct Course {
@@ -66,7 +70,6 @@ pub(super) struct Plan<'a> {
     /// Motor positions at rest there \[rad\].
     motors: Vec<f64>,
     courses: Vec<Course>,
-    halvings: usize,
 }
 
 impl<'a> Plan<'a> {
@@ -89,8 +92,7 @@ impl<'a> Plan<'a> {
         let joining = whole(JOINING * settings.duration);
         let period = whole((settings.duration - joining) / PERIODS);
         let motors = (0..n).map(|i| posture[i] + weight[i] / robot.stiffness[i]).collect();
-        let mut plan =
-            Self { robot, settings, joining, period, posture, motors, courses: Vec::new(), halvings: 0 };
+        let mut plan = Self { robot, settings, joining, period, posture, motors, courses: Vec::new() };
         for (i, weight) in weight.iter().enumerate() {
             let course = plan.course(i, mass[i * (n + 1)], *weight)?;
             plan.courses.push(course);
@@ -145,7 +147,9 @@ impl<'a> Plan<'a> {
         let mut harmonics = self.shared(&joint, &allowed, &numbers, &noise);
         let phases = phases(&harmonics, settings.budget, settings.seed, i as u64);
         let highest = peak(&harmonics, &phases);
-        harmonics.iter_mut().for_each(|line| line.amplitude /= highest);
+        for line in &mut harmonics {
+            line.amplitude /= highest;
+        }
         let weight = [weight.abs() / limit, bent / robot.limits.deflection[i]];
         Ok(Course { name, joint, noise, harmonics, phases, weight })
     }
@@ -167,10 +171,15 @@ impl<'a> Plan<'a> {
         let best = weights(&CASES.map(case));
         let slow = |k: usize| if k < SLOW_LINES { SLOW / SLOW_LINES as f64 } else { 0.0 };
         let harmonic = |(k, ((number, shares), weight)): (usize, ((usize, [Complex; 4]), f64))| {
-            let power = (1.0 - SLOW) * weight + slow(k);
+            let power = (1.0 - SLOW - EVEN) * weight + slow(k) + EVEN / numbers.len() as f64;
             Harmonic { number, amplitude: (power / cost(&shares)).sqrt(), shares }
         };
         lines.into_iter().zip(best).enumerate().map(harmonic).collect()
+    }
+
+    /// The robot that moves.
+    pub fn robot(&self) -> &Robot {
+        self.robot
     }
 
     /// Period of the motion \[s\].
@@ -178,31 +187,30 @@ impl<'a> Plan<'a> {
         self.period
     }
 
-    /// Makes joints smaller that use more of a limit than they may; whether there were any.
-    pub fn shrink(&mut self, usage: &[Usage]) -> bool {
-        let mut any = false;
-        for usage in usage.iter().filter(|usage| usage.share > 1.0001 * allowed_share(usage.key)) {
-            let course = &mut self.courses[usage.joint];
+    /// How much smaller each joint must be, 1 for one that keeps its limits by `usage`.
+    pub fn factors(&self, usage: &[Usage]) -> Vec<f64> {
+        let mut factors = vec![1.0; self.courses.len()];
+        for usage in usage.iter().filter(|usage| usage.share > allowed_share(usage.key)) {
+            let course = &self.courses[usage.joint];
             let rest = match usage.key {
                 "torque_limit" => course.weight[0],
                 "deflection_limit" => course.weight[1],
                 _ => 0.0,
             };
-            let fits = (0.97 * allowed_share(usage.key) - rest) / (usage.share - rest);
-            let factor = if fits.is_finite() { fits.clamp(0.3, 0.97) } else { 0.5 };
-            course.harmonics.iter_mut().for_each(|line| line.amplitude *= factor);
-            any = true;
+            let fits = SAFE * (allowed_share(usage.key) - rest) / (usage.share - rest);
+            let factor: &mut f64 = &mut factors[usage.joint];
+            *factor = factor.min(if fits.is_finite() { fits.clamp(LEAST, SAFE) } else { LEAST });
         }
-        any
+        factors
     }
 
-    /// Makes all joints smaller by a third, if that was not done too often.
-    pub fn halve(&mut self) -> bool {
-        self.halvings += 1;
-        for line in self.courses.iter_mut().flat_map(|course| &mut course.harmonics) {
-            line.amplitude *= 2.0 / 3.0;
+    /// Makes each joint smaller by its factor.
+    pub fn scale(&mut self, factors: &[f64]) {
+        for (course, factor) in self.courses.iter_mut().zip(factors) {
+            for line in &mut course.harmonics {
+                line.amplitude *= factor;
+            }
         }
-        self.halvings < HALVINGS
     }
 
     /// What each joint does, and what a log of it would tell.
@@ -286,23 +294,16 @@ impl<'a> Plan<'a> {
         };
         toml.push_str(&link_resolution.map_or(String::new(), |step| encoder("link", step)));
         toml.push_str(&encoder("motor", *motor_resolution));
-        toml.push_str(&match link_resolution {
-            Some(_) => format!(
-                "[[imperfection]]\nkind = \"velocity-filter\"\norder = 2\ncutoff = {}  # Hz\ndamping = 0.9\n",
-                FILTER / control_period
-            ),
-            None => format!(
-                "[estimator]\nkind = \"observer\"\nencoders = \"motor\"\nbandwidth = {}  # rad/s\n",
-                OBSERVER / control_period
-            ),
-        });
+        let _ = write!(
+            toml,
+            "[estimator]\nkind = \"observer\"\nencoders = \"{}\"\nbandwidth = {}  # rad/s\n",
+            if link_resolution.is_some() { "both" } else { "motor" },
+            OBSERVER / control_period
+        );
         toml.push_str("\n[sources]\nreference = \"designed for the largest Fisher information inside the limits of the robot\"\n");
         toml
     }
 }
-
-/// Cut-off of the velocity filter over the rate of control.
-const FILTER: f64 = 0.1;
 
 /// Bandwidth of the observer over the rate of control.
 const OBSERVER: f64 = 0.3;

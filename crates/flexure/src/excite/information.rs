@@ -93,21 +93,117 @@ pub(super) struct Logged {
     pub sign: Complex,
 }
 
-/// What a log of these lines leaves unknown of `joint`; infinite where it tells nothing.
-pub(super) fn error_bars(joint: &Joint, lines: &[Logged], noise: &Noise) -> ErrorBars {
-    let mut sum = Matrix::<f64, ALL, ALL>::ZERO;
-    for Logged { omega, amplitude, sign } in lines {
+/// Information about all parameters in a log of these lines.
+fn total(joint: &Joint, lines: &[Logged], noise: &Noise) -> Matrix<f64, ALL, ALL> {
+    lines.iter().fold(Matrix::ZERO, |sum, Logged { omega, amplitude, sign }| {
         let gains = joint.gains(*omega);
         let linear = linear(joint, *omega, torque(joint, *omega) * *amplitude);
         let shows: Shows<ALL> =
             std::array::from_fn(|p| if p < LINEAR { linear[p] } else { gains.map(|gain| -(gain * *sign)) });
-        sum = sum + information(&shows, &gains, noise);
-    }
-    let factor = sum.ldl();
+        sum + information(&shows, &gains, noise)
+    })
+}
+
+/// What a log of these lines leaves unknown of `joint`; infinite where it tells nothing.
+pub(super) fn error_bars(joint: &Joint, lines: &[Logged], noise: &Noise) -> ErrorBars {
+    let factor = total(joint, lines, noise).ldl();
     let known = factor.pivots().iter().all(|pivot| pivot > 0.0);
     let [stiffness, motor_inertia, link_damping, motor_damping, coulomb] = std::array::from_fn(|p| {
         let unit = Vector::<f64, ALL>::from_fn(|i| f64::from(u8::from(i == p)));
         if known { factor.solve(&unit)[p].sqrt() } else { f64::INFINITY }
     });
     ErrorBars { stiffness, motor_inertia, link_damping, motor_damping, coulomb }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::{ALL, Logged, Noise, torque, total};
+    use crate::excite::joint::Joint;
+    use crate::linalg::Complex;
+
+    const JOINT: Joint = Joint {
+        link_inertia: 0.9,
+        motor_inertia: 0.6,
+        stiffness: 2000.0,
+        link_damping: 0.5,
+        motor_damping: 1.0,
+    };
+
+    /// With a parameter changed: ln K, ln M_m, D_l, D_m.
+    fn changed(parameter: usize, step: f64) -> Joint {
+        let mut joint = JOINT;
+        match parameter {
+            0 => joint.stiffness *= step.exp(),
+            1 => joint.motor_inertia *= step.exp(),
+            2 => joint.link_damping += step,
+            3 => joint.motor_damping += step,
+            _ => {}
+        }
+        joint
+    }
+
+    fn lines(period: f64) -> Vec<Logged> {
+        let phasor = |size: f64, angle: f64| Complex { re: size * angle.cos(), im: size * angle.sin() };
+        let line = |k: usize| Logged {
+            omega: TAU * k as f64 / period,
+            amplitude: phasor(0.1 / k as f64, k as f64),
+            sign: phasor(0.5, 2.0 * k as f64),
+        };
+        [1, 3, 8, 13].map(line).into()
+    }
+
+    /// The information of a log sampled over a period is the sum over the samples of products of slopes, over the variance.
+    #[test]
+    fn lines_have_the_information_of_their_samples() {
+        const SAMPLES: usize = 500;
+        const STEP: f64 = 1e-5;
+        let (period, precision) = (1.0, [4e8, 9e8]);
+        let noise = Noise { precision, torque: 0.0, samples: SAMPLES as f64 };
+        let lines = lines(period);
+        let position = |joint: &Joint, friction: f64, side: usize, sample: usize| {
+            lines.iter().fold(0.0, |sum, line| {
+                let drive = torque(&JOINT, line.omega) * line.amplitude - line.sign.scaled(friction);
+                let angle = line.omega * period * sample as f64 / SAMPLES as f64;
+                sum + (joint.gains(line.omega)[side] * drive * Complex { re: angle.cos(), im: angle.sin() })
+                    .im
+            })
+        };
+        let slope = |parameter: usize, side: usize, sample: usize| {
+            let at = |step: f64| {
+                position(&changed(parameter, step), if parameter == 4 { step } else { 0.0 }, side, sample)
+            };
+            (at(STEP) - at(-STEP)) / (2.0 * STEP)
+        };
+        let slopes: Vec<[[f64; 2]; ALL]> = (0..SAMPLES)
+            .map(|sample| std::array::from_fn(|p| std::array::from_fn(|side| slope(p, side, sample))))
+            .collect();
+        let found = total(&JOINT, &lines, &noise);
+        for a in 0..ALL {
+            for b in 0..ALL {
+                let products = slopes
+                    .iter()
+                    .map(|slope| (0..2).map(|s| precision[s] * slope[a][s] * slope[b][s]).sum::<f64>());
+                let (sum, size) = (products.sum::<f64>(), (found[(a, a)] * found[(b, b)]).sqrt());
+                assert!((found[(a, b)] - sum).abs() < 1e-6 * size, "{a} {b}: {} and {sum}", found[(a, b)]);
+            }
+        }
+    }
+
+    /// Where the torque is noisy and only motors are measured, perfect encoders tell no more than ½ N |∂ ln G|² |U|² / σ².
+    #[test]
+    fn noise_of_the_torque_bounds_what_encoders_tell() {
+        let with = |precision: f64| Noise { precision: [0.0, precision], torque: 1e-2, samples: 1000.0 };
+        let lines = lines(1.0);
+        let bound = lines.iter().fold(0.0, |sum, line| {
+            let [re, im] = JOINT.response(line.omega)[1].map(|part| (part.value, part.gradient[0]));
+            let slope = Complex { re: re.1, im: im.1 } / Complex { re: re.0, im: im.0 };
+            let drive = torque(&JOINT, line.omega) * line.amplitude;
+            sum + 0.5 * 1000.0 * (slope.abs() * drive.abs()).powi(2) / 1e-2
+        });
+        let perfect = total(&JOINT, &lines, &with(1e16))[(0, 0)];
+        assert!((perfect / bound - 1.0).abs() < 1e-3, "{perfect} and {bound}");
+        assert!(total(&JOINT, &lines, &with(1e8))[(0, 0)] < perfect);
+    }
 }

@@ -95,8 +95,11 @@ pub struct Excitation {
 /// Part of each limit that the reference may use; positions to a lesser part of their range.
 const MARGIN: f64 = 0.8;
 
-/// Times that a motion is made smaller before it is given up.
-const ATTEMPTS: usize = 12;
+/// Times that a motion is made smaller for the limits before it is given up.
+const ATTEMPTS: usize = 16;
+
+/// Times that it is made smaller by a third because the simulated loop does not follow it.
+const SMALLER: usize = 4;
 
 /// Designs the motion for the robot at `robot`, a file or a built-in name, for a scenario file at `out`, which names the robot from
 /// there; nothing is written. `outside` says whether files may name files outside of their folders.
@@ -121,23 +124,59 @@ pub fn excite(
         document::read(&Source::new(&out.display().to_string(), &toml), &base)
             .map(|scenario| (toml, scenario))
     };
-    for _ in 0..ATTEMPTS {
-        let (toml, scenario) = read(&plan)?;
-        let usage = feasible::usage(&scenario)?;
-        if plan.shrink(&usage) {
-            continue;
+    fit(&mut plan, |plan| feasible::usage(&read(plan)?.1))?;
+    for _ in 0..SMALLER {
+        let found = followed(&read(&plan)?.1, progress)?;
+        if found.1.is_empty() {
+            break;
         }
-        let (summary, objections) = followed(&scenario, progress)?;
-        if !objections.is_empty() && plan.halve() {
-            continue;
-        }
-        let joints = plan.joints();
-        let (robot, period) = (robot.name.clone(), plan.period());
-        return Ok(Excitation { robot, period, joints, usage, run: summary, toml, objections });
+        plan.scale(&vec![2.0 / 3.0; robot.joint_count()]);
     }
-    let message = format!("no motion of {} inside all of its limits was found", robot.name);
-    let help = "flexure check shows the limits; is one of them far below what the joint needs?";
-    Err(robot.places.problem("joints", "limits", message, help).into())
+    let (toml, scenario) = read(&plan)?;
+    let (run, objections) = followed(&scenario, progress)?;
+    let usage = feasible::usage(&scenario)?;
+    Ok(Excitation {
+        robot: robot.name.clone(),
+        period: plan.period(),
+        joints: plan.joints(),
+        usage,
+        run,
+        toml,
+        objections,
+    })
+}
+
+/// Makes `plan` smaller until it keeps the limits by what is [used](feasible::usage) of them.
+fn fit(
+    plan: &mut draft::Plan<'_>,
+    used: impl Fn(&draft::Plan<'_>) -> Result<Vec<Usage>, Problems>,
+) -> Result<(), Problems> {
+    for attempt in 0..ATTEMPTS {
+        let usage = used(plan)?;
+        let mut factors = plan.factors(&usage);
+        let least = factors.iter().copied().fold(1.0, f64::min);
+        if least >= 1.0 {
+            return Ok(());
+        }
+        if attempt > 0 {
+            // What is left comes from other joints.
+            factors.fill(least);
+        }
+        plan.scale(&factors);
+    }
+    Err(unlimited(plan.robot(), &used(plan)?).into())
+}
+
+/// That no motion keeps the limits.
+fn unlimited(robot: &Robot, usage: &[Usage]) -> Problem {
+    let worst = usage.iter().max_by(|a, b| a.share.total_cmp(&b.share));
+    let worst = worst.map_or(String::new(), |usage| {
+        format!(": joint {} is at {:.2} of its {}", robot.joints[usage.joint].name, usage.share, usage.key)
+    });
+    let message = format!("no motion of {} inside all of its limits was found{worst}", robot.name);
+    let help =
+        "flexure check shows the limits; is one of them far below what the joint needs to carry itself?";
+    robot.places.problem("joints", "limits", message, help)
 }
 
 /// Simulates the scenario and says what speaks against it.

@@ -7,6 +7,7 @@
 //! u_m = { columns = "current_{}", scale = 0.085 }
 //! ```
 
+use std::fmt::Write;
 use std::path::Path;
 
 use toml::de::DeValue;
@@ -87,7 +88,7 @@ fn as_toml(said: &str) -> Result<String, Problem> {
         };
         let bare = value.parse::<f64>().is_ok_and(f64::is_finite) || matches!(value, "true" | "false");
         let value = if bare { value.to_owned() } else { suggest::text(value) };
-        toml.push_str(&format!("{key} = {value}\n"));
+        let _ = writeln!(toml, "{key} = {value}");
     }
     Ok(toml)
 }
@@ -168,7 +169,7 @@ pub(super) fn expanded(pattern: &str, joints: usize) -> Vec<String> {
 
 fn signs(field: &Field<'_>, joints: &Joints) -> Option<Vec<f64>> {
     let signs = field.per_joint(joints, &quantity::SCALE)?;
-    if signs.iter().any(|sign| sign.abs() != 1.0) {
+    if !signs.iter().all(|sign| [1.0, -1.0].contains(sign)) {
         field.error(
             "range",
             format!("{} must be 1 or -1 for each joint", field.path),

@@ -86,7 +86,7 @@ fn beyond(log: &Log, robot: &Robot, i: usize, channel: Channel, values: &[f64]) 
         value(farthest),
         quantity.described()
     );
-    let whole = values.iter().all(|x| x.fract() == 0.0) && values.iter().any(|x| *x != values[0]);
+    let whole = values.iter().all(|x| x.fract() == 0.0) && values.iter().any(|x| x.abs() > 1.0);
     let help = if channel == Channel::MotorTorque {
         "are these mN m, currents, or torques before the gear? --columns with unit, scale or motor_side"
     } else if whole {

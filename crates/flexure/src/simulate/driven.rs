@@ -35,6 +35,9 @@ impl Scenario {
     ///
     /// # Errors
     /// If the robot has more joints than this program was built for.
+    ///
+    /// # Panics
+    /// Never: links are of the kind that their size was chosen by.
     pub fn driven(&self) -> Result<Box<dyn Driven>, Problems> {
         let simulated = assembly::simulated(self);
         Ok(sized!(&simulated, L, N => {
