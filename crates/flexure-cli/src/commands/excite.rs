@@ -46,10 +46,9 @@ pub fn excite(options: &Excite, outside: Outside, json: bool) -> Result<(), Fail
     } else {
         print::line(&excitation_table(&found))?;
         print::line(&format!(
-            "error bars: standard deviations that the Cramér–Rao bound leaves from a log of {} periods of {}, if the robot is\n\
+            "error bars: standard deviations that the Cramér–Rao bound leaves from a log of two periods of {}, if the robot is\n\
              as its file says: linear joints, one by one, the others held; encoder steps as white noise, torque known to\n\
              0.1 % of its limit; no gravity, no coupling, friction at the lines alone. A model that misses something has more",
-            2,
             duration(found.period)
         ))?;
         print::line(&format!("wrote {}", out.display()))?;

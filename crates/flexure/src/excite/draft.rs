@@ -182,6 +182,11 @@ impl<'a> Plan<'a> {
         self.robot
     }
 
+    /// Number of joints.
+    pub fn joint_count(&self) -> usize {
+        self.courses.len()
+    }
+
     /// Period of the motion \[s\].
     pub fn period(&self) -> f64 {
         self.period

@@ -125,25 +125,18 @@ pub fn excite(
             .map(|scenario| (toml, scenario))
     };
     fit(&mut plan, |plan| feasible::usage(&read(plan)?.1))?;
-    for _ in 0..SMALLER {
-        let found = followed(&read(&plan)?.1, progress)?;
-        if found.1.is_empty() {
-            break;
+    let mut smaller = 0;
+    loop {
+        let (toml, scenario) = read(&plan)?;
+        let (run, objections) = followed(&scenario, progress)?;
+        if objections.is_empty() || smaller == SMALLER {
+            let usage = feasible::usage(&scenario)?;
+            let (robot, period, joints) = (robot.name.clone(), plan.period(), plan.joints());
+            return Ok(Excitation { robot, period, joints, usage, run, toml, objections });
         }
-        plan.scale(&vec![2.0 / 3.0; robot.joint_count()]);
+        smaller += 1;
+        plan.scale(&vec![2.0 / 3.0; plan.joint_count()]);
     }
-    let (toml, scenario) = read(&plan)?;
-    let (run, objections) = followed(&scenario, progress)?;
-    let usage = feasible::usage(&scenario)?;
-    Ok(Excitation {
-        robot: robot.name.clone(),
-        period: plan.period(),
-        joints: plan.joints(),
-        usage,
-        run,
-        toml,
-        objections,
-    })
 }
 
 /// Makes `plan` smaller until it keeps the limits by what is [used](feasible::usage) of them.

@@ -28,11 +28,15 @@ pub fn replay_figure(replay: &Replay) -> Scene {
     let closed = |name: &str| curves(trace, &format!("{name}_loop"), |_, _| Stroke::reference());
     let panels = [
         Panel {
-            title: if side == "q_l" { "(a) link positions qₗ" } else { "(a) motor positions qₘ" },
+            title: if side == "q_l" {
+                "(a) link positions qₗ, less their means in the log"
+            } else {
+                "(a) motor positions qₘ, less their means in the log"
+            },
             quantity: "position",
             unit: units::ANGLE.raised,
             scale: Scale::Linear,
-            curves: over(over(logged(side), predicted(side)), closed(side)),
+            curves: centred(over(over(logged(side), predicted(side)), closed(side)), trace, side),
         },
         Panel {
             title: "(b) deflections qₘ − qₗ",
@@ -67,6 +71,19 @@ pub fn replay_figure(replay: &Replay) -> Scene {
         ),
     };
     four(t, &panels, &options, &legend(&replay.joints, joints))
+}
+
+/// The curves of log, prediction and closed loop, joint by joint each, less the means of the signal `side` in the log: joints that stand
+/// far from each other would look still.
+fn centred(mut curves: Vec<Curve>, trace: &Trace, side: &str) -> Vec<Curve> {
+    let logged = trace.joints(side);
+    let means: Vec<f64> = logged.iter().map(|q| q.iter().sum::<f64>() / q.len() as f64).collect();
+    for (curve, mean) in curves.iter_mut().zip(means.iter().cycle()) {
+        for value in &mut curve.values {
+            *value -= mean;
+        }
+    }
+    curves
 }
 
 /// The last part of a path.
