@@ -50,13 +50,16 @@ impl Joint {
         let (k, b) = (relative(self.stiffness, 0), relative(self.motor_inertia, 1));
         let (d, e) = (Dual::variable(self.link_damping, 2), Dual::variable(self.motor_damping, 3));
         let m = Dual::constant(self.link_inertia);
+        // What a side asks for beside its spring, −m ω² + i ω d.
         let side = |inertia: Dual<f64, LINEAR>, damping: Dual<f64, LINEAR>| {
-            [k - inertia.scale(omega * omega), damping.scale(omega)]
+            [-inertia.scale(omega * omega), damping.scale(omega)]
         };
         let (link, motor) = (side(m, d), side(b, e));
         let both = product(link, motor);
-        let determinant = [both[0] - k.square(), both[1]];
-        [quotient([k, Dual::constant(0.0)], determinant), quotient(link, determinant)]
+        // (k + link) (k + motor) − k², without the squares that cancel.
+        let determinant = [0, 1].map(|part| k * (link[part] + motor[part]) + both[part]);
+        let zero = Dual::constant(0.0);
+        [quotient([k, zero], determinant), quotient([k + link[0], link[1]], determinant)]
     }
 
     /// Positions of link and motor per N m at `omega`, without derivatives.
