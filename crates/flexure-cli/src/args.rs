@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use flexure::compare::{BUDGET, SEEDS};
+use flexure::excite::{BUDGET as EXCITE_BUDGET, RESOLUTION};
 use flexure::files::Outside;
+use flexure::replay::HORIZON;
 use flexure::robot::DriveClass;
 
 /// Model, design, simulate and compare controllers for robots with elastic joints.
@@ -114,6 +116,12 @@ pub enum Command {
     )]
     /// Measure how much delay, gain error, stiffness error and noise a loop bears, by bisection in simulation.
     Margins(Margins),
+    #[command(after_help = "Example:\n  flexure excite planar-2r --budget 5 --out excite.toml")]
+    /// Design the motion that tells most about a robot's joints, inside all limits: a scenario file.
+    Excite(Excite),
+    #[command(after_help = "Example:\n  flexure replay two-link-tanh --log out/two-link-tanh.csv")]
+    /// Lay a log of the robot over the simulation: closed loop, prediction from window to window, residuals.
+    Replay(Replay),
     #[command(after_help = "Example:\n  flexure list scenarios")]
     /// List what is registered.
     List {
@@ -255,6 +263,53 @@ pub struct Margins {
     /// With --controllers: seed of the search.
     #[arg(long, default_value_t = 0, requires = "controllers")]
     pub seed: u64,
+}
+
+#[derive(Debug, Args)]
+pub struct Excite {
+    /// Robot file, or the name of a built-in robot.
+    pub robot: String,
+    /// Length of the motion, s.
+    #[arg(long, value_name = "SECONDS", default_value_t = 20.0, allow_negative_numbers = true)]
+    pub duration: f64,
+    /// Control period of the robot, s.
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.001, allow_negative_numbers = true)]
+    pub control_period: f64,
+    /// One count of the encoders on the links, rad.
+    #[arg(long, value_name = "RAD", default_value_t = RESOLUTION, allow_negative_numbers = true)]
+    pub link_resolution: f64,
+    /// One count of the encoders on the motors, rad on the link side of the gear.
+    #[arg(long, value_name = "RAD", default_value_t = RESOLUTION, allow_negative_numbers = true)]
+    pub motor_resolution: f64,
+    /// The links have no encoders.
+    #[arg(long, conflicts_with = "link_resolution")]
+    pub motor_only: bool,
+    /// Sets of phases that are tried for each joint, for the smallest peaks.
+    #[arg(long, value_name = "SETS", default_value_t = EXCITE_BUDGET)]
+    pub budget: usize,
+    /// Seed of the phases.
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// Scenario file; default ROBOT-excite.toml beside the robot's file.
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct Replay {
+    /// Scenario file, or the name of a built-in scenario.
+    pub scenario: String,
+    /// Log of the robot: CSV, a trace of `flexure run` or any other with --columns.
+    #[arg(long, value_name = "FILE")]
+    pub log: PathBuf,
+    /// Which column is what: a TOML file, or q_l=link_pos_{},q_l.unit=deg,u_m=tau_{} and so on.
+    #[arg(long, value_name = "MAP")]
+    pub columns: Option<String>,
+    /// Length of the windows over which the robot is predicted from the logged torque, s.
+    #[arg(long, value_name = "SECONDS", default_value_t = HORIZON, allow_negative_numbers = true)]
+    pub horizon: f64,
+    #[command(flatten)]
+    pub output: Output,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

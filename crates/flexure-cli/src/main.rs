@@ -42,6 +42,8 @@ fn main() -> ExitCode {
         }
         Command::Tune(options) => commands::tune(&options, outside, json),
         Command::Margins(options) => commands::margins(&options, outside, json),
+        Command::Excite(options) => commands::excite(&options, outside, json),
+        Command::Replay(options) => commands::replay(&options, outside, json),
         Command::List { kind } => commands::list(kind, json),
         Command::Completions { shell } => commands::completions(shell, json),
         Command::Man { folder } => commands::man(folder.as_deref(), json),

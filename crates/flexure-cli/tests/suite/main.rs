@@ -10,6 +10,7 @@ mod divergence;
 mod eval_model;
 mod hostile;
 mod interrupt;
+mod logs;
 mod margins;
 mod outside;
 mod pinocchio;
