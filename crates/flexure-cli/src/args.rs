@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use flexure::compare::{BUDGET, SEEDS};
+use flexure::excite::{BUDGET as EXCITE_BUDGET, RESOLUTION};
 use flexure::files::Outside;
+use flexure::replay::HORIZON;
 
 /// Model, design, simulate and compare controllers for robots with elastic joints.
 #[derive(Debug, Parser)]
@@ -94,6 +96,10 @@ pub enum Command {
     },
     /// Measure how much delay, gain error, stiffness error and noise a loop bears, by bisection in simulation.
     Margins(Margins),
+    /// Design the motion that tells most about a robot's joints, inside all limits: a scenario file.
+    Excite(Excite),
+    /// Lay a log of the robot over the simulation: closed loop, prediction from window to window, residuals.
+    Replay(Replay),
     /// List what is registered.
     List {
         /// What to list; everything if left out.
@@ -182,6 +188,53 @@ pub struct Margins {
     /// With --controllers: seed of the search.
     #[arg(long, default_value_t = 0, requires = "controllers")]
     pub seed: u64,
+}
+
+#[derive(Debug, Args)]
+pub struct Excite {
+    /// Robot file, or the name of a built-in robot.
+    pub robot: String,
+    /// Length of the motion, s.
+    #[arg(long, value_name = "SECONDS", default_value_t = 20.0, allow_negative_numbers = true)]
+    pub duration: f64,
+    /// Control period of the robot, s.
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.001, allow_negative_numbers = true)]
+    pub control_period: f64,
+    /// One count of the encoders on the links, rad.
+    #[arg(long, value_name = "RAD", default_value_t = RESOLUTION, allow_negative_numbers = true)]
+    pub link_resolution: f64,
+    /// One count of the encoders on the motors, rad on the link side of the gear.
+    #[arg(long, value_name = "RAD", default_value_t = RESOLUTION, allow_negative_numbers = true)]
+    pub motor_resolution: f64,
+    /// The links have no encoders.
+    #[arg(long, conflicts_with = "link_resolution")]
+    pub motor_only: bool,
+    /// Sets of phases that are tried for each joint, for the smallest peaks.
+    #[arg(long, value_name = "SETS", default_value_t = EXCITE_BUDGET)]
+    pub budget: usize,
+    /// Seed of the phases.
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// Scenario file; default ROBOT-excite.toml beside the robot's file.
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct Replay {
+    /// Scenario file, or the name of a built-in scenario.
+    pub scenario: String,
+    /// Log of the robot: CSV, a trace of `flexure run` or any other with --columns.
+    #[arg(long, value_name = "FILE")]
+    pub log: PathBuf,
+    /// Which column is what: a TOML file, or q_l=link_pos_{},q_l.unit=deg,u_m=tau_{} and so on.
+    #[arg(long, value_name = "MAP")]
+    pub columns: Option<String>,
+    /// Length of the windows over which the robot is predicted from the logged torque, s.
+    #[arg(long, value_name = "SECONDS", default_value_t = HORIZON, allow_negative_numbers = true)]
+    pub horizon: f64,
+    #[command(flatten)]
+    pub output: Output,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -158,6 +158,16 @@ impl<'a> Field<'a> {
         }
     }
 
+    /// The texts of an array, none of them empty.
+    pub fn texts(&self) -> Option<Vec<String>> {
+        let DeValue::Array(array) = self.value else {
+            self.wrong_type("an array of texts", "like [\"a\", \"b\"]");
+            return None;
+        };
+        let texts: Vec<_> = self.entries(array).map(|entry| entry.text().map(str::to_owned)).collect();
+        texts.into_iter().collect()
+    }
+
     /// True or false.
     pub fn boolean(&self) -> Option<bool> {
         let DeValue::Boolean(value) = self.value else {

@@ -281,3 +281,6 @@ pub(crate) const RESIDUAL: Quantity =
     Quantity::positive("torque that the model does not know", units::TORQUE);
 pub(crate) const OFFSET: Quantity =
     Quantity::any("what is added to measured positions", units::ANGLE).plausible(TINY, FOUR_TURNS, DEGREES);
+pub(crate) const MOTOR_TORQUE: Quantity = Quantity::any("motor torque, link side of the gear", units::TORQUE);
+pub(crate) const SCALE: Quantity =
+    Quantity::nonzero("what the numbers of a column are multiplied by, beside their unit", units::NONE);

@@ -65,13 +65,22 @@ pub fn four_panel(trace: &Trace, options: &FigureOptions) -> Scene {
             curves: link("u_m"),
         },
     ];
-    let signals: usize = panels.iter().map(|panel| panel.curves.len()).sum();
+    four(t, &panels, options, &legend(joints))
+}
 
+/// Four panels over the times `t` on one page, with a title and one legend.
+pub(super) fn four(
+    t: &[f64],
+    panels: &[Panel; 4],
+    options: &FigureOptions,
+    legend: &[(String, Stroke)],
+) -> Scene {
+    let signals: usize = panels.iter().map(|panel| panel.curves.len()).sum();
     let top = if options.subtitle.is_empty() { 62.0 } else { 82.0 };
     let mut scene = page(WIDTH, &options.title, &options.subtitle);
-    let top = top + line_legend(&mut scene, top, &legend(joints));
+    let top = top + line_legend(&mut scene, top, legend);
     scene.height = top + 2.0 * HEIGHT + 8.0;
-    let view = View { t: span(t), diverged: divergence(t, &panels), buckets: buckets(signals) };
+    let view = View { t: span(t), diverged: divergence(t, panels), buckets: buckets(signals) };
     let width = (WIDTH - MARGIN) / 2.0;
     for (index, panel) in panels.iter().enumerate() {
         let (row, column) = (index / 2, index % 2);
@@ -81,7 +90,7 @@ pub fn four_panel(trace: &Trace, options: &FigureOptions) -> Scene {
     scene
 }
 
-fn curves(trace: &Trace, prefix: &str, stroke: impl Fn(usize, usize) -> Stroke) -> Vec<Curve> {
+pub(super) fn curves(trace: &Trace, prefix: &str, stroke: impl Fn(usize, usize) -> Stroke) -> Vec<Curve> {
     let t = trace.column("t").unwrap_or_default();
     let signals = trace.joints(prefix);
     signals
@@ -91,7 +100,7 @@ fn curves(trace: &Trace, prefix: &str, stroke: impl Fn(usize, usize) -> Stroke) 
         .collect()
 }
 
-fn over(mut below: Vec<Curve>, above: Vec<Curve>) -> Vec<Curve> {
+pub(super) fn over(mut below: Vec<Curve>, above: Vec<Curve>) -> Vec<Curve> {
     below.extend(above);
     below
 }

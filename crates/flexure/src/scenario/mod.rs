@@ -15,7 +15,7 @@
 mod accept;
 mod agreement;
 mod any;
-mod document;
+pub(crate) mod document;
 mod guard;
 mod initial;
 mod load;

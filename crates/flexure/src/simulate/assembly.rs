@@ -22,7 +22,7 @@ use crate::simulate::simulation::{Hold, Timing};
 pub const TOLERANCE: f64 = 1e-10;
 
 /// Longest step in s of the integrator of plants with dry friction, play or hysteresis.
-const LONGEST_STEP: f64 = 2.5e-4;
+pub(crate) const LONGEST_STEP: f64 = 2.5e-4;
 
 /// Times and tolerances of the loop.
 pub(crate) fn timing(scenario: &Scenario) -> Timing {

@@ -105,6 +105,8 @@ pub(crate) struct State<const N: usize> {
 pub struct Action<const N: usize> {
     /// Where the links shall be, q_ld in rad to order 4.
     pub reference: Vector<Jet<f64, 5>, N>,
+    /// What the sensors deliver, before any estimator; not a number where nothing was read or nothing is measured.
+    pub measured: Motion<f64, N>,
     /// The motion that the law goes by; not a number where nothing was read.
     pub seen: Motion<f64, N>,
     /// Torque on the motors that the model does not explain, as estimated [N m]; zero without an observer.
@@ -114,6 +116,8 @@ pub struct Action<const N: usize> {
     /// Torque on the motors until the next instant [N m]: what the drive believes to give when it comes from
     /// [`step`](Controller::step), what the motors give when a loop shows it.
     pub applied: Pieces<N>,
+    /// Mean motor torque until the next instant as the drive reports it [N m]: with the torque constant that it believes in.
+    pub reported: Vector<f64, N>,
     /// Whether a certificate of the law can hold: the motors give what the law asks of them at what it sees, no more, no less
     /// and no later, and no guard limits torques or stops the robot.
     pub certificate: bool,
@@ -234,10 +238,12 @@ where
         let disturbance = disturbance.map_or(Vector::ZERO, |(torque, _)| torque);
         Action {
             reference,
+            measured: measured.motion,
             seen,
             disturbance,
             u_m,
             applied: pieces,
+            reported: self.state.applied,
             // What the drive gives over the period is what the law asks, to the bit; whoever decided.
             certificate: wanted.is_some_and(|torque| pieces.iter().all(|(_, given)| given == torque))
                 && status.is_none_or(|status| status.certificate() == Certificate::Holds),
@@ -248,13 +254,16 @@ where
 
     /// An instant at which the computer stands still.
     fn silent(&mut self, tick: &Tick) -> Action<N> {
+        let nothing = Motion::at_rest(Vector([f64::NAN; N]));
         let pieces = self.driven(tick, None);
         Action {
             reference: self.reference_at(tick.t),
-            seen: Motion::at_rest(Vector([f64::NAN; N])),
+            measured: nothing,
+            seen: nothing,
             disturbance: Vector::ZERO,
             u_m: self.state.applied,
             applied: pieces,
+            reported: self.state.applied,
             certificate: false,
             stopped: false,
             guard: None,

@@ -102,10 +102,12 @@ impl<const N: usize> Happened<N> {
         let zero = Vector::ZERO;
         let action = Action {
             reference: Vector([Jet::value(0.0); N]),
+            measured: Motion::at_rest(zero),
             seen: Motion::at_rest(zero),
             disturbance: zero,
             u_m: zero,
             applied: Pieces::constant(zero),
+            reported: zero,
             certificate: true,
             stopped: false,
             guard: None,
@@ -117,12 +119,25 @@ impl<const N: usize> Happened<N> {
         let Self { tick, action, energy, residual } = self;
         port.long("number", &mut tick.k);
         *tick = Tick::new(tick.k, tick.period);
-        let Action { reference, seen, disturbance, u_m, applied, certificate, stopped, guard } = action;
+        let Action {
+            reference,
+            measured,
+            seen,
+            disturbance,
+            u_m,
+            applied,
+            reported,
+            certificate,
+            stopped,
+            guard,
+        } = action;
         series("q_ld", reference, port);
+        port.part("measured", measured);
         port.part("seen", seen);
         port.joints("disturbance_m", "N m", &mut disturbance.0);
         port.joints("u_command", "N m", &mut u_m.0);
         port.part("u_m", applied);
+        port.joints("u_m_measured", "N m", &mut reported.0);
         port.flag("certificate", certificate);
         port.flag("stopped", stopped);
         let nothing = Said { phase: Phase::Following, fault: None };

@@ -3,6 +3,7 @@
 pub(crate) mod assembly;
 mod controller;
 mod criteria;
+mod driven;
 mod fault_log;
 mod figures;
 mod following;
@@ -31,6 +32,7 @@ mod write_trace;
 pub use assembly::TOLERANCE;
 pub use controller::{Action, Compensation, Controller, Feedback, Said};
 pub use criteria::{Bound, Criteria, Measure};
+pub use driven::Driven;
 pub use fault_log::{FaultLog, LoggedStep, Stopped};
 pub use figures::SETTLED;
 pub use following::{Accepted, Following, Reason};

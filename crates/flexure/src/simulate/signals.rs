@@ -3,7 +3,7 @@
 use flexure_core::control::Command;
 use flexure_core::model::{Fjr, Links, Motion};
 
-use crate::simulate::controller::Said;
+use crate::simulate::controller::{Action, Said};
 use crate::simulate::interface::Signal;
 use crate::simulate::simulation::Instant;
 use crate::units::{self, Unit};
@@ -39,8 +39,11 @@ const ERRORS: [Kind; 4] = [
     ("sigma_m", units::MOMENTUM),
     ("u_l", units::TORQUE),
 ];
-/// Those of loops with devices.
-const DEVICES: [Kind; 6] = [
+/// Those of loops with devices: what a log of the robot would hold, and what the controller makes of it.
+const DEVICES: [Kind; 9] = [
+    ("q_l_measured", units::ANGLE),
+    ("q_m_measured", units::ANGLE),
+    ("u_m_measured", units::TORQUE),
     ("q_l_seen", units::ANGLE),
     ("q_m_seen", units::ANGLE),
     ("dq_l_seen", units::SPEED),
@@ -108,7 +111,10 @@ impl Columns {
             }
         }
         if self.devices {
-            let seen = &action.seen;
+            let Action { measured, seen, reported, .. } = action;
+            for v in [&measured.q_l, &measured.q_m, reported] {
+                push(&mut v.iter().take(n));
+            }
             for v in [&seen.q_l, &seen.q_m, &seen.v_l, &seen.v_m, &action.u_m, &action.disturbance] {
                 push(&mut v.iter().take(n));
             }

@@ -278,7 +278,7 @@ impl<L: Links<f64, N>, const N: usize> World<L, N> {
     }
 
     /// Over a control period with the torque constant on `pieces` of it.
-    fn advance_pieces(
+    pub(crate) fn advance_pieces(
         &mut self,
         mut x: Motion<f64, N>,
         tick: &Tick,

@@ -27,6 +27,7 @@ mod imperfection_files;
 mod imperfections;
 mod integrator;
 mod limits;
+mod logs;
 mod mangled_files;
 mod model_error;
 mod plant;

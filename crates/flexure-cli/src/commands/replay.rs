@@ -1,0 +1,61 @@
+//! `flexure replay`: a log over the simulation.
+
+use std::path::PathBuf;
+
+use flexure::files::number::{duration, short};
+use flexure::files::{Outside, prepare};
+use flexure::logs::{Columns, read_log};
+use flexure::replay::{Replay as Found, replay as laid};
+use flexure::report::{replay_table, write_replay};
+use flexure::scenario::load_scenario_with;
+use serde::Serialize;
+
+use super::print;
+use crate::args::Replay;
+use crate::failure::{Failure, say};
+use crate::progress::Progress;
+
+#[derive(Serialize)]
+struct Outcome<'a> {
+    #[serde(flatten)]
+    found: &'a Found,
+    files: Vec<PathBuf>,
+}
+
+pub fn replay(options: &Replay, outside: Outside, json: bool) -> Result<(), Failure> {
+    let scenario = load_scenario_with(&options.scenario, outside)?;
+    say(&scenario.warnings);
+    let columns = match &options.columns {
+        None => Columns::default(),
+        Some(said) => {
+            let (columns, warnings) = Columns::read(said, &scenario.robot)?;
+            say(&warnings);
+            columns
+        }
+    };
+    let (log, warnings) = read_log(&options.log, &columns, &scenario.robot)?;
+    say(&warnings);
+    prepare(&options.output.out)?;
+    let found = {
+        let progress = Progress::new(&scenario.name, 1);
+        laid(&scenario, &log, options.horizon, &|fraction| progress.set(0, fraction))?
+    };
+    let files = write_replay(&options.output.out, &found)?;
+    if json {
+        return print::json(&Outcome { found: &found, files });
+    }
+    print::line(&replay_table(&found))?;
+    print::line(&format!(
+        "root mean squares of simulation − log, and their part of what the logged signal moves; {} samples, {} Hz\n\
+         predicted: the simulated robot under the logged torque, from the log's own motion on, for {} at a time\n\
+         loop: the closed loop of the scenario from its own start{}",
+        found.samples,
+        short(1.0 / found.period, 4),
+        duration(found.horizon),
+        found.diverged_at.map_or(String::new(), |t| format!("; it diverged at {}", duration(t)))
+    ))?;
+    for file in &files {
+        print::line(&format!("wrote {}", file.display()))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,113 @@
+//! The Fisher information that a log holds about a joint.
+//!
+//! Steady oscillation, torque logged exactly or with white noise, positions with the white noise of rounding, s²/12 for a count
+//! of s. A line at ω with torque U moves the positions by G(iω) U, and a parameter θ shows in them as ∂G/∂θ U; friction as
+//! −G S, S the line of the sign of the motor's speed. Torque noise of variance σ_u² a sample adds G G* σ_u² to the noise, so that
+//! a log with much of it tells no more from better encoders.
+
+use flexure_core::linalg::{Matrix, Vector};
+use serde::Serialize;
+
+use crate::excite::joint::{Joint, LINEAR};
+use crate::linalg::Complex;
+
+/// Parameters with the friction.
+const ALL: usize = LINEAR + 1;
+
+/// What is measured, and how well.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Noise {
+    /// One over the variance of the positions of links and motors [1/rad²]; 0 where there are no encoders.
+    pub precision: [f64; 2],
+    /// Variance of the torque [N² m²].
+    pub torque: f64,
+    /// Samples of the log.
+    pub samples: f64,
+}
+
+/// What the Cramér–Rao bound leaves: no unbiased estimate from such a log has smaller standard deviations.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ErrorBars {
+    /// Of the stiffness, over the stiffness.
+    pub stiffness: f64,
+    /// Of the motor inertia, over the inertia.
+    pub motor_inertia: f64,
+    /// Of the link damping [N m s/rad].
+    pub link_damping: f64,
+    /// Of the motor damping [N m s/rad].
+    pub motor_damping: f64,
+    /// Of the motor's Coulomb friction [N m].
+    pub coulomb: f64,
+}
+
+/// What shows in the positions of link and motor for a unit of each parameter.
+type Shows<const P: usize> = [[Complex; 2]; P];
+
+/// Information about P parameters in one line.
+fn information<const P: usize>(shows: &Shows<P>, gains: &[Complex; 2], noise: &Noise) -> Matrix<f64, P, P> {
+    // x* D y
+    let inner = |x: &[Complex; 2], y: &[Complex; 2]| {
+        (0..2).fold(Complex::ZERO, |sum, side| {
+            sum + (x[side].conjugate() * y[side]).scaled(noise.precision[side])
+        })
+    };
+    // (D⁻¹ + σ² g g*)⁻¹ = D − D g g* D σ² / (1 + σ² g* D g), by Sherman and Morrison.
+    let drowned = noise.torque / (1.0 + noise.torque * inner(gains, gains).re);
+    Matrix::from_fn(|a, b| {
+        let through = inner(&shows[a], gains) * inner(gains, &shows[b]);
+        0.5 * noise.samples * (inner(&shows[a], &shows[b]) - through.scaled(drowned)).re
+    })
+}
+
+/// The torque phasor of a line with a link amplitude of 1 rad.
+fn torque(joint: &Joint, omega: f64) -> Complex {
+    Complex::real(1.0) / joint.gains(omega)[0]
+}
+
+/// How stiffness, inertia and dampings of `joint` show in a line with motor torque `torque`.
+fn linear(joint: &Joint, omega: f64, torque: Complex) -> Shows<LINEAR> {
+    let response = joint.response(omega);
+    std::array::from_fn(|parameter| {
+        response.map(|[re, im]| Complex { re: re.gradient[parameter], im: im.gradient[parameter] } * torque)
+    })
+}
+
+/// Information about the linear parameters of a joint that is `real`, in a line for which the reference of a joint that was `assumed`
+/// has a link amplitude of 1 rad.
+pub(super) fn of_line(
+    real: &Joint,
+    assumed: &Joint,
+    omega: f64,
+    noise: &Noise,
+) -> Matrix<f64, LINEAR, LINEAR> {
+    information(&linear(real, omega, torque(assumed, omega)), &real.gains(omega), noise)
+}
+
+/// A line as it is logged.
+pub(super) struct Logged {
+    /// [rad/s].
+    pub omega: f64,
+    /// Of the link, with its phase \[rad\].
+    pub amplitude: Complex,
+    /// Of the sign of the motor's speed.
+    pub sign: Complex,
+}
+
+/// What a log of these lines leaves unknown of `joint`; infinite where it tells nothing.
+pub(super) fn error_bars(joint: &Joint, lines: &[Logged], noise: &Noise) -> ErrorBars {
+    let mut sum = Matrix::<f64, ALL, ALL>::ZERO;
+    for Logged { omega, amplitude, sign } in lines {
+        let gains = joint.gains(*omega);
+        let linear = linear(joint, *omega, torque(joint, *omega) * *amplitude);
+        let shows: Shows<ALL> =
+            std::array::from_fn(|p| if p < LINEAR { linear[p] } else { gains.map(|gain| -(gain * *sign)) });
+        sum = sum + information(&shows, &gains, noise);
+    }
+    let factor = sum.ldl();
+    let known = factor.pivots().iter().all(|pivot| pivot > 0.0);
+    let [stiffness, motor_inertia, link_damping, motor_damping, coulomb] = std::array::from_fn(|p| {
+        let unit = Vector::<f64, ALL>::from_fn(|i| f64::from(u8::from(i == p)));
+        if known { factor.solve(&unit)[p].sqrt() } else { f64::INFINITY }
+    });
+    ErrorBars { stiffness, motor_inertia, link_damping, motor_damping, coulomb }
+}

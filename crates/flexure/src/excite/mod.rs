@@ -1,0 +1,204 @@
+//! The motion that tells most about a robot's joints: periodic, inside every limit, rich where the springs answer.
+//!
+//! A slow motion hardly bends a spring, so that stiffness drowns in the steps of encoders; what shows it is the swing of link
+//! and motor against each other. Each joint gets a multisine with lines from slow to beyond that swing, and lines of its own, so
+//! that joints can be told apart by frequency. How much power goes where maximises the determinant of the Fisher information
+//! that a log holds about stiffness, motor inertia and dampings, averaged over stiffnesses from 0.6 to 1.6 times the assumed one,
+//! because a motion that is best for one guess may miss the swing of the real joint.
+//!
+//! The reference is one of the links. It could be one of the motors' torques, which is what the information counts; but under a
+//! torque alone an arm drifts and falls, and a loop that follows link positions gives by its feed-forward the torque of every
+//! line, keeps the posture and bounds the speed.
+
+mod design;
+mod draft;
+mod information;
+mod joint;
+mod lines;
+mod phases;
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::feasible::{self, Usage};
+use crate::files::base::Base;
+use crate::files::source::{self, Source};
+use crate::files::{Outside, Problem, Problems, builtin};
+use crate::progress::Progress;
+use crate::robot::{Robot, load_robot_with};
+use crate::scenario::{Scenario, document};
+use crate::simulate::{Summary, exceeded, run};
+
+pub use crate::excite::information::ErrorBars;
+pub use crate::excite::joint::Joint;
+pub use crate::excite::lines::Line;
+
+/// What the motion shall be.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Length of the run \[s\]: a tenth to begin, then two equal periods.
+    pub duration: f64,
+    /// Control period, and period of the log \[s\].
+    pub control_period: f64,
+    /// Sets of phases that are tried for each joint, for the smallest peaks; at least one.
+    pub budget: usize,
+    /// Seed of the phases.
+    pub seed: u64,
+    /// One count of the encoders of the links \[rad\]; none if only motors have encoders.
+    pub link_resolution: Option<f64>,
+    /// One count of the encoders of the motors, on the link side of the gear \[rad\].
+    pub motor_resolution: f64,
+}
+
+/// One count of an encoder of 17 bits on the link side of the gear \[rad\].
+pub const RESOLUTION: f64 = std::f64::consts::TAU / 131_072.0;
+
+/// Sets of phases that are tried unless said otherwise.
+pub const BUDGET: usize = 200;
+
+/// What one joint does, and what a log of it would tell.
+#[derive(Clone, Debug, Serialize)]
+pub struct JointMotion {
+    /// Name of the joint.
+    pub name: String,
+    /// Frequency at which link and motor swing against each other in this posture with the other joints held \[Hz\].
+    pub resonance: f64,
+    /// Lines of the multisine, the slowest first.
+    pub lines: Vec<Line>,
+    /// Largest magnitude of the joint's own linear motion over its limits: 1 where the first one is reached.
+    pub crest_share: f64,
+    /// Standard deviations that the Cramér–Rao bound leaves.
+    pub error_bars: ErrorBars,
+}
+
+/// A designed motion.
+#[derive(Clone, Debug, Serialize)]
+pub struct Excitation {
+    /// Name of the robot.
+    pub robot: String,
+    /// Period of the motion \[s\].
+    pub period: f64,
+    /// Each joint.
+    pub joints: Vec<JointMotion>,
+    /// What the reference of the whole arm uses of each limit.
+    pub usage: Vec<Usage>,
+    /// How the loop with these encoders followed it in simulation.
+    pub run: Summary,
+    /// The scenario file.
+    pub toml: String,
+    /// What speaks against it: limits that the simulated loop exceeds, or a reference that it does not follow.
+    #[serde(skip)]
+    pub objections: Vec<Problem>,
+}
+
+/// Part of each limit that the reference may use; positions to a lesser part of their range.
+const MARGIN: f64 = 0.8;
+
+/// Times that a motion is made smaller before it is given up.
+const ATTEMPTS: usize = 12;
+
+/// Designs the motion for the robot at `robot`, a file or a built-in name, for a scenario file at `out`, which names the robot from
+/// there; nothing is written. `outside` says whether files may name files outside of their folders.
+///
+/// # Errors
+/// If a setting is out of range, a joint has no torque limit or its weight takes nearly all of it, or no motion of any size keeps the
+/// limits; as [`Scenario::simulate`].
+pub fn excite(
+    robot: &str,
+    out: &Path,
+    outside: Outside,
+    settings: &Settings,
+    progress: Progress<'_>,
+) -> Result<Excitation, Problems> {
+    let path = named(robot, out)?;
+    let robot = &load_robot_with(robot, outside)?;
+    check(robot, settings)?;
+    let mut plan = draft::Plan::new(robot, settings)?;
+    let base = Base::of(out, outside);
+    let read = |plan: &draft::Plan<'_>| {
+        let toml = plan.toml(&path);
+        document::read(&Source::new(&out.display().to_string(), &toml), &base)
+            .map(|scenario| (toml, scenario))
+    };
+    for _ in 0..ATTEMPTS {
+        let (toml, scenario) = read(&plan)?;
+        let usage = feasible::usage(&scenario)?;
+        if plan.shrink(&usage) {
+            continue;
+        }
+        let (summary, objections) = followed(&scenario, progress)?;
+        if !objections.is_empty() && plan.halve() {
+            continue;
+        }
+        let joints = plan.joints();
+        let (robot, period) = (robot.name.clone(), plan.period());
+        return Ok(Excitation { robot, period, joints, usage, run: summary, toml, objections });
+    }
+    let message = format!("no motion of {} inside all of its limits was found", robot.name);
+    let help = "flexure check shows the limits; is one of them far below what the joint needs?";
+    Err(robot.places.problem("joints", "limits", message, help).into())
+}
+
+/// Simulates the scenario and says what speaks against it.
+fn followed(scenario: &Scenario, progress: Progress<'_>) -> Result<(Summary, Vec<Problem>), Problems> {
+    let found = run(scenario, progress)?;
+    let mut objections = exceeded(&scenario.robot, &found.trace);
+    let reasons = &found.summary.following.reasons;
+    objections.extend(reasons.first().map(|reason| {
+        let message = format!("the simulated loop does not follow the motion: {}", reason.words);
+        Problem::new(
+            "lost",
+            message,
+            "flexure tune finds gains for the scenario; a robot that is stiffer or lighter than its \
+                      file says may follow as it is",
+        )
+    }));
+    Ok((found.summary, objections))
+}
+
+/// What a scenario file at `out` calls the robot that is called `robot` here.
+fn named(robot: &str, out: &Path) -> Result<String, Problem> {
+    if builtin::is_name(robot) {
+        return Ok(robot.to_owned());
+    }
+    let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let unreadable = |error| source::unreadable(Path::new(robot), &error);
+    let real = Path::new(robot).canonicalize().map_err(unreadable)?;
+    let beside = folder.canonicalize().ok().and_then(|folder| real.strip_prefix(folder).ok());
+    Ok(beside.unwrap_or(&real).display().to_string())
+}
+
+fn check(robot: &Robot, settings: &Settings) -> Result<(), Problems> {
+    let Settings { duration, control_period, budget, link_resolution, motor_resolution, .. } = settings;
+    let refuse = |message: String, help: &str| Err(Problem::new("range", message, help).into());
+    if !(1e-5..=0.02).contains(control_period) {
+        return refuse(
+            format!("--control-period is {control_period} s, must be from 1e-5 to 0.02"),
+            "0.001 is 1 kHz",
+        );
+    }
+    if !(2.0..=600.0).contains(duration) {
+        return refuse(format!("--duration is {duration} s, must be from 2 to 600"), "20 s are usual");
+    }
+    if *budget == 0 || *budget > 100_000 {
+        return refuse(
+            format!("--budget is {budget}, must be from 1 to 100000"),
+            "sets of phases that are tried for each joint",
+        );
+    }
+    let mut steps = link_resolution.iter().chain([motor_resolution]);
+    if let Some(step) = steps.find(|step| !(1e-12..=0.1).contains(*step)) {
+        return refuse(
+            format!("one count is {step} rad, must be from 1e-12 to 0.1"),
+            "2π / counts per turn, on the link side of the gear",
+        );
+    }
+    let unlimited = robot.limits.torque.iter().position(|limit| limit.is_infinite());
+    if let Some(joint) = unlimited.map(|i| &robot.joints[i]) {
+        let message = format!("joint {} has no torque_limit: how hard may the motion drive it?", joint.name);
+        let help = "add torque_limit to [joints] of the robot file, N m on the link side of the gear";
+        return Err(robot.places.problem("joints", "missing-key", message, help).into());
+    }
+    Ok(())
+}
