@@ -41,6 +41,7 @@ fn main() -> ExitCode {
         Command::Margins(options) => commands::margins(&options, outside, json),
         Command::Excite(options) => commands::excite(&options, outside, json),
         Command::Replay(options) => commands::replay(&options, outside, json),
+        Command::Identify(options) => commands::identify(&options, outside, json),
         Command::List { kind } => commands::list(kind, json),
     };
     let errors = done.as_ref().err().and_then(Failure::errors).filter(|_| json);

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::parameters::{Parameter, Values};
 use super::predictor::{Piece, Sums, Weighing, predict};
 use crate::files::Problems;
+use crate::linalg::Symmetric;
 use crate::logs::Log;
 use crate::robot::Robot;
 use crate::robot::links::FromFile;
@@ -17,8 +18,8 @@ pub(crate) trait Layer: Send + Sync {
     /// Sums over the innovations of a piece of `log`; informed about the unknowns if asked to be.
     fn lay(&self, log: &Log, piece: &Piece, values: &Values, weighing: &Weighing, informed: bool) -> Sums;
 
-    /// Inertia that each link shows at the positions `q_l` while the others are free [kg m²].
-    fn alone(&self, q_l: &[f64]) -> Vec<f64>;
+    /// Mass matrix of the links at the positions `q_l` [kg m²].
+    fn mass(&self, q_l: &[f64]) -> Symmetric<f64>;
 }
 
 /// The links of `robot`.
@@ -49,11 +50,10 @@ where
         predict::<L, N>(&self.0, log, piece, values, weighing, informed)
     }
 
-    fn alone(&self, q_l: &[f64]) -> Vec<f64> {
+    fn mass(&self, q_l: &[f64]) -> Symmetric<f64> {
         let q: Vector<f64, N> = Vector::from_fn(|i| q_l.get(i).copied().unwrap_or(0.0));
-        let factor = self.0.mass_matrix(&q).ldl();
-        let mobility = |i: usize| factor.solve(&Vector::from_fn(|k| f64::from(i == k)))[i];
-        (0..self.0.joints()).map(|i| mobility(i).recip()).collect()
+        let mass = self.0.mass_matrix(&q);
+        Symmetric::from_fn(self.0.joints(), |i, j| mass[(i, j)])
     }
 }
 

@@ -13,6 +13,7 @@ mod parameters;
 mod predictor;
 mod prior;
 mod regression;
+mod robot_file;
 mod rubbing;
 mod search;
 mod smooth;
@@ -22,6 +23,7 @@ mod torque;
 
 pub use outcome::{Estimate, Identified, IdentifiedJoint, NoiseRatio, Offset};
 pub use parameters::Parameter;
+pub use robot_file::RobotFile;
 
 use evidence::Evidence;
 use parameters::Values;
@@ -36,18 +38,20 @@ use crate::progress::Progress;
 use crate::robot::Robot;
 
 /// How to identify.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Settings {
     /// The part of each log, at its end, that is kept from the fit to judge it by, 0 to 0.5.
     pub hold_out: f64,
     /// Largest error (three standard deviations) of a stiffness or a motor inertia, as a part of it, for the number to count as
     /// known.
     pub accuracy: f64,
+    /// Parameters of which the robot has no number worth believing, as [`RobotFile::gaps`].
+    pub gaps: Vec<Parameter>,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { hold_out: 0.2, accuracy: 0.2 }
+        Self { hold_out: 0.2, accuracy: 0.2, gaps: Vec::new() }
     }
 }
 
@@ -72,14 +76,14 @@ pub fn identify(
     progress: Progress<'_>,
 ) -> Result<Identified, Problems> {
     check_settings(settings)?;
-    checks::check(robot, logs)?;
+    checks::check(robot, logs, settings)?;
     let n = robot.joint_count();
     let layer = layer::layer(robot)?;
     let torque_size: Vec<f64> =
         (0..n).map(|i| logs.iter().map(|log| rms(&log.u_m, n, i)).fold(0.0, f64::max)).collect();
     let written = from_file(robot, &torque_size, logs.len());
     let start = started(robot, logs, &written)?;
-    let prior = Prior::new(prior_mean(&written, &start), |_, _| true);
+    let prior = Prior::new(prior_mean(&written, &start), |parameter| !settings.gaps.contains(&parameter));
     let pieces = pieces(logs, settings.hold_out);
     let noise = position_noise(logs, n);
     let search = Search {
@@ -89,7 +93,6 @@ pub fn identify(
         prior: &prior,
         position_noise: &noise,
         torque_size: &torque_size,
-        posture: posture(&logs[0]),
     };
     let found = search.run(start, progress)?;
     let (information, _) = search.with_prior(&found.total, &found.values);
@@ -98,7 +101,7 @@ pub fn identify(
 }
 
 fn check_settings(settings: &Settings) -> Result<(), Problem> {
-    let Settings { hold_out, accuracy } = *settings;
+    let Settings { hold_out, accuracy, .. } = *settings;
     if !(0.0..=0.5).contains(&hold_out) {
         let message = format!("--hold-out is {hold_out}, must be >= 0 and <= 0.5");
         return Err(Problem::new("range", message, "the part of each log that is kept from the fit"));
@@ -174,7 +177,7 @@ fn prior_mean(written: &Values, start: &Values) -> Values {
 /// The logs in pieces, the last part of each held out.
 fn pieces(logs: &[Log], hold_out: f64) -> Vec<Piece> {
     let mut pieces = Vec::new();
-    for (number, log) in logs.iter().enumerate() {
+    for (of_log, log) in logs.iter().enumerate() {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a part of the samples")]
         let count = |seconds: f64| (seconds / log.period).round() as usize;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a part of the samples")]
@@ -184,7 +187,7 @@ fn pieces(logs: &[Log], hold_out: f64) -> Vec<Piece> {
             let mut counted = from;
             while counted < to {
                 let end = if to - counted < 2 * length { to } else { counted + length };
-                pieces.push(Piece { log: number, first: counted - run_in, counted, end, held_out });
+                pieces.push(Piece { number: pieces.len(), log: of_log, first: counted - run_in, counted, end, held_out });
                 counted = end;
             }
         }
@@ -198,13 +201,6 @@ fn position_noise(logs: &[Log], n: usize) -> Vec<[f64; 2]> {
         signal.map_or(f64::INFINITY, |signal| whiteness(signal, n, i).max(1e-9))
     };
     (0..n).map(|i| [of(logs[0].q_l.as_ref(), i), of(logs[0].q_m.as_ref(), i)]).collect()
-}
-
-/// Positions in the middle of a log \[rad\].
-fn posture(log: &Log) -> &[f64] {
-    let middle = log.samples() / 2 * log.joints;
-    let positions = log.q_l.as_ref().or(log.q_m.as_ref()).map_or(&[][..], Vec::as_slice);
-    &positions[middle..middle + log.joints]
 }
 
 fn judged(

@@ -1,18 +1,22 @@
 //! A log laid over the model: innovations, and what they say of the unknowns.
 
-use flexure_core::linalg::{Vector};
+use std::ops::Range;
+
+use flexure_core::linalg::Vector;
 use flexure_core::model::{Links, Motion};
 
-use super::gain::Gain;
 use super::parameters::{Parameter, Values};
 use super::step::{Moving, Pace, Step, Workspace};
 use super::tangents::{Tangents, add};
 use super::torque::{Held, held};
+use crate::linalg::Dense;
 use crate::logs::Log;
 
 /// A piece of a log that is predicted by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Piece {
+    /// Its own number.
+    pub number: usize,
     /// Number of the log.
     pub log: usize,
     /// First sample; it and those up to `counted` only let the predictor forget where it began.
@@ -27,7 +31,8 @@ pub(crate) struct Piece {
 /// How innovations are formed and weighed.
 #[derive(Clone, Debug)]
 pub(crate) struct Weighing {
-    pub gains: Vec<Gain>,
+    /// Per piece, by its number, what corrects the states: a row a state, a column a link position or a motor position.
+    pub gains: Vec<Dense<f64>>,
     /// Per joint the inverse covariance of the innovations of link and motor: (1,1), (1,2), (2,2) [1/rad²].
     pub weights: Vec<[f64; 3]>,
     pub pace: Pace,
@@ -82,6 +87,9 @@ pub(crate) fn predict<L: Links<f64, N>, const N: usize>(
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few hundred")]
     let batch = (BATCH / log.period).ceil() as usize;
     let mut torques = vec![Held { mean: 0.0, mean_slope: 0.0, moment: 0.0, moment_slope: 0.0 }; n];
+    let mut errors = vec![0.0; 2 * n];
+    let gain = &weighing.gains[piece.number];
+    let measured = if log.q_l.is_some() { 0..2 * n } else { n..2 * n };
     for k in piece.first..piece.end {
         // From the sample before to this one.
         if k > piece.first {
@@ -96,41 +104,44 @@ pub(crate) fn predict<L: Links<f64, N>, const N: usize>(
         }
         for i in 0..n {
             let of = |measured: &Option<Vec<f64>>, q: f64| measured.as_ref().map_or(0.0, |y| y[k * n + i] - q);
-            let e = [of(&log.q_l, moving.x.q_l[i]), of(&log.q_m, moving.x.q_m[i])];
+            errors[i] = of(&log.q_l, moving.x.q_l[i]);
+            errors[n + i] = of(&log.q_m, moving.x.q_m[i]);
             if counts {
-                gathered.add(i, e, &weighing.weights[i], tangents.as_ref().map(|(t, _)| t));
+                let (e, weights) = ([errors[i], errors[n + i]], &weighing.weights[i]);
+                gathered.add(i, e, weights, tangents.as_ref().map(|(t, _)| t));
             }
-            correct(&mut moving.x, i, &weighing.gains[i], e);
         }
+        correct(&mut moving.x, gain, &errors);
         if counts {
             gathered.sums.samples += 1;
         }
         if let Some((tangents, workspace)) = &mut tangents {
-            forget(tangents, workspace, n, &weighing.gains, log);
+            forget(tangents, workspace, gain, measured.clone());
         }
     }
     gathered.sums
 }
 
-fn correct<const N: usize>(x: &mut Motion<f64, N>, i: usize, gain: &Gain, e: [f64; 2]) {
-    let by = gain.map(|row| row[0] * e[0] + row[1] * e[1]);
-    x.q_l[i] += by[0];
-    x.q_m[i] += by[1];
-    x.v_l[i] += by[2];
-    x.v_m[i] += by[3];
+fn correct<const N: usize>(x: &mut Motion<f64, N>, gain: &Dense<f64>, errors: &[f64]) {
+    let n = errors.len() / 2;
+    let by = |row: usize| gain.row(row).iter().zip(errors).map(|(gain, e)| gain * e).sum::<f64>();
+    for i in 0..n {
+        x.q_l[i] += by(i);
+        x.q_m[i] += by(n + i);
+        x.v_l[i] += by(2 * n + i);
+        x.v_m[i] += by(3 * n + i);
+    }
 }
 
-/// What corrections do to the tangents.
-fn forget(tangents: &mut Tangents, workspace: &mut Workspace, n: usize, gains: &[Gain], log: &Log) {
-    let seen = [log.q_l.is_some(), log.q_m.is_some()];
-    for (i, gain) in gains.iter().enumerate() {
-        for side in (0..2).filter(|&side| seen[side]) {
-            workspace.seen[side].copy_from_slice(tangents.row(side * n + i));
-        }
-        for (state, row) in gain.iter().enumerate() {
-            for side in (0..2).filter(|&side| seen[side]) {
-                add(tangents.row_mut(state * n + i), -row[side], &workspace.seen[side]);
-            }
+/// What corrections by the `measured` positions do to the tangents.
+fn forget(tangents: &mut Tangents, workspace: &mut Workspace, gain: &Dense<f64>, measured: Range<usize>) {
+    for column in measured.clone() {
+        workspace.seen.row_mut(column).copy_from_slice(tangents.row(column));
+    }
+    for (state, row) in gain.rows().enumerate() {
+        let to = tangents.row_mut(state);
+        for column in measured.clone() {
+            add(to, -row[column], workspace.seen.row(column));
         }
     }
 }

@@ -21,14 +21,13 @@ const GUESS: f64 = 3.0;
 const OFFSET: f64 = 0.02;
 
 impl Prior {
-    /// About `mean`; `known` says which parameters of a joint stand in the robot file.
-    pub fn new(mean: Values, known: impl Fn(usize, Parameter) -> bool) -> Self {
-        let spread_of = |joint: usize, parameter: Parameter| match parameter {
-            parameter if parameter.is_needed() && known(joint, parameter) => SHEET,
+    /// About `mean`; `known` says of which parameters the robot file has numbers.
+    pub fn new(mean: Values, known: impl Fn(Parameter) -> bool) -> Self {
+        let spread_of = |parameter: Parameter| match parameter {
+            parameter if parameter.is_needed() && known(parameter) => SHEET,
             _ => GUESS,
         };
-        let parameters =
-            (0..mean.joints.len()).flat_map(|joint| Parameter::ALL.map(|parameter| spread_of(joint, parameter)));
+        let parameters = mean.joints.iter().flat_map(|_| Parameter::ALL.map(spread_of));
         let spread = parameters.chain(mean.offsets.iter().map(|_| OFFSET)).collect();
         Self { mean, spread }
     }

@@ -1,13 +1,17 @@
 //! Maximum likelihood of the innovations: Gauss–Newton steps with the prior as one more measurement, then the noise that makes
 //! the innovations likeliest, and again.
 
-use super::gain::{Alone, Gain, Noise};
+use std::ops::RangeInclusive;
+
+use rayon::prelude::*;
+
+use super::gain::{Noise, Posture};
 use super::layer::{Layer, Total, total};
 use super::parameters::{Parameter, Values};
 use super::predictor::{Piece, Weighing};
 use super::prior::Prior;
 use super::step::Pace;
-use crate::linalg::{Symmetric, cholesky, solved};
+use crate::linalg::{Dense, Symmetric, cholesky, solved};
 use crate::files::Problems;
 use crate::logs::Log;
 use crate::progress::{Progress, tell};
@@ -22,8 +26,6 @@ pub(crate) struct Search<'a> {
     pub position_noise: &'a [[f64; 2]],
     /// Per joint the size of the torque [N m].
     pub torque_size: &'a [f64],
-    /// Where links are, to tell the inertias that gains go by.
-    pub posture: &'a [f64],
 }
 
 /// What was found.
@@ -37,22 +39,23 @@ pub(crate) struct Found {
     pub converged: bool,
 }
 
-/// Torque noise that is tried, as parts of the torque: powers of a quarter.
-const LEVELS: i32 = 9;
-
-/// Level of the first round: corrections that are large, and memory that is short.
-const FIRST: i32 = 1;
+/// Torque noise that is tried, as parts of the torque: these powers of a quarter.
+const LEVELS: RangeInclusive<i32> = 1..=9;
 
 /// Rounds of noise and values, and Gauss–Newton steps in each at most.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 4;
 const STEPS: usize = 12;
 
 /// Largest change of a logarithm in a step, and of an offset in sampling periods.
 const LONGEST: f64 = 0.7;
 const LONGEST_OFFSET: f64 = 2.0;
 
-/// A round ends where a step gains less than this of the logarithm of the likelihood.
-const ENOUGH: f64 = 1e-3;
+/// A round ends where a step promises less than this of the logarithm of the likelihood: a fifth of an error bar. Beyond that,
+/// instants at which friction turns make the likelihood rough.
+const ENOUGH: f64 = 0.02;
+
+/// A step that promises less than this and gains nothing ends a round, too.
+const ROUGH: f64 = 1.0;
 
 impl Search<'_> {
     /// From `values`.
@@ -61,24 +64,25 @@ impl Search<'_> {
     /// If it was broken off.
     pub fn run(&self, mut values: Values, progress: Progress<'_>) -> Result<Found, Problems> {
         let n = values.joints.len();
-        let mut levels = vec![FIRST; n];
+        let mut levels = vec![self.first(); n];
         let mut converged = false;
+        let mut weighing = self.weighed(&values, &levels);
         for round in 0..ROUNDS {
-            let mut weighing = self.weighing(&values, &levels);
-            let innovations = self.total(&values, &weighing, false);
-            weighing.weights = weights(&innovations);
+            let last = round + 1 == ROUNDS;
             let told = |step: usize| {
                 tell(progress, (round as f64 + step as f64 / STEPS as f64) / ROUNDS as f64)
             };
-            (values, converged) = self.climb(values, &weighing, &told)?;
-            levels = self.levels(&values);
+            let enough = if last { ENOUGH } else { ROUGH };
+            (values, converged) = self.climb(values, &weighing, enough, &told)?;
+            if last {
+                break;
+            }
+            // The first gain is that of the numbers in the file; it is put right before others are tried.
+            if round > 0 {
+                levels = self.levels(&values, &levels);
+            }
+            weighing = self.weighed(&values, &levels);
         }
-        let mut weighing = self.weighing(&values, &levels);
-        weighing.weights = weights(&self.total(&values, &weighing, false));
-        (values, converged) = {
-            let (values, last) = self.climb(values, &weighing, &|_| Ok(()))?;
-            (values, last || converged)
-        };
         let total = self.total(&values, &weighing, true);
         let torque_noise = (0..n).map(|i| self.torque_noise(i, levels[i])).collect();
         Ok(Found { values, weighing, torque_noise, total, converged })
@@ -93,46 +97,76 @@ impl Search<'_> {
         self.torque_size[joint] * 0.25_f64.powi(level)
     }
 
-    /// Gains at the noise of `levels`, weights of one.
+    /// Gains at the noise of `levels`, in the posture of each piece, and weights of one.
     fn weighing(&self, values: &Values, levels: &[i32]) -> Weighing {
+        let n = values.joints.len();
+        let noise: Vec<_> = (0..n)
+            .map(|i| Noise { torque: self.torque_noise(i, levels[i]), position: self.position_noise[i] })
+            .collect();
+        let found: Vec<_> = self
+            .pieces
+            .par_iter()
+            .map(|piece| {
+                let log = &self.logs[piece.log];
+                let posture = self.posture(values, log, (piece.counted + piece.end) / 2);
+                let gain = posture.gain(&noise, log.period);
+                (posture.rate().unwrap_or(0.0), gain.unwrap_or_else(|| Dense::zeros(4 * n, 2 * n)))
+            })
+            .collect();
+        let rate = found.iter().map(|(rate, _)| *rate).fold(0.0, f64::max);
         let h = self.logs.iter().map(|log| log.period).fold(0.0, f64::max);
-        let inertia = self.layer.alone(self.posture);
-        let alone = |i: usize| {
-            let joint = &values.joints[i];
-            let of = |parameter: Parameter| joint[parameter.place()];
-            Alone {
-                inertia: [inertia[i], of(Parameter::MotorInertia)],
-                stiffness: of(Parameter::Stiffness),
-                damping: [of(Parameter::LinkDamping), of(Parameter::MotorDamping)],
-            }
-        };
-        let joints = 0..values.joints.len();
-        let gain = |i: usize| -> Gain {
-            let noise = Noise { torque: self.torque_noise(i, levels[i]), position: self.position_noise[i] };
-            alone(i).gain(&noise, h).unwrap_or_default()
-        };
-        let rate = joints.clone().map(|i| alone(i).rate()).fold(0.0, f64::max);
         Weighing {
-            gains: joints.clone().map(gain).collect(),
-            weights: vec![[1.0, 0.0, 1.0]; joints.len()],
-            pace: Pace::of(1.5 * rate, h),
+            gains: found.into_iter().map(|(_, gain)| gain).collect(),
+            weights: vec![[1.0, 0.0, 1.0]; n],
+            pace: Pace::of(1.3 * rate, h),
         }
     }
 
-    /// Per joint the level of torque noise whose gain makes the innovations likeliest.
-    fn levels(&self, values: &Values) -> Vec<i32> {
-        let n = values.joints.len();
-        let mut best = vec![(f64::INFINITY, FIRST); n];
-        for level in 0..LEVELS {
-            let innovations = self.total(values, &self.weighing(values, &vec![level; n]), false);
-            for (i, best) in best.iter_mut().enumerate() {
-                let surprise = determinant(innovations.covariance(i)).ln();
-                if surprise < best.0 {
-                    *best = (surprise, level);
-                }
-            }
+    /// The robot at sample `k` of `log`.
+    fn posture(&self, values: &Values, log: &Log, k: usize) -> Posture {
+        let n = log.joints;
+        let positions = log.q_l.as_ref().or(log.q_m.as_ref()).map_or(&[][..], |q| &q[k * n..(k + 1) * n]);
+        Posture {
+            mass: self.layer.mass(positions),
+            motor_inertia: values.of(Parameter::MotorInertia),
+            stiffness: values.of(Parameter::Stiffness),
+            link_damping: values.of(Parameter::LinkDamping),
+            motor_damping: values.of(Parameter::MotorDamping),
         }
-        best.into_iter().map(|(_, level)| level).collect()
+    }
+
+    /// The weighing at the noise of `levels`: what innovations at `values` are, is their weight.
+    fn weighed(&self, values: &Values, levels: &[i32]) -> Weighing {
+        let weighing = self.weighing(values, levels);
+        let innovations = self.total(values, &weighing, false);
+        Weighing { weights: weights(&innovations), ..weighing }
+    }
+
+    /// Level of the first rounds: corrections that are large, and memory that is short; less where links are not seen, whose motion
+    /// is a guess as good as the numbers are.
+    fn first(&self) -> i32 {
+        if self.logs[0].q_l.is_some() { 1 } else { 5 }
+    }
+
+    /// Per joint the level of torque noise whose gain makes the innovations likeliest. Where links are not seen all joints have
+    /// the same: a gain that one joint's noise makes may not suit the other's.
+    fn levels(&self, values: &Values, from: &[i32]) -> Vec<i32> {
+        let n = from.len();
+        let surprises: Vec<(i32, Vec<f64>)> = LEVELS
+            .map(|level| {
+                let innovations = self.total(values, &self.weighing(values, &vec![level; n]), false);
+                (level, (0..n).map(|i| determinant(innovations.covariance(i)).ln()).collect())
+            })
+            .collect();
+        let best = |of: &dyn Fn(&[f64]) -> f64, otherwise: i32| {
+            let finite = surprises.iter().map(|(level, all)| (of(all), *level)).filter(|x| x.0.is_finite());
+            finite.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(otherwise, |(_, level)| level)
+        };
+        if self.logs[0].q_l.is_some() {
+            (0..n).map(|i| best(&|all| all[i], from[i])).collect()
+        } else {
+            vec![best(&|all| all.iter().sum(), from[0]); n]
+        }
     }
 
     /// Gauss–Newton with the damping of Marquardt; whether it came to an end.
@@ -140,6 +174,7 @@ impl Search<'_> {
         &self,
         mut values: Values,
         weighing: &Weighing,
+        enough: f64,
         told: &dyn Fn(usize) -> Result<(), Problems>,
     ) -> Result<(Values, bool), Problems> {
         let mut here = self.total(&values, weighing, true);
@@ -155,7 +190,7 @@ impl Search<'_> {
                     continue;
                 };
                 let gain: f64 = step.iter().zip(&score).map(|(step, score)| 0.5 * step * score).sum();
-                if gain < ENOUGH {
+                if gain < enough {
                     return Ok((values, true));
                 }
                 let there = values.moved(&self.limited(&step, &values));
@@ -164,6 +199,9 @@ impl Search<'_> {
                     moved = Some((there, total));
                     damping = (0.1 * damping).max(1e-9);
                     break;
+                }
+                if gain < ROUGH {
+                    return Ok((values, true));
                 }
                 damping *= 10.0;
             }
@@ -210,11 +248,7 @@ impl Search<'_> {
 
 /// Determinant of a covariance of link and motor; of the one that is measured if the other is not.
 fn determinant([l, both, m]: [f64; 3]) -> f64 {
-    let floor = f64::MIN_POSITIVE;
-    match (l > 0.0, m > 0.0) {
-        (true, true) => (l * m - both * both).max(floor),
-        _ => l.max(m).max(floor),
-    }
+    if l > 0.0 { l * m - both * both } else { m }
 }
 
 /// Inverse covariances of the innovations, joint by joint.

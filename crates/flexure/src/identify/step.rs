@@ -39,12 +39,12 @@ pub(crate) struct Pace {
 }
 
 impl Pace {
-    /// For rates up to `rate` [1/s], with errors below 1e-8 of the motion.
+    /// For rates up to `rate` [1/s]: what is cut off is below 1e-6 of the fastest swing.
     pub fn of(rate: f64, h: f64) -> Self {
-        let parts = (rate * h).ceil().clamp(1.0, 64.0);
+        let parts = (rate * h / 3.0).ceil().clamp(1.0, 64.0);
         let x = rate * h / parts;
         let (mut term, mut terms) = (1.0, 0_usize);
-        while term > 1e-8 && terms < 14 {
+        while term > 1e-6 && terms < 20 {
             terms += 1;
             term *= x / terms as f64;
         }
@@ -233,17 +233,21 @@ impl<'a, L: Links<f64, N>, const N: usize> Step<'a, L, N> {
             term.copy(tangents);
             for k in 1..=self.pace.terms {
                 let by = part / k as f64;
-                let (following, [link, motor]) = self.term(&of_x, frozen, k, part);
+                let (following, [_, motor]) = self.term(&of_x, frozen, k, part);
                 let deflection = of_x.deflection();
                 for i in 0..n {
                     // Torques of springs and dampers, into the rows of links and motors.
                     let (to_link, to_motor) = torque.two_rows(i, n + i);
                     let (q_l, q_m, v_l, v_m) = (term.row(i), term.row(n + i), term.row(2 * n + i), term.row(3 * n + i));
                     let (K, D_l, D_m) = (self.stiffness[i], self.damping[0][i], self.damping[1][i]);
-                    for c in 0..to_link.len() {
-                        let spring = K * (q_m[c] - q_l[c]);
-                        to_link[c] = spring - D_l * v_l[c];
-                        to_motor[c] = -spring - D_m * v_m[c];
+                    let positions = q_l.iter().zip(q_m);
+                    let motions = positions.zip(v_l.iter().zip(v_m));
+                    for ((to_link, to_motor), ((q_l, q_m), (v_l, v_m))) in
+                        to_link.iter_mut().zip(to_motor.iter_mut()).zip(motions)
+                    {
+                        let spring = K * (q_m - q_l);
+                        *to_link = spring - D_l * v_l;
+                        *to_motor = -spring - D_m * v_m;
                     }
                     let spring = K * deflection[i];
                     to_link[unknown(i, Parameter::Stiffness)] += spring;
@@ -255,7 +259,6 @@ impl<'a, L: Links<f64, N>, const N: usize> Step<'a, L, N> {
                         add(to_link, 1.0, constant.row(i));
                         add(to_motor, 1.0, constant.row(n + i));
                     }
-                    let _ = link;
                 }
                 for i in 0..n {
                     for (to, from) in [(i, 2 * n + i), (n + i, 3 * n + i)] {
@@ -338,8 +341,8 @@ pub(crate) struct Workspace {
     torque: Tangents,
     constant: Tangents,
     start: Tangents,
-    /// Rows of the positions that are measured, of one joint.
-    pub seen: [Vec<f64>; 2],
+    /// Rows of the positions that are measured.
+    pub seen: Tangents,
 }
 
 impl Workspace {
@@ -347,6 +350,6 @@ impl Workspace {
     pub fn new(joints: usize, width: usize) -> Self {
         let states = Tangents::zeros(4 * joints, width);
         let torques = Tangents::zeros(2 * joints, width);
-        Self { term: states.clone(), next: states.clone(), torque: torques.clone(), constant: torques, start: states, seen: [vec![0.0; width], vec![0.0; width]] }
+        Self { term: states.clone(), next: states.clone(), torque: torques.clone(), constant: torques.clone(), start: states, seen: torques }
     }
 }

@@ -12,10 +12,6 @@ impl Tangents {
         Self { width, entries: vec![0.0; rows * width] }
     }
 
-    pub fn width(&self) -> usize {
-        self.width
-    }
-
     pub fn row(&self, i: usize) -> &[f64] {
         &self.entries[i * self.width..(i + 1) * self.width]
     }
