@@ -122,6 +122,9 @@ pub enum Command {
     #[command(after_help = "Example:\n  flexure replay two-link-tanh --log out/two-link-tanh.csv")]
     /// Lay a log of the robot over the simulation: closed loop, prediction from window to window, residuals.
     Replay(Replay),
+    #[command(after_help = "Example:\n  flexure identify planar-2r --log LOG.csv --out identified.toml")]
+    /// Find stiffness, motor inertia, damping and friction of the joints from logs, with error bars.
+    Identify(Identify),
     #[command(after_help = "Example:\n  flexure list scenarios")]
     /// List what is registered.
     List {
@@ -310,6 +313,27 @@ pub struct Replay {
     pub horizon: f64,
     #[command(flatten)]
     pub output: Output,
+}
+
+#[derive(Debug, Args)]
+pub struct Identify {
+    /// Robot file, or the name of a built-in robot; numbers to be found may be guesses or nan.
+    pub robot: String,
+    /// Log of the robot: CSV, a trace of `flexure run` or any other with --columns; may be given several times.
+    #[arg(long = "log", value_name = "FILE", required = true)]
+    pub logs: Vec<PathBuf>,
+    /// Which column is what: a TOML file, or q_l=link_pos_{},q_l.unit=deg,u_m=tau_{} and so on.
+    #[arg(long, value_name = "MAP")]
+    pub columns: Option<String>,
+    /// Part of each log, at its end, that is kept from the fit to judge it by.
+    #[arg(long, value_name = "PART", default_value_t = 0.2, allow_negative_numbers = true)]
+    pub hold_out: f64,
+    /// Largest error of a stiffness or motor inertia, as a part of it, for the number to be taken over.
+    #[arg(long, value_name = "PART", default_value_t = 0.2, allow_negative_numbers = true)]
+    pub accuracy: f64,
+    /// Robot file to write, with the numbers found and everything else as it is.
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

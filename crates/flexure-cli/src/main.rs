@@ -44,6 +44,7 @@ fn main() -> ExitCode {
         Command::Margins(options) => commands::margins(&options, outside, json),
         Command::Excite(options) => commands::excite(&options, outside, json),
         Command::Replay(options) => commands::replay(&options, outside, json),
+        Command::Identify(options) => commands::identify(&options, outside, json),
         Command::List { kind } => commands::list(kind, json),
         Command::Completions { shell } => commands::completions(shell, json),
         Command::Man { folder } => commands::man(folder.as_deref(), json),

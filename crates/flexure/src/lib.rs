@@ -9,6 +9,7 @@ pub mod eval;
 pub mod excite;
 pub mod feasible;
 pub mod files;
+pub mod identify;
 pub mod imperfections;
 pub mod laws;
 pub mod linalg;

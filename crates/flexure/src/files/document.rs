@@ -253,6 +253,11 @@ impl Places {
         self.spans.contains_key(key)
     }
 
+    /// Where the value of `key`, dotted, stands in the text.
+    pub(crate) fn span(&self, key: &str) -> Option<Range<usize>> {
+        self.spans.get(key).cloned()
+    }
+
     /// A problem at `key` (dotted, like `reference.amplitude` or `links.joint[2].mass`), or at the start of the file if
     /// there is no such key. `code` is one word; `help` says what to do.
     pub fn problem(

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms of `src`, from the bottom up: each may use those above it in this list, and none below.
-const ROOMS: [&str; 24] = [
+const ROOMS: [&str; 25] = [
     "units",         // how numbers are measured and how that is written
     "files",         // text with places, problems that point at it, files that appear whole
     "linalg",        // matrices of run-time sizes
@@ -23,6 +23,7 @@ const ROOMS: [&str; 24] = [
     "simulate",      // Loop, runs, traces
     "replay",        // a log over the simulation
     "excite",        // the motion that tells most
+    "identify",      // from logs to the numbers of the joints
     "sampled",       // is the loop stable that holds its torque
     "eval",          // law and model at given states
     "prove",         // certificates

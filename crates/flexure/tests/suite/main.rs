@@ -25,6 +25,7 @@ mod following;
 mod golden_panda;
 mod golden_two_link;
 mod held;
+mod identify;
 mod imperfection_files;
 mod imperfections;
 mod integrator;

@@ -1,0 +1,133 @@
+//! `flexure identify`: the numbers of the joints from logs.
+
+use std::path::{Path, PathBuf};
+
+use flexure::files::number::{duration, significant};
+use flexure::files::{Outside, prepare, read_text, write_atomic};
+use flexure::identify::{Identified, RobotFile, Settings, identify as identified};
+use flexure::logs::{Columns, read_log};
+use flexure::report::identified_table;
+use serde::Serialize;
+
+use super::print;
+use crate::args::Identify;
+use crate::failure::{Failure, say};
+use crate::progress::Progress;
+
+#[derive(Serialize)]
+struct Outcome<'a> {
+    #[serde(flatten)]
+    found: &'a Identified,
+    /// The robot file; none if none was asked for.
+    file: Option<&'a Path>,
+}
+
+pub fn identify(options: &Identify, outside: Outside, json: bool) -> Result<(), Failure> {
+    let file = RobotFile::load(&options.robot, outside)?;
+    say(&file.robot.warnings);
+    let columns = match &options.columns {
+        None => Columns::default(),
+        Some(said) => {
+            let (columns, warnings) = Columns::read(said, &file.robot)?;
+            say(&warnings);
+            columns
+        }
+    };
+    let mut logs = Vec::new();
+    for path in &options.logs {
+        let (log, warnings) = read_log(path, &columns, &file.robot)?;
+        say(&warnings);
+        logs.push(log);
+    }
+    if let Some(out) = &options.out {
+        spare_other_files(out)?;
+        prepare(folder(out))?;
+        file.fits(out, outside)?;
+    }
+    let settings =
+        Settings { hold_out: options.hold_out, accuracy: options.accuracy, gaps: file.gaps.clone() };
+    let found = {
+        let progress = Progress::of_one(&file.robot.name);
+        identified(&file.robot, &logs, &settings, &|fraction| progress.set(0, fraction))?
+    };
+    if let Some(out) = &options.out {
+        let names: Vec<_> = options.logs.iter().map(|path| name(path)).collect();
+        let text = file.completed(&found, &names, out, outside)?;
+        write_atomic(out, |to| to.write_all(text.as_bytes()))?;
+    }
+    if json {
+        print::json(&Outcome { found: &found, file: options.out.as_deref() })?;
+    } else {
+        tell(&found, options.out.as_ref())?;
+    }
+    ending(&found)
+}
+
+fn folder(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+fn name(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+/// Refuses to write over what is no robot file: a log, a pipe.
+fn spare_other_files(path: &PathBuf) -> Result<(), Failure> {
+    let Ok(found) = path.metadata() else { return Ok(()) };
+    let is_robot = || read_text(path, 1 << 20).is_ok_and(|text| text.contains("[links]"));
+    if found.is_file() && is_robot() {
+        return Ok(());
+    }
+    let message = format!("{} exists and is no robot file: it is left as it is", path.display());
+    Err(Failure::input("exists", message, "name another file with --out"))
+}
+
+fn tell(found: &Identified, out: Option<&PathBuf>) -> Result<(), Failure> {
+    print::line(&identified_table(found))?;
+    print::line("± three standard deviations; numbers in brackets are as they were: the log does not know them")?;
+    for offset in &found.offsets {
+        print::line(&format!(
+            "{}: torques act {} ± {} after they are logged",
+            offset.log,
+            duration(offset.value),
+            duration(offset.error)
+        ))?;
+    }
+    for joint in &found.joints {
+        let number = |x: f64| significant(x, 3);
+        let link = joint.noise_ratio.link.map_or(String::new(), |link| format!("{} (link), ", number(link)));
+        let held = joint.held_out.map_or(String::new(), |held| {
+            format!("; held-out part of the log: {} times the squares of the fitted", number(held))
+        });
+        print::line(&format!(
+            "{}: prediction errors {link}{} (motor) times the noise of the encoders{held}",
+            joint.name,
+            number(joint.noise_ratio.motor)
+        ))?;
+    }
+    print::line(&format!(
+        "known least: {}; condition {} (1: nothing hides behind anything else)",
+        found.weakest,
+        significant(found.condition, 3)
+    ))?;
+    match out {
+        Some(out) => print::line(&format!("wrote {}", out.display())),
+        None => Ok(()),
+    }
+}
+
+/// The exit code: 1 if a stiffness or motor inertia is not known, or the search did not come to its end.
+fn ending(found: &Identified) -> Result<(), Failure> {
+    let missing: Vec<_> = found.missing().iter().map(|(joint, what)| format!("{} of {joint}", what.key)).collect();
+    if !missing.is_empty() {
+        let message = format!("the logs do not know {}", missing.join(", "));
+        let hint = "excite the springs more: `flexure excite` designs such a motion; a longer log, a finer encoder; \
+                    --accuracy says how well a number must be known";
+        return Err(Failure::no("unknown", message, hint));
+    }
+    if !found.converged {
+        let message = "the search did not come to its end: errors are larger than they look".to_owned();
+        return Err(Failure::no("unknown", message, "is there play, or something else that the model has not?"));
+    }
+    Ok(())
+}

@@ -1,0 +1,287 @@
+//! A robot file whose numbers are identified: read with gaps, written with what was found and everything else as it was.
+
+use std::ops::Range;
+use std::path::Path;
+
+use super::outcome::{Estimate, Identified};
+use super::parameters::Parameter;
+use crate::files::base::Base;
+use crate::files::source::{self, Source};
+use crate::files::{Outside, Problem, Problems, ROBOTS, bounds, builtin, suggest};
+use crate::robot::{Robot, document};
+
+/// A robot file with its text.
+#[derive(Clone, Debug)]
+pub struct RobotFile {
+    /// The robot, with something in the place of every `nan`.
+    pub robot: Robot,
+    /// Numbers that the file leaves open, for some joint.
+    pub gaps: Vec<Parameter>,
+    /// The text, with something of the same length in the place of every `nan`.
+    text: String,
+}
+
+/// The parameters that stand in robot files.
+const KEPT: [Parameter; 4] =
+    [Parameter::Stiffness, Parameter::MotorInertia, Parameter::LinkDamping, Parameter::MotorDamping];
+
+/// What a file has in the place of a number that is still to be supplied.
+const GAP: &str = "nan";
+
+/// A number of the right size for a robot's joint, as long as [`GAP`]: the regression starts without it.
+fn stand_in(parameter: Parameter) -> &'static str {
+    match parameter {
+        Parameter::Stiffness => "4e3",
+        Parameter::MotorInertia => "0.3",
+        _ => "0.5",
+    }
+}
+
+/// The first line of the comment that holds dry friction.
+const FRICTION: &str = "# Dry friction, identified. It belongs into scenarios:";
+
+impl RobotFile {
+    /// The robot file at a path, or the built-in robot of that name; numbers to be identified may be `nan`.
+    ///
+    /// # Errors
+    /// With everything that is wrong.
+    pub fn load(path_or_name: &str, outside: Outside) -> Result<Self, Problems> {
+        let (source, base) = if builtin::is_name(path_or_name) {
+            (Source::new(path_or_name, builtin::find(path_or_name, ROBOTS, "robot")?), Base::BuiltIn)
+        } else {
+            let path = Path::new(path_or_name);
+            (source::read(path, bounds::LIMIT)?, Base::of(path, outside))
+        };
+        let (text, gaps) = filled(&source.text);
+        let robot = document::read(&Source::new(&source.name, &text), &base)?;
+        Ok(Self { robot, gaps, text })
+    }
+
+    /// Whether the robot could be read from a file at `path`: files that it names are found from there.
+    ///
+    /// # Errors
+    /// If not.
+    pub fn fits(&self, path: &Path, outside: Outside) -> Result<(), Problems> {
+        readable(&self.text, path, outside).map(drop)
+    }
+
+    /// The text of a file at `path` with the numbers of `found` that are known, `logs` as their source; everything else is as it
+    /// was.
+    ///
+    /// # Errors
+    /// If `[joints]` is no table with a line of its own, or the text could not be read from there.
+    pub fn completed(
+        &self,
+        found: &Identified,
+        logs: &[String],
+        path: &Path,
+        outside: Outside,
+    ) -> Result<String, Problems> {
+        let mut edits = Edits { file: self, edits: Vec::new() };
+        for parameter in KEPT {
+            edits.parameter(found, parameter, &logs.join(", "))?;
+        }
+        let mut text = edits.made();
+        if let Some(at) = text.find(FRICTION) {
+            text.truncate(at);
+        }
+        text.push_str(&friction(found));
+        readable(&text, path, outside)?;
+        Ok(text)
+    }
+}
+
+fn readable(text: &str, path: &Path, outside: Outside) -> Result<Robot, Problems> {
+    document::read(&Source::new(&path.display().to_string(), text), &Base::of(path, outside)).map_err(|problems| {
+        if problems.iter().any(|problem| matches!(problem.code_word(), "unreadable" | "outside")) {
+            let message = format!("{} could not be read where it is to be written", path.display());
+            let help = "the robot's file names another: write the result into the folder of that one";
+            return Problem::new("unreadable", message, help).into();
+        }
+        problems
+    })
+}
+
+/// `text` with its gaps filled, and which parameters have some.
+fn filled(text: &str) -> (String, Vec<Parameter>) {
+    let mut gaps = Vec::new();
+    let lines = text.split_inclusive('\n').map(|line| {
+        let (code, comment) = line.split_at(line.find('#').unwrap_or(line.len()));
+        let key = code.split('=').next().unwrap_or_default().trim();
+        let parameter = KEPT.into_iter().find(|parameter| parameter.name() == key);
+        match parameter.filter(|_| code.contains(GAP)) {
+            None => line.to_owned(),
+            Some(parameter) => {
+                gaps.push(parameter);
+                format!("{}{comment}", code.replace(GAP, stand_in(parameter)))
+            }
+        }
+    });
+    let text = lines.collect();
+    gaps.sort_unstable();
+    gaps.dedup();
+    (text, gaps)
+}
+
+/// What is to be changed in a text.
+struct Edits<'a> {
+    file: &'a RobotFile,
+    edits: Vec<(Range<usize>, String)>,
+}
+
+impl Edits<'_> {
+    /// The numbers of a parameter that are known, and where they are from.
+    fn parameter(&mut self, found: &Identified, parameter: Parameter, logs: &str) -> Result<(), Problem> {
+        let key = parameter.name();
+        let robot = &self.file.robot;
+        let known: Vec<Option<&Estimate>> = (0..found.joints.len())
+            .map(|joint| Some(found.estimate(joint, parameter)).filter(|estimate| estimate.known))
+            .collect();
+        if known.iter().all(Option::is_none) {
+            return Ok(());
+        }
+        let mut of_all = false;
+        for (joint, estimate) in robot.joints.iter().zip(&known) {
+            match (robot.places.span(&format!("joints.{}.{key}", joint.name)), estimate) {
+                (Some(span), Some(estimate)) => self.edits.push((span, written(estimate))),
+                (None, Some(_)) => of_all = true,
+                (_, None) => {}
+            }
+        }
+        if of_all {
+            let before = before(robot, parameter);
+            let value = |(estimate, before): (&Option<&Estimate>, &f64)| {
+                estimate.map_or_else(|| format!("{before:?}"), written)
+            };
+            let values: Vec<_> = known.iter().zip(before).map(value).collect();
+            let values = format!("[{}]", values.join(", "));
+            match robot.places.span(&format!("joints.{key}")) {
+                Some(span) => self.edits.push((span, values)),
+                None => self.insert("joints", &format!("{key} = {values}"))?,
+            }
+        }
+        self.source(found, parameter, &known, logs)
+    }
+
+    /// Says in `[sources]` where the numbers are from.
+    fn source(
+        &mut self,
+        found: &Identified,
+        parameter: Parameter,
+        known: &[Option<&Estimate>],
+        logs: &str,
+    ) -> Result<(), Problem> {
+        let (key, places) = (parameter.name(), &self.file.robot.places);
+        let spans = [format!("sources.{key}"), format!("sources.joints.{key}")];
+        let span = spans.iter().find_map(|key| places.span(key));
+        let earlier = span.clone().and_then(|span| self.file.text.get(span)).unwrap_or_default();
+        let earlier = earlier.trim_matches(['"', '\'']);
+        let number = |(estimate, joint): (&Option<&Estimate>, &super::IdentifiedJoint)| match estimate {
+            Some(estimate) => format!("{} ± {}", written(estimate), two_digits(estimate.error)),
+            None => format!("{} not known", joint.name),
+        };
+        let numbers: Vec<_> = known.iter().zip(&found.joints).map(number).collect();
+        let mut source = format!("identified: {} (3 sigma) from {logs}", numbers.join(", "));
+        if known.iter().any(Option::is_none) {
+            source = match earlier.strip_prefix("assumed:") {
+                Some(note) => format!("assumed: {}; {source}", note.split("; identified:").next().unwrap_or(note).trim()),
+                None => source,
+            };
+        }
+        let quoted = format!("\"{}\"", source.replace(['"', '\\'], "'"));
+        match span {
+            Some(span) => self.edits.push((span, quoted)),
+            None if places.has("sources") => self.insert("sources", &format!("{key} = {quoted}"))?,
+            None => {
+                let end = self.file.text.len();
+                let first = !self.edits.iter().any(|(span, _)| span.start == end);
+                let header = if first { "\n[sources]\n" } else { "" };
+                self.edits.push((end..end, format!("{header}{key} = {quoted}\n")));
+            }
+        }
+        Ok(())
+    }
+
+    /// Puts `line` under the header of `table`, or makes one in front of its first table.
+    fn insert(&mut self, table: &str, line: &str) -> Result<(), Problem> {
+        let text = &self.file.text;
+        let mut at = 0;
+        for found in text.split_inclusive('\n') {
+            let end = at + found.len();
+            let start = found.trim_start();
+            if start.starts_with(&format!("[{table}]")) {
+                let newline = if found.ends_with('\n') { "" } else { "\n" };
+                self.edits.push((end..end, format!("{newline}{line}\n")));
+                return Ok(());
+            }
+            if start.starts_with(&format!("[{table}.")) {
+                let header = format!("[{table}]\n");
+                let first = !self.edits.iter().any(|(span, new)| *span == (at..at) && new.starts_with(&header));
+                let header = if first { header } else { String::new() };
+                self.edits.push((at..at, format!("{header}{line}\n")));
+                return Ok(());
+            }
+            at = end;
+        }
+        let message = format!("cannot write {} into [{table}]: there is no line with that header", suggest::quoted(line));
+        Err(Problem::new("unsupported", message, "write the table with a header of its own, not inline"))
+    }
+
+    /// The text with all changes.
+    fn made(mut self) -> String {
+        let mut text = self.file.text.clone();
+        // From the end on, and what was said first stays in front.
+        let mut order: Vec<usize> = (0..self.edits.len()).collect();
+        order.sort_by_key(|&i| std::cmp::Reverse((self.edits[i].0.start, i)));
+        for i in order {
+            let (span, new) = std::mem::take(&mut self.edits[i]);
+            text.replace_range(span, &new);
+        }
+        text
+    }
+}
+
+/// What the robot has of a parameter.
+fn before(robot: &Robot, parameter: Parameter) -> &[f64] {
+    match parameter {
+        Parameter::Stiffness => &robot.stiffness,
+        Parameter::MotorInertia => &robot.motor_inertia,
+        Parameter::LinkDamping => &robot.link_damping,
+        _ => &robot.motor_damping,
+    }
+}
+
+/// A value with two digits more than its error has.
+fn written(estimate: &Estimate) -> String {
+    let digits = (estimate.value / estimate.error).log10().ceil().clamp(2.0, 12.0) + 2.0;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "4 to 14")]
+    rounded(estimate.value, digits as usize)
+}
+
+fn two_digits(x: f64) -> String {
+    rounded(x, 2)
+}
+
+/// With so many digits, as a TOML float.
+fn rounded(x: f64, digits: usize) -> String {
+    let rounded: f64 = format!("{x:.*e}", digits - 1).parse().unwrap_or(x);
+    format!("{rounded:?}")
+}
+
+/// Dry friction as a comment that can be copied into a scenario.
+fn friction(found: &Identified) -> String {
+    let mut text = format!("\n{FRICTION}\n");
+    for (side, parameter) in [("link", Parameter::LinkFriction), ("motor", Parameter::MotorFriction)] {
+        let of = |number: &dyn Fn(&Estimate) -> String| {
+            let numbers: Vec<_> =
+                (0..found.joints.len()).map(|joint| number(found.estimate(joint, parameter))).collect();
+            numbers.join(", ")
+        };
+        let values = of(&|estimate| if estimate.known { written(estimate) } else { "0.0".to_owned() });
+        let errors = of(&|estimate| two_digits(estimate.error));
+        text.push_str(&format!(
+            "# [[imperfection]]\n# kind = \"friction\"\n# side = \"{side}\"\n# coulomb = [{values}]  # ± [{errors}], 3 sigma\n"
+        ));
+    }
+    text
+}

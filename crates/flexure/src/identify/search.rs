@@ -1,0 +1,285 @@
+//! Maximum likelihood of the innovations: Gauss–Newton steps with the prior as one more measurement, then the noise that makes
+//! the innovations likeliest, and again.
+
+use std::ops::RangeInclusive;
+
+use rayon::prelude::*;
+
+use super::gain::{Noise, Posture};
+use super::layer::{Layer, Total, total};
+use super::parameters::{Parameter, Values};
+use super::predictor::{Piece, Weighing};
+use super::prior::Prior;
+use super::step::Pace;
+use crate::linalg::{Dense, Symmetric, cholesky, solved};
+use crate::files::Problems;
+use crate::logs::Log;
+use crate::progress::Progress;
+
+/// What is searched in.
+pub(crate) struct Search<'a> {
+    pub layer: &'a dyn Layer,
+    pub logs: &'a [Log],
+    pub pieces: &'a [Piece],
+    pub prior: &'a Prior,
+    /// Per joint the noise of the positions of link and motor \[rad\]; infinite where there is no encoder.
+    pub position_noise: &'a [[f64; 2]],
+    /// Per joint the size of the torque [N m].
+    pub torque_size: &'a [f64],
+}
+
+/// What was found.
+pub(crate) struct Found {
+    pub values: Values,
+    pub weighing: Weighing,
+    /// Per joint the torque noise that makes the innovations likeliest [N m].
+    pub torque_noise: Vec<f64>,
+    /// The innovations at `values`, weighed as they are.
+    pub total: Total,
+    pub converged: bool,
+}
+
+/// Torque noise that is tried, as parts of the torque: these powers of a quarter, with encoders of both sides and with those of the
+/// motors alone. Where nothing disturbs, less would be likelier still; but then what a model never has, the instants at which
+/// friction turns among it, would be believed to a part in ten thousand.
+const LEVELS: [RangeInclusive<i32>; 2] = [1..=3, 4..=5];
+
+/// Rounds of noise and values, and Gauss–Newton steps in each at most.
+const ROUNDS: usize = 4;
+const STEPS: usize = 12;
+
+/// Largest change of a logarithm in a step, and of an offset in sampling periods.
+const LONGEST: f64 = 0.7;
+const LONGEST_OFFSET: f64 = 2.0;
+
+/// A round ends where a step promises less than this of the logarithm of the likelihood: a fifth of an error bar. Beyond that,
+/// instants at which friction turns make the likelihood rough.
+const ENOUGH: f64 = 0.02;
+
+/// A step that promises less than this and gains nothing ends a round, too.
+const ROUGH: f64 = 1.0;
+
+impl Search<'_> {
+    /// From `values`.
+    ///
+    /// # Errors
+    /// If it was broken off.
+    pub fn run(&self, mut values: Values, progress: Progress<'_>) -> Result<Found, Problems> {
+        let n = values.joints.len();
+        let mut levels = vec![self.first(); n];
+        let mut converged = false;
+        let mut weighing = self.weighed(&values, &levels);
+        for round in 0..ROUNDS {
+            let last = round + 1 == ROUNDS;
+            let told = |step: usize| {
+                let fraction = (round as f64 + step as f64 / STEPS as f64) / ROUNDS as f64;
+                if progress(fraction).is_break() { Err(Problems::interrupted()) } else { Ok(()) }
+            };
+            let enough = if last { ENOUGH } else { ROUGH };
+            (values, converged) = self.climb(values, &weighing, enough, &told)?;
+            if last {
+                break;
+            }
+            // The first gain is that of the numbers in the file; it is put right before others are tried.
+            if round > 0 {
+                levels = self.levels(&values, &levels);
+            }
+            weighing = self.weighed(&values, &levels);
+        }
+        let total = self.total(&values, &weighing, true);
+        let torque_noise = (0..n).map(|i| self.torque_noise(i, levels[i])).collect();
+        Ok(Found { values, weighing, torque_noise, total, converged })
+    }
+
+    fn total(&self, values: &Values, weighing: &Weighing, informed: bool) -> Total {
+        let fitted = self.pieces.iter().filter(|piece| !piece.held_out);
+        total(self.layer, self.logs, fitted, values, weighing, informed)
+    }
+
+    fn torque_noise(&self, joint: usize, level: i32) -> f64 {
+        self.torque_size[joint] * 0.25_f64.powi(level)
+    }
+
+    /// Gains at the noise of `levels`, in the posture of each piece, and weights of one.
+    fn weighing(&self, values: &Values, levels: &[i32]) -> Weighing {
+        let n = values.joints.len();
+        let noise: Vec<_> = (0..n)
+            .map(|i| Noise { torque: self.torque_noise(i, levels[i]), position: self.position_noise[i] })
+            .collect();
+        let found: Vec<_> = self
+            .pieces
+            .par_iter()
+            .map(|piece| {
+                let log = &self.logs[piece.log];
+                let posture = self.posture(values, log, (piece.counted + piece.end) / 2);
+                let gain = posture.gain(&noise, log.period);
+                (posture.rate().unwrap_or(0.0), gain.unwrap_or_else(|| Dense::zeros(4 * n, 2 * n)))
+            })
+            .collect();
+        let rate = found.iter().map(|(rate, _)| *rate).fold(0.0, f64::max);
+        let h = self.logs.iter().map(|log| log.period).fold(0.0, f64::max);
+        Weighing {
+            gains: found.into_iter().map(|(_, gain)| gain).collect(),
+            weights: vec![[1.0, 0.0, 1.0]; n],
+            pace: Pace::of(1.3 * rate, h),
+        }
+    }
+
+    /// The robot at sample `k` of `log`.
+    fn posture(&self, values: &Values, log: &Log, k: usize) -> Posture {
+        let n = log.joints;
+        let positions = log.q_l.as_ref().or(log.q_m.as_ref()).map_or(&[][..], |q| &q[k * n..(k + 1) * n]);
+        Posture {
+            mass: self.layer.mass(positions),
+            motor_inertia: values.of(Parameter::MotorInertia),
+            stiffness: values.of(Parameter::Stiffness),
+            link_damping: values.of(Parameter::LinkDamping),
+            motor_damping: values.of(Parameter::MotorDamping),
+        }
+    }
+
+    /// The weighing at the noise of `levels`: what innovations at `values` are, is their weight.
+    fn weighed(&self, values: &Values, levels: &[i32]) -> Weighing {
+        let weighing = self.weighing(values, levels);
+        let innovations = self.total(values, &weighing, false);
+        Weighing { weights: weights(&innovations), ..weighing }
+    }
+
+    /// Level of the first rounds: corrections that are large, and memory that is short; less where links are not seen, whose motion
+    /// is a guess as good as the numbers are.
+    fn first(&self) -> i32 {
+        if self.logs[0].q_l.is_some() { 1 } else { 5 }
+    }
+
+    /// Per joint the level of torque noise whose gain makes the innovations likeliest. Where links are not seen all joints have
+    /// the same: a gain that one joint's noise makes may not suit the other's.
+    fn levels(&self, values: &Values, from: &[i32]) -> Vec<i32> {
+        let n = from.len();
+        let [of_both, of_motors] = LEVELS;
+        let tried = if self.logs[0].q_l.is_some() { of_both } else { of_motors };
+        let surprises: Vec<(i32, Vec<f64>)> = tried
+            .map(|level| {
+                let innovations = self.total(values, &self.weighing(values, &vec![level; n]), false);
+                (level, (0..n).map(|i| determinant(innovations.covariance(i)).ln()).collect())
+            })
+            .collect();
+        let best = |of: &dyn Fn(&[f64]) -> f64, otherwise: i32| {
+            let finite = surprises.iter().map(|(level, all)| (of(all), *level)).filter(|x| x.0.is_finite());
+            finite.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(otherwise, |(_, level)| level)
+        };
+        if self.logs[0].q_l.is_some() {
+            (0..n).map(|i| best(&|all| all[i], from[i])).collect()
+        } else {
+            vec![best(&|all| all.iter().sum(), from[0]); n]
+        }
+    }
+
+    /// Gauss–Newton with the damping of Marquardt; whether it came to an end.
+    fn climb(
+        &self,
+        mut values: Values,
+        weighing: &Weighing,
+        enough: f64,
+        told: &dyn Fn(usize) -> Result<(), Problems>,
+    ) -> Result<(Values, bool), Problems> {
+        let mut here = self.total(&values, weighing, true);
+        let mut damping = 1e-4;
+        for step in 0..STEPS {
+            told(step)?;
+            let (information, score) = self.with_prior(&here, &values);
+            let cost = self.cost(&here, &values);
+            let mut moved = None;
+            while damping < 1e6 {
+                let Some(step) = damped(&information, &score, damping) else {
+                    damping *= 10.0;
+                    continue;
+                };
+                let gain: f64 = step.iter().zip(&score).map(|(step, score)| 0.5 * step * score).sum();
+                if gain < enough {
+                    return Ok((values, true));
+                }
+                let there = values.moved(&self.limited(&step, &values));
+                let total = self.total(&there, weighing, true);
+                if self.cost(&total, &there) < cost {
+                    moved = Some((there, total));
+                    damping = (0.1 * damping).max(1e-9);
+                    break;
+                }
+                if gain < ROUGH {
+                    return Ok((values, true));
+                }
+                damping *= 10.0;
+            }
+            let Some((there, total)) = moved else { return Ok((values, false)) };
+            (values, here) = (there, total);
+        }
+        Ok((values, false))
+    }
+
+    /// `step` with every part inside its bound.
+    fn limited(&self, step: &[f64], values: &Values) -> Vec<f64> {
+        let logarithms = values.joints.len() * Parameter::COUNT;
+        step.iter()
+            .enumerate()
+            .map(|(i, &step)| {
+                let most = match i.checked_sub(logarithms) {
+                    None => LONGEST,
+                    Some(log) => LONGEST_OFFSET * self.logs[log].period,
+                };
+                step.clamp(-most, most)
+            })
+            .collect()
+    }
+
+    fn cost(&self, total: &Total, values: &Values) -> f64 {
+        let cost = total.cost + self.prior.distance(values).iter().map(|x| 0.5 * x * x).sum::<f64>();
+        if cost.is_finite() { cost } else { f64::INFINITY }
+    }
+
+    /// Information and score with those of the prior.
+    pub fn with_prior(&self, total: &Total, values: &Values) -> (Symmetric<f64>, Vec<f64>) {
+        let size = values.unknowns();
+        let spread = &self.prior.spread;
+        let information = Symmetric::from_fn(size, |i, j| {
+            let own = if i == j { (spread[i] * spread[i]).recip() } else { 0.0 };
+            total.information[i * size + j] + own
+        });
+        let pull = self.prior.distance(values);
+        let score = total.score();
+        let score = score.iter().zip(pull.iter().zip(spread)).map(|(score, (x, spread))| score - x / spread);
+        (information, score.collect())
+    }
+}
+
+/// Determinant of a covariance of link and motor; of the one that is measured if the other is not.
+fn determinant([l, both, m]: [f64; 3]) -> f64 {
+    if l > 0.0 { l * m - both * both } else { m }
+}
+
+/// Inverse covariances of the innovations, joint by joint.
+fn weights(total: &Total) -> Vec<[f64; 3]> {
+    (0..total.squares.len())
+        .map(|i| {
+            let [l, both, m] = total.covariance(i);
+            let inverse = |x: f64| if x > 0.0 { x.recip() } else { 0.0 };
+            if l > 0.0 && m > 0.0 && l * m > both * both {
+                let determinant = l * m - both * both;
+                [m / determinant, -both / determinant, l / determinant]
+            } else {
+                [inverse(l), 0.0, inverse(m)]
+            }
+        })
+        .collect()
+}
+
+/// (information + damping · its diagonal)⁻¹ score; none where that is not definite.
+fn damped(information: &Symmetric<f64>, score: &[f64], damping: f64) -> Option<Vec<f64>> {
+    let scale: Vec<f64> = (0..score.len()).map(|i| information.at(i, i).sqrt().recip()).collect();
+    let scaled = Symmetric::from_fn(score.len(), |i, j| {
+        information.at(i, j) * scale[i] * scale[j] + if i == j { damping } else { 0.0 }
+    });
+    let right: Vec<f64> = score.iter().zip(&scale).map(|(score, scale)| score * scale).collect();
+    let step = solved(&cholesky(&scaled)?, &right);
+    let step: Vec<f64> = step.iter().zip(&scale).map(|(step, scale)| step * scale).collect();
+    step.iter().all(|x| x.is_finite()).then_some(step)
+}

@@ -1,0 +1,45 @@
+//! Are the error bars what they say? Many arms, each with other numbers and another motion.
+
+use flexure::identify::{Parameter, Settings, identify};
+use flexure::progress::unwatched;
+use flexure::Robot;
+use rayon::prelude::*;
+
+use super::arm;
+use super::simulated::{DELAY, Draw, log};
+
+/// How many numbers that count as known lie within their errors, and how many there are.
+fn covered<const N: usize>(robot: &Robot, seeds: u64, seconds: f64, noise: f64) -> (usize, usize) {
+    let of = |seed: u64| {
+        let mut draw = Draw::new(seed);
+        let truth = draw.truth(robot);
+        let log = log::<N>(robot, &truth, seconds, noise, &mut draw);
+        let found = identify(robot, &[log], &Settings::default(), &unwatched)
+            .unwrap_or_else(|problems| panic!("seed {seed}: {problems}"));
+        let offset = &found.offsets[0];
+        let mut inside = vec![(offset.value - DELAY).abs() <= offset.error];
+        for (i, joint) in truth.iter().enumerate() {
+            let known = Parameter::ALL.into_iter().map(|p| found.estimate(i, p)).zip(joint);
+            inside.extend(
+                known.filter(|(e, _)| e.known).map(|(e, exact)| (e.value - exact).abs() <= e.error),
+            );
+        }
+        (inside.iter().filter(|inside| **inside).count(), inside.len())
+    };
+    (0..seeds).into_par_iter().map(of).reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1))
+}
+
+/// Seven joints and two: `IDENTIFY_SEEDS=200 cargo test --release -p flexure --test suite -- --ignored coverage --nocapture`.
+#[test]
+#[ignore = "hours of processor time for seven joints"]
+fn three_standard_deviations_hold_97_percent() {
+    let seeds = std::env::var("IDENTIFY_SEEDS").ok().and_then(|text| text.parse().ok()).unwrap_or(200);
+    for (name, (inside, all)) in [
+        ("two joints, 12 s", covered::<4>(&arm(), seeds, 12.0, 0.0)),
+        ("seven joints, 20 s", covered::<8>(&Robot::load("panda").unwrap(), seeds, 20.0, 0.0)),
+    ] {
+        let share = inside as f64 / all as f64;
+        println!("{name}: {inside} of {all}, {:.2} %", 100.0 * share);
+        assert!(share >= 0.97, "{name}: {share}");
+    }
+}

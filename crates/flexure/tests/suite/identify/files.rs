@@ -1,0 +1,111 @@
+//! Robot files: gaps go in, numbers come out, everything else stays.
+
+use std::fs;
+
+use flexure::files::Outside;
+use flexure::identify::{Estimate, Identified, IdentifiedJoint, NoiseRatio, Parameter, RobotFile};
+use flexure::robot::load_robot;
+
+use super::ARM;
+
+/// As if all numbers had been found to be `value` times the parameter's number, those of `unknown` not.
+fn found(unknown: &[(usize, Parameter)]) -> Identified {
+    let estimate = |joint: usize, parameter: Parameter| Estimate {
+        key: parameter.name(),
+        unit: "",
+        value: 1234.5678 * (joint + 1) as f64,
+        error: 0.5,
+        before: None,
+        known: !unknown.contains(&(joint, parameter)),
+    };
+    let joint = |joint: usize| IdentifiedJoint {
+        name: ["shoulder", "elbow"][joint].to_owned(),
+        parameters: Parameter::ALL.map(|parameter| estimate(joint, parameter)).to_vec(),
+        noise_ratio: NoiseRatio { link: None, motor: 1.0 },
+        torque_noise: 0.0,
+        held_out: None,
+    };
+    Identified {
+        robot: "elbow-arm".to_owned(),
+        joints: vec![joint(0), joint(1)],
+        offsets: Vec::new(),
+        samples: 1,
+        held_out: 0,
+        link_encoders: true,
+        converged: true,
+        condition: 1.0,
+        weakest: String::new(),
+    }
+}
+
+/// The file after it was completed from `text`.
+fn completed(text: &str, found: &Identified) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("arm.toml");
+    fs::write(&path, text).unwrap();
+    let file = RobotFile::load(path.to_str().unwrap(), Outside::Refused).unwrap_or_else(|problems| panic!("{problems}"));
+    let logs = ["run.csv".to_owned()];
+    file.completed(found, &logs, &path, Outside::Refused).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+fn read(text: &str) -> flexure::Robot {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("arm.toml");
+    fs::write(&path, text).unwrap();
+    load_robot(path.to_str().unwrap()).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+#[test]
+fn numbers_come_out_and_everything_else_stays() {
+    let text = completed(ARM, &found(&[]));
+    let robot = read(&text);
+    assert_eq!(robot.stiffness, [1234.5678, 2469.1356]);
+    assert_eq!(robot.motor_damping, [1234.5678, 2469.1356]);
+    assert!(robot.assumed.is_empty(), "{:?}", robot.assumed);
+    assert!(text.contains("# N m/rad, of the data sheet") && text.contains("identified: 1234.5678 ± 0.5"), "{text}");
+    assert!(text.contains("# kind = \"friction\""), "{text}");
+    // Once more changes nothing.
+    assert_eq!(completed(&text, &found(&[])), text);
+}
+
+#[test]
+fn what_is_not_known_stays_as_it_was() {
+    let robot = read(&completed(ARM, &found(&[(1, Parameter::Stiffness)])));
+    assert_eq!(robot.stiffness, [1234.5678, 4000.0]);
+    let assumed: Vec<_> = robot.assumed.iter().map(|assumption| &*assumption.key).collect();
+    assert_eq!(assumed, ["joints.stiffness"]);
+    let robot = read(&completed(ARM, &found(&[(0, Parameter::LinkDamping), (1, Parameter::LinkDamping)])));
+    assert_eq!(robot.link_damping, [0.4, 0.2]);
+}
+
+#[test]
+fn gaps_are_read_and_filled() {
+    let open = ARM.replace("stiffness = [9000.0, 4000.0]", "stiffness = [nan, 4000.0]").replace("[0.5, 0.2]", "nan");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("arm.toml");
+    fs::write(&path, &open).unwrap();
+    let file = RobotFile::load(path.to_str().unwrap(), Outside::Refused).unwrap();
+    assert_eq!(file.gaps, [Parameter::Stiffness, Parameter::MotorInertia]);
+    assert_eq!(read(&completed(&open, &found(&[]))).motor_inertia, [1234.5678, 2469.1356]);
+}
+
+/// Tables of one joint each, as `flexure import` drafts them, and no table for all joints.
+#[test]
+fn tables_by_joint_are_filled_in_place() {
+    let (head, _) = ARM.split_once("[joints]").unwrap();
+    let drive = "stiffness = nan # here\nmotor_inertia = nan\nmotor_damping = nan\nlink_damping = 0.1\n";
+    let text = format!("{head}[joints.shoulder]\n{drive}[joints.elbow]\n{drive}");
+    let completed = completed(&text, &found(&[]));
+    let robot = read(&completed);
+    assert_eq!(robot.stiffness, [1234.5678, 2469.1356]);
+    assert!(completed.contains("stiffness = 1234.5678 # here"), "{completed}");
+    assert!(completed.contains("[sources]"), "{completed}");
+}
+
+#[test]
+fn a_robot_in_another_folder_is_refused_before_anything_is_computed() {
+    let file = RobotFile::load("panda", Outside::Refused).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let problems = file.fits(&folder.path().join("panda.toml"), Outside::Refused).unwrap_err();
+    assert_eq!(problems.iter().next().unwrap().code_word(), "unreadable");
+}
