@@ -4,9 +4,11 @@
 
 mod along;
 mod architecture;
+mod at_rest;
 mod bad_files;
 mod built_in;
 mod certify;
+mod changes;
 mod closed_forms;
 mod common;
 mod compare;
