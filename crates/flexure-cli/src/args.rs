@@ -84,6 +84,8 @@ pub enum Command {
         #[arg(long, value_name = "SCENARIO")]
         against: Option<String>,
     },
+    /// Find gains: a complete scenario, what each gain trades, every constraint with its slack, and the evidence.
+    Tune(Tune),
     /// Measure how much delay, gain error, stiffness error and noise a loop bears, by bisection in simulation.
     Margins(Margins),
     /// List what is registered.
@@ -183,6 +185,24 @@ pub struct Compare {
 }
 
 #[derive(Debug, Args)]
+pub struct Tune {
+    /// Scenario file, or the name of a built-in scenario; its gains may be left out.
+    pub scenario: String,
+    /// What the loop shall do: rate, delays, uncertainty, margins, references.
+    #[arg(long, value_name = "SPEC")]
+    pub spec: Option<PathBuf>,
+    /// Runs that the search for gains may simulate.
+    #[arg(long, value_name = "RUNS", default_value_t = flexure::design::BUDGET)]
+    pub budget: usize,
+    /// Seed of the search.
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// Scenario file to write; default NAME-tuned.toml beside the scenario.
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
 pub struct Margins {
     /// Scenario file, or the name of a built-in scenario.
     pub scenario: String,
@@ -223,6 +243,7 @@ impl Command {
             | Self::Eval { .. }
             | Self::Certify(_)
             | Self::Check { .. }
+            | Self::Tune(_)
             | Self::Margins(_) => None,
         }
     }

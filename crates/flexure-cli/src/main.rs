@@ -55,6 +55,7 @@ fn dispatch(command: Command, reading: Reading<'_>, json: bool) -> Result<(), Fa
         Command::Verify { certificate, against } => {
             commands::verify(&certificate, against.as_deref(), reading, json)
         }
+        Command::Tune(options) => commands::tune(&options, reading, json),
         Command::Margins(options) => commands::margins(&options, reading, json),
         Command::List { kind } => commands::list(kind, json),
     }

@@ -3,6 +3,7 @@
 pub use flexure_core as core;
 
 pub mod compare;
+pub mod design;
 pub mod estimators;
 pub mod eval;
 pub mod feasible;

@@ -11,6 +11,7 @@ mod model;
 pub mod print;
 mod reproduce;
 mod run;
+mod tune;
 mod verify;
 
 pub use certify::certify;
@@ -23,4 +24,5 @@ pub use margins::margins;
 pub use model::model;
 pub use reproduce::reproduce;
 pub use run::run;
+pub use tune::tune;
 pub use verify::verify;

@@ -9,6 +9,7 @@ use std::ops::Range;
 
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
+use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, Value};
 
 use crate::files::diagnostic::Problem;
 use crate::files::source::Source;
@@ -117,14 +118,21 @@ impl Change {
         Ok(Self { text: text.to_owned(), steps, value: start..start + given.trim().len() })
     }
 
-    /// The same change of the robot's file, if it is about the inside of `robot`.
+    /// Whether it is about the inside of `robot`: the robot's file.
+    pub(crate) fn is_of_robot(&self) -> bool {
+        matches!(self.steps.as_slice(), [Step { what: What::Key(key), .. }, _, ..] if key == "robot")
+    }
+
+    /// The same change of the robot's file, if it is about that.
     pub(crate) fn of_robot(&self) -> Option<Self> {
-        match self.steps.split_first() {
-            Some((Step { what: What::Key(key), .. }, steps)) if key == "robot" && !steps.is_empty() => {
-                Some(Self { steps: steps.to_vec(), ..self.clone() })
-            }
-            _ => None,
-        }
+        self.is_of_robot().then(|| Self { steps: self.steps[1..].to_vec(), ..self.clone() })
+    }
+
+    /// That a change of the robot's file cannot be written into a scenario.
+    pub(crate) fn of_another_file(&self) -> Problem {
+        let message = "this changes the robot's file, and what is written is the scenario's";
+        let help = "change the robot's file itself";
+        Problem::new("unsupported", message, help).at(&Source::new(NAME, &self.text), 0..self.value.start)
     }
 
     /// As it was written.
@@ -141,7 +149,7 @@ impl Change {
         root: &mut DeTable<'a>,
         at: usize,
         source: &Source,
-    ) -> Result<(), Problem> {
+    ) -> Result<Vec<Turn>, Problem> {
         let shifted = |span: &Range<usize>| span.start + at..span.end + at;
         let value = match parsed(&self.text[self.value.clone()]) {
             Ok(value) => shift(value, at + self.value.start),
@@ -153,8 +161,9 @@ impl Change {
         };
         let steps: Vec<Step> =
             self.steps.iter().map(|step| Step { span: shifted(&step.span), ..step.clone() }).collect();
-        let mut path = Walk { so_far: String::new(), source };
-        path.in_table(root, &steps, value)
+        let mut walk = Walk { so_far: String::new(), turns: Vec::new(), source };
+        walk.in_table(root, &steps, value)?;
+        Ok(walk.turns)
     }
 }
 
@@ -196,7 +205,17 @@ fn shift<'a>(value: Spanned<DeValue<'a>>, by: usize) -> Spanned<DeValue<'a>> {
 struct Walk<'s> {
     /// The key as far as it was followed.
     so_far: String,
+    /// The same, to be followed again.
+    turns: Vec<Turn>,
     source: &'s Source,
+}
+
+/// A step on the way to a value that was found.
+pub(crate) enum Turn {
+    Key(String),
+    Entry(usize),
+    /// A new entry of this kind, behind the others.
+    New(String),
 }
 
 impl Walk<'_> {
@@ -217,6 +236,7 @@ impl Walk<'_> {
             What::Index(index) => index.to_string(),
         };
         self.so_far = if self.so_far.is_empty() { key.clone() } else { format!("{}.{key}", self.so_far) };
+        self.turns.push(Turn::Key(key.clone()));
         let named = Spanned::new(step.span.clone(), Cow::Owned(key.clone()));
         if rest.is_empty() {
             table.insert(named, value);
@@ -261,11 +281,15 @@ impl Walk<'_> {
         value: Spanned<DeValue<'a>>,
     ) -> Result<(), Problem> {
         let (step, rest) = (&steps[0], &steps[1..]);
+        let count = array.len();
         let index = match &step.what {
             What::Index(index) => *index,
             What::Key(kind) => self.of_kind(array, kind, step)?,
         };
-        let count = array.len();
+        self.turns.push(match &step.what {
+            What::Key(kind) if index == count => Turn::New(kind.clone()),
+            _ => Turn::Entry(index),
+        });
         let Some(entry) = array.get_mut(index) else {
             let message =
                 format!("{}[{index}]: {} has {count} entries, counted from 0", self.so_far, self.so_far);
@@ -309,4 +333,36 @@ impl Walk<'_> {
             }
         }
     }
+}
+
+/// The text of the file of `source` after `changes` that were made to it before without an error, with its comments.
+pub(crate) fn edited(source: &Source, changes: &[Change]) -> DocumentMut {
+    let mut document: DocumentMut = source.text.parse().unwrap_or_default();
+    let with = source.with(changes);
+    let (mut root, _) = DeTable::parse_recoverable(with.of_file());
+    for (change, at) in changes.iter().zip(with.changes()) {
+        let Ok(turns) = change.apply(root.get_mut(), at, &with) else { continue };
+        let text = &change.text[change.value.clone()];
+        let value: Value = text.parse().unwrap_or_else(|_| text.into());
+        let mut item = document.as_item_mut();
+        for turn in turns {
+            item = match turn {
+                Turn::Key(key) => &mut item[key.as_str()],
+                Turn::Entry(index) => &mut item[index],
+                Turn::New(kind) => {
+                    if item.is_none() {
+                        *item = Item::ArrayOfTables(ArrayOfTables::new());
+                    }
+                    let mut entry = Table::new();
+                    entry.insert("kind", kind.into());
+                    let Some(entries) = item.as_array_of_tables_mut() else { break };
+                    entries.push(entry);
+                    let last = entries.len() - 1;
+                    &mut item[last]
+                }
+            };
+        }
+        *item = Item::Value(value);
+    }
+    document
 }

@@ -175,6 +175,11 @@ impl<'a> Field<'a> {
         }
     }
 
+    /// Whether an array stands here.
+    pub fn is_array(&self) -> bool {
+        matches!(self.value, DeValue::Array(_))
+    }
+
     /// True or false.
     pub fn boolean(&self) -> Option<bool> {
         let DeValue::Boolean(value) = self.value else {

@@ -12,6 +12,8 @@ pub enum Change {
     TorqueGain(f64),
     /// Factor on the springs of the simulated robot.
     Stiffness(f64),
+    /// Factor on masses and inertias of its links.
+    Mass(f64),
     /// Standard deviation of white noise on all measured positions, added, in rad.
     Noise(f64),
 }
@@ -38,6 +40,7 @@ impl Change {
             Self::Stiffness(factor) => {
                 multiply(&mut imperfection.of_mut::<ModelError>()?.factors.stiffness, factor);
             }
+            Self::Mass(factor) => multiply(&mut imperfection.of_mut::<ModelError>()?.factors.mass, factor),
             Self::Noise(more) => {
                 let Noise { link, motor, .. } = imperfection.of_mut()?;
                 for deviation in link.iter_mut().chain(motor) {
@@ -54,11 +57,10 @@ impl Change {
         match self {
             Self::Delay(actuation) => Imperfection::Delay(Delay { computation: 0.0, actuation }),
             Self::TorqueGain(factor) => Imperfection::TorqueGain(TorqueGain { factor: all(factor) }),
-            Self::Stiffness(factor) => Imperfection::ModelError(ModelError {
-                robot: None,
-                factors: Factors { stiffness: all(factor), ..Factors::ones(joints) },
-                payload: None,
-            }),
+            Self::Stiffness(factor) => {
+                model_error(Factors { stiffness: all(factor), ..Factors::ones(joints) })
+            }
+            Self::Mass(factor) => model_error(Factors { mass: all(factor), ..Factors::ones(joints) }),
             Self::Noise(deviation) => Imperfection::Noise(Noise {
                 link: all(deviation),
                 motor: all(deviation),
@@ -67,4 +69,8 @@ impl Change {
             }),
         }
     }
+}
+
+fn model_error(factors: Factors) -> Imperfection {
+    Imperfection::ModelError(ModelError { robot: None, factors, payload: None })
 }

@@ -59,6 +59,27 @@ pub fn sample(robot: &Robot, damping: &[f64]) -> Result<Sampled, Problems> {
     Ok(Sampled { rate, configuration, mass_matrix, largest_inertia: -negative })
 }
 
+/// The largest diagonal entries of the links' mass matrix over the samples [kg m²].
+///
+/// # Errors
+/// If the robot has too many joints.
+///
+/// # Panics
+/// Never: the slices have one entry per joint.
+pub fn largest_diagonal(robot: &Robot) -> Result<Vec<f64>, Problems> {
+    let (n, arm) = (robot.joint_count(), robot.arm()?);
+    let ranges = ranges(robot);
+    let entry = |joint: usize| {
+        let negative = |q: &[f64]| {
+            let mut mass = vec![0.0; n * n];
+            arm.mass_matrix(q, &mut mass).expect("n joints");
+            -mass[joint * (n + 1)]
+        };
+        -smallest(&ranges, &negative).0
+    };
+    Ok((0..n).map(entry).collect())
+}
+
 /// A full turn for joints that turn, the travel for those that slide.
 fn ranges(robot: &Robot) -> Vec<(f64, f64)> {
     let turn = std::f64::consts::PI;

@@ -174,6 +174,11 @@ fn floats(numbers: &[Number]) -> Vec<f64> {
 }
 
 impl BlockSummary {
+    /// The contraction rates of `certificate`.
+    pub(crate) fn contraction(certificate: &Certificate) -> Self {
+        Self::of(&certificate.blocks, |block| &block.contraction)
+    }
+
     fn of(blocks: &[Block], rate: impl Fn(&Block) -> &Number) -> Self {
         let of = |name| {
             blocks
@@ -194,7 +199,7 @@ impl ProofSummary {
     /// The summary of a proof of `scenario`.
     pub fn new(scenario: &Scenario, proof: &Proof, sampled: Option<Sampled>) -> Self {
         let certificate = proof.verdict.proved();
-        let sigma_l = |c: &Certificate| BlockSummary::of(&c.blocks, |block| &block.contraction).sigma_l;
+        let sigma_l = |c: &Certificate| BlockSummary::contraction(c).sigma_l;
         let (witness, undecided) = match &proof.verdict {
             Verdict::Proved(_) => (None, None),
             Verdict::Refuted(witness) => {
@@ -217,7 +222,7 @@ impl ProofSummary {
             contraction_rate: certificate.map(|c| c.contraction_rate.approximate()),
             convergence_rate: certificate.map(|c| c.convergence_rate.approximate()),
             paper_rate: proof.paper_rate,
-            blocks: certificate.map(|c| BlockSummary::of(&c.blocks, |block| &block.contraction)),
+            blocks: certificate.map(BlockSummary::contraction),
             convergence_blocks: certificate.map(|c| BlockSummary::of(&c.blocks, |block| &block.convergence)),
             region: certificate.map(region),
             measures: certificate.map_or_else(Vec::new, measures),

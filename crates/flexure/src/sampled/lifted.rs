@@ -40,7 +40,7 @@ pub(crate) struct Device {
 }
 
 /// The parts of a loop, each with its exact Jacobian.
-pub(crate) trait Lifted {
+pub(crate) trait Lifted: Send + Sync {
     /// Taylor coefficients of the reference in time at `t` in s, six per joint.
     fn reference(&self, t: f64) -> Vec<[f64; 6]>;
 
@@ -166,7 +166,11 @@ impl<L: Links<f64, N>, M: Links<Tangent, N>, const N: usize> Parts<L, M, N> {
     }
 }
 
-impl<L: Links<f64, N>, M: Links<Tangent, N>, const N: usize> Lifted for Parts<L, M, N> {
+impl<L, M, const N: usize> Lifted for Parts<L, M, N>
+where
+    L: Links<f64, N> + Send + Sync,
+    M: Links<Tangent, N> + Send + Sync,
+{
     fn reference(&self, t: f64) -> Vec<[f64; 6]> {
         let series = self.reference.at::<6>(t);
         series.iter().take(self.joints()).map(|q| std::array::from_fn(|k| q.coefficient(k))).collect()

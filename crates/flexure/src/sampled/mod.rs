@@ -111,6 +111,24 @@ pub(crate) fn is_stable(scenario: &Scenario) -> Result<bool, Problems> {
     Ok(Probe::new(scenario)?.is_none_or(|probe| probe.found().2.is_some()))
 }
 
+/// The sampled loop of a scenario, made ready to be looked at under many laws.
+pub(crate) struct Outlook<'a>(Option<Probe<'a>>);
+
+impl<'a> Outlook<'a> {
+    /// Of `scenario`, whose own law plays no part.
+    ///
+    /// # Errors
+    /// As [`Scenario::open`].
+    pub fn new(scenario: &'a Scenario) -> Result<Self, Problems> {
+        Probe::new(scenario).map(Self)
+    }
+
+    /// The largest spectral radius that counts under `law`, NaN where the law has no slope; none where nothing is looked at.
+    pub fn radius(&self, law: &Controller) -> Option<f64> {
+        self.0.as_ref().map(|probe| probe.worst(law).0)
+    }
+}
+
 /// Why the sampled loop of `scenario` is not looked at, if it is not and its law acts at instants.
 pub fn not_looked_at(scenario: &Scenario) -> Option<String> {
     let waiting = Devices::of(scenario).waiting.saturating_mul(scenario.robot.joint_count());

@@ -144,6 +144,12 @@ impl Scenario {
         (act && limits.iter().any(|limit| limit.is_finite())).then(|| limits.clone())
     }
 
+    /// The same loop under another law.
+    #[must_use]
+    pub fn under(&self, controller: &Controller) -> Self {
+        Self { controller: controller.clone(), ..self.clone() }
+    }
+
     /// Whether the file leaves the gains to the [starting rule](Controller::default_for): it has none.
     pub fn has_starting_gains(&self) -> bool {
         let gains = self.controller.gains();

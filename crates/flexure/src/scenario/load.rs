@@ -28,13 +28,19 @@ pub fn load_scenario_with<'a>(
     reading: impl Into<Reading<'a>>,
 ) -> Result<Scenario, Problems> {
     let Reading { outside, changes } = reading.into();
+    let (source, base) = source(path_or_name, outside)?;
+    document::read(&source, &base, changes)
+}
+
+/// The text of the scenario at a path or of that name, and what paths in it are relative to.
+pub(crate) fn source(path_or_name: &str, outside: Outside) -> Result<(Source, Base), Problems> {
     if builtin::is_name(path_or_name) {
         let known = [SCENARIOS, TASKS].concat();
         let text = builtin::find(path_or_name, &known, "scenario")?;
-        return document::read(&Source::new(path_or_name, text), &Base::BuiltIn, changes);
+        return Ok((Source::new(path_or_name, text), Base::BuiltIn));
     }
     let path = Path::new(path_or_name);
-    document::read(&source::read(path, bounds::LIMIT)?, &Base::of(path, outside), changes)
+    Ok((source::read(path, bounds::LIMIT)?, Base::of(path, outside)))
 }
 
 impl Scenario {

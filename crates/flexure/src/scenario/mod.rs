@@ -15,11 +15,11 @@
 mod accept;
 mod agreement;
 mod any;
-mod document;
+pub(crate) mod document;
 mod draft;
 mod guard;
 mod initial;
-mod load;
+pub(crate) mod load;
 mod plant;
 
 pub use accept::Accept;

@@ -15,8 +15,25 @@ pub struct Following {
     pub follows: bool,
     /// Why not; nothing for a run that follows.
     pub reasons: Vec<Reason>,
+    /// What it came to of each limit, in the joint in which that is most; nothing for a loop that diverged.
+    pub used: Vec<Used>,
     /// What it was held to.
     pub accepted: Accepted,
+}
+
+/// What a run came to of a limit, in the joint in which that is most.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Used {
+    /// What is limited.
+    pub measure: Measure,
+    /// Name of the joint.
+    pub joint: String,
+    /// Its unit there.
+    pub unit: &'static str,
+    /// Its largest value.
+    pub value: f64,
+    /// The limit.
+    pub limit: f64,
 }
 
 /// What a run was held to.
@@ -127,6 +144,11 @@ impl Watch {
     /// The verdict on the run that ends here, of a robot with these `joints`.
     pub(crate) fn verdict(&self, joints: &[MovingJoint], divergence: Option<&Divergence>) -> Following {
         let bounds = self.criteria.bounds(&self.size);
+        let used = if divergence.is_some() {
+            Vec::new()
+        } else {
+            bounds.iter().filter_map(|bound| self.used(bound, joints)).collect()
+        };
         let mut reasons = Vec::new();
         match (divergence, self.stopped_since) {
             (Some(divergence), _) => reasons.push(Reason::whole(divergence.time, divergence.to_string())),
@@ -143,21 +165,38 @@ impl Watch {
         }
         let Criteria { settling, settling_because: because, .. } = self.criteria;
         let accepted = Accepted { settling, because, bounds };
-        Following { follows: reasons.is_empty(), reasons, accepted }
+        Following { follows: reasons.is_empty(), reasons, used, accepted }
     }
 
-    /// What joint `i` did beyond a limit.
-    fn objection(&self, bound: &Bound, i: usize, joint: &MovingJoint) -> Option<Reason> {
+    /// The largest value of what `bound` limits in joint `i`, and when that was if it was at some time.
+    fn value(&self, measure: Measure, i: usize) -> (f64, Option<f64>) {
         let mean = |sum: f64| sum / f64::from(self.settled.max(1));
         let worst = |k: usize| (self.worst[k][i].value, Some(self.worst[k][i].time));
-        let (value, time) = match bound.measure {
+        match measure {
             Measure::Error => worst(0),
             Measure::Torque => worst(1),
             Measure::Speed => worst(2),
             Measure::Deflection => worst(3),
             Measure::TorqueChange => (mean(self.squared_change[i]).sqrt(), None),
             Measure::AtLimit => (mean(f64::from(self.at_limit[i])), None),
-        };
+        }
+    }
+
+    /// What came closest to a limit, or went farthest beyond; none where no joint has one.
+    fn used(&self, bound: &Bound, joints: &[MovingJoint]) -> Option<Used> {
+        let share = |value: f64, limit: f64| if limit > 0.0 { value / limit } else { value };
+        let limited = joints.iter().enumerate().filter(|(i, _)| bound.limit[*i].is_finite());
+        let used = limited.map(|(i, joint)| {
+            let (value, limit) = (self.value(bound.measure, i).0, bound.limit[i]);
+            let unit = bound.measure.unit(joint.kind);
+            Used { measure: bound.measure, joint: joint.name.clone(), unit, value, limit }
+        });
+        used.max_by(|a, b| share(a.value, a.limit).total_cmp(&share(b.value, b.limit)))
+    }
+
+    /// What joint `i` did beyond a limit.
+    fn objection(&self, bound: &Bound, i: usize, joint: &MovingJoint) -> Option<Reason> {
+        let (value, time) = self.value(bound.measure, i);
         let limit = bound.limit[i];
         let is_inside = value <= limit;
         (!is_inside).then(|| {

@@ -33,7 +33,7 @@ pub use controller::{Action, Compensation, Controller, Feedback, Said};
 pub use criteria::{Bound, Criteria, Measure};
 pub use fault_log::{FaultLog, LoggedStep, Stopped};
 pub use figures::SETTLED;
-pub use following::{Accepted, Following, Reason};
+pub use following::{Accepted, Following, Reason, Used};
 pub use gauss::{Integrator, StepFailure};
 pub use guarded::Guarded;
 pub use interface::{Commanded, Errors, Loop, Observed, Signal};

@@ -60,7 +60,13 @@ fn changes_are_edits() {
 fn the_last_change_counts_and_robots_are_changed_too() {
     let scenario = changed(&["duration=3", "duration=4", "robot.joints.stiffness=[200, 20]"]).unwrap();
     assert_eq!((scenario.duration, scenario.robot.stiffness), (4.0, vec![200.0, 20.0]));
-    let other = changed(&["robot=quanser-2dof", "robot.joints.stiffness=[200, 20]"]).unwrap().robot;
+    let other = changed(&[
+        "robot=quanser-2dof",
+        "imperfection.saturation.limit=9",
+        "robot.joints.stiffness=[200, 20]",
+    ])
+    .unwrap()
+    .robot;
     assert_eq!((&*other.name, other.stiffness), ("quanser-2dof", vec![200.0, 20.0]));
     // A file without changes is another one.
     assert_ne!(
@@ -75,7 +81,7 @@ fn the_last_change_counts_and_robots_are_changed_too() {
 #[test]
 fn what_is_wrong_points_into_the_change() {
     for (change, said, column) in [
-        ("duration=-3", "duration is -3 s, must be > 0 s", 10),
+        ("duration=-3", "duration is -3 s, must be > 0", 10),
         ("duratoin=3", "unknown key 'duratoin'", 1),
         ("controler.phi=tanh", "unknown key 'controler'", 1),
         ("controller.link.metirc=1", "unknown key 'metirc' in [controller.link]", 17),

@@ -113,6 +113,6 @@ fn names_that_are_none_are_refused() {
     assert_eq!(problem.code_word(), "unknown-name");
     assert!(problem.hint().contains("did you mean 'harmonic-drive'"));
     for class in DRIVES {
-        assert!(std::ptr::eq(DriveClass::named(class.entry.name).unwrap(), class));
+        assert_eq!(DriveClass::named(class.entry.name).unwrap().entry, class.entry);
     }
 }

@@ -1,0 +1,208 @@
+//! Gains on trial: what the loop does with them, and what that costs.
+
+use rayon::prelude::*;
+
+use crate::design::constraint::Constraint;
+use crate::design::spec::Spec;
+use crate::feasible;
+use crate::files::Problems;
+use crate::files::number::short;
+use crate::laws::Controller;
+use crate::margins::Change;
+use crate::sampled::Outlook;
+use crate::scenario::Scenario;
+use crate::simulate::{Criteria, Run, measure_by};
+use crate::tune::penalised_error;
+
+/// The loops that gains are tried in.
+pub(super) struct Bench {
+    /// The loop under each reference.
+    pub scenarios: Vec<Scenario>,
+    criteria: Vec<Criteria>,
+    /// The same loops with something that they shall bear.
+    corners: Vec<Corner>,
+    /// Largest part of the instants at which a torque limit may act.
+    at_limit: f64,
+}
+
+/// Something that a loop shall bear.
+struct Corner {
+    /// What it is, in words.
+    what: String,
+    /// The loop under each reference with it.
+    scenarios: Vec<Scenario>,
+}
+
+/// The sampled loops of a bench, gains aside.
+pub(super) struct Outlooks<'a> {
+    nominal: Vec<Outlook<'a>>,
+    corners: Vec<Vec<Outlook<'a>>>,
+}
+
+/// Gains that were tried.
+#[derive(Clone, Debug)]
+pub(super) struct Trial {
+    pub controller: Controller,
+    /// What it costs: the less the better, and what keeps every constraint costs less than anything that does not.
+    pub cost: f64,
+    /// Every constraint that was looked at.
+    pub constraints: Vec<Constraint>,
+    /// The runs; none of loops that are unstable as sampled.
+    pub runs: Vec<Run>,
+}
+
+/// What breaking constraints costs at least, and at most without diverging: more than the logarithm of any error.
+const BROKEN: f64 = 100.0;
+const DIVERGED: f64 = 200.0;
+const UNSTABLE: f64 = 300.0;
+
+impl Trial {
+    /// Whether every constraint is kept that was looked at.
+    pub fn keeps(&self) -> bool {
+        self.cost < BROKEN
+    }
+}
+
+impl Bench {
+    /// The loops of `scenarios`, and what `spec` wants them to bear.
+    ///
+    /// # Errors
+    /// As [`Scenario::open`].
+    pub fn new(scenarios: &[Scenario], spec: &Spec) -> Result<Self, Problems> {
+        let scenarios = scenarios.iter().map(feasible::pinned).collect::<Result<Vec<_>, _>>()?;
+        let criteria = scenarios.iter().map(Criteria::of).collect::<Result<_, _>>()?;
+        let corner = |(what, change): (String, Change)| {
+            let changed = scenarios.iter().map(|scenario| change.of(scenario)).collect();
+            Corner { what, scenarios: changed }
+        };
+        let corners = wanted(scenarios[0].control_period, spec).into_iter().map(corner).collect();
+        let at_limit = scenarios[0].accept.at_limit.unwrap_or(0.0);
+        Ok(Self { scenarios, criteria, corners, at_limit })
+    }
+
+    /// Looks at the sampled loops, gains aside: once for all trials.
+    ///
+    /// # Errors
+    /// As [`Scenario::open`].
+    pub fn outlooks(&self) -> Result<Outlooks<'_>, Problems> {
+        fn of(scenarios: &[Scenario]) -> Result<Vec<Outlook<'_>>, Problems> {
+            scenarios.par_iter().map(Outlook::new).collect()
+        }
+        let corners =
+            self.corners.par_iter().map(|corner| of(&corner.scenarios)).collect::<Result<_, _>>()?;
+        Ok(Outlooks { nominal: of(&self.scenarios)?, corners })
+    }
+
+    /// Tries `controller`; `cost` makes one of the error in rad of a loop that keeps its constraints. Corners are looked at where it
+    /// would else cost less than `best`.
+    ///
+    /// # Errors
+    /// As [`Scenario::open`].
+    pub fn try_out(
+        &self,
+        outlooks: &Outlooks<'_>,
+        controller: Controller,
+        cost: impl Fn(f64) -> f64,
+        best: f64,
+    ) -> Result<Trial, Problems> {
+        let radius = outlooks.nominal(&controller);
+        let mut constraints =
+            vec![Constraint::radius("small errors shrink in the sampled loop".to_owned(), radius)];
+        if !constraints[0].is_kept() {
+            let cost = UNSTABLE + bounded(radius - 1.0);
+            return Ok(Trial { controller, cost, constraints, runs: Vec::new() });
+        }
+        let runs = self.runs(&self.scenarios, &controller)?;
+        if let Some(divergence) = runs.iter().find_map(|run| run.divergence) {
+            let cost = DIVERGED + bounded(1.0 / (divergence.time + 1e-3));
+            return Ok(Trial { controller, cost, constraints, runs });
+        }
+        constraints.extend(Constraint::of_runs(&runs, self.at_limit));
+        let error = runs.iter().map(|run| penalised_error(&run.summary)).fold(0.0, f64::max);
+        let kept = cost(error);
+        if broken(&constraints) == 0.0 && kept < best {
+            constraints.extend(self.borne(outlooks, &controller));
+        }
+        let excess = broken(&constraints);
+        let cost = if excess > 0.0 { BROKEN + bounded(excess) } else { kept };
+        Ok(Trial { controller, cost, constraints, runs })
+    }
+
+    /// The spectral radius at each corner.
+    fn borne(&self, outlooks: &Outlooks<'_>, controller: &Controller) -> Vec<Constraint> {
+        let radii: Vec<f64> =
+            outlooks.corners.par_iter().map(|corner| largest(corner.iter(), controller)).collect();
+        let named = self.corners.iter().zip(radii);
+        named.map(|(corner, radius)| Constraint::radius(corner.what.clone(), radius)).collect()
+    }
+
+    /// What the loop does not bear although small errors shrink in it: each corner in which some run does not follow.
+    ///
+    /// # Errors
+    /// As [`Scenario::open`].
+    pub fn lost_at(&self, controller: &Controller) -> Result<Vec<Constraint>, Problems> {
+        let lost = |corner: &Corner| {
+            let runs = self.runs(&corner.scenarios, controller)?;
+            let reason = runs.iter().flat_map(|run| &run.summary.following.reasons).next();
+            Ok(reason.map(|reason| Constraint::lost(&corner.what, &reason.words)))
+        };
+        let lost: Vec<_> = self.corners.par_iter().map(lost).collect::<Result<_, Problems>>()?;
+        Ok(lost.into_iter().flatten().collect())
+    }
+
+    /// The loops under `controller`.
+    pub fn loops(&self, controller: &Controller) -> Vec<Scenario> {
+        self.scenarios.iter().map(|scenario| scenario.under(controller)).collect()
+    }
+
+    fn runs(&self, scenarios: &[Scenario], controller: &Controller) -> Result<Vec<Run>, Problems> {
+        let loops: Vec<_> = scenarios.iter().map(|scenario| scenario.under(controller)).collect();
+        loops.par_iter().zip(&self.criteria).map(|(own, criteria)| measure_by(own, criteria)).collect()
+    }
+}
+
+impl Outlooks<'_> {
+    /// Largest spectral radius of the loops under `controller`.
+    pub fn nominal(&self, controller: &Controller) -> f64 {
+        largest(self.nominal.iter(), controller)
+    }
+}
+
+/// Those that are not looked at count as stable; what is no number does not.
+fn largest<'a>(outlooks: impl Iterator<Item = &'a Outlook<'a>>, controller: &Controller) -> f64 {
+    let radii = outlooks.map(|outlook| outlook.radius(controller).unwrap_or(0.0));
+    radii.map(|radius| if radius.is_nan() { f64::INFINITY } else { radius }).fold(0.0, f64::max)
+}
+
+/// By how much constraints are broken together; 0 if all are kept.
+fn broken(constraints: &[Constraint]) -> f64 {
+    constraints.iter().map(Constraint::excess).sum()
+}
+
+/// From 0 to 99, growing with `x` from 0 on.
+fn bounded(x: f64) -> f64 {
+    if x.is_finite() { 99.0 * x / (1.0 + x) } else { 99.0 }
+}
+
+/// What `spec` wants a loop with control periods of `period` in s to bear, in words.
+fn wanted(period: f64, spec: &Spec) -> Vec<(String, Change)> {
+    let mut wanted = Vec::new();
+    if let Some([shortest, longest]) = spec.delay.filter(|[shortest, longest]| shortest < longest) {
+        let what = format!("the shortest delay, {} ms", short(1e3 * shortest, 4));
+        wanted.push((what, Change::Delay(shortest - longest)));
+    }
+    let delay = spec.margins.delay.unwrap_or(0.5 * period);
+    if delay > 0.0 {
+        wanted.push((format!("{} ms more delay", short(1e3 * delay, 4)), Change::Delay(delay)));
+    }
+    let [low, high] = spec.margins.gain;
+    let factors = |what: &str, change: fn(f64) -> Change, factors: [f64; 2]| {
+        let named = |factor: f64| (format!("{} times the {what}", short(factor, 4)), change(factor));
+        factors.into_iter().filter(|factor| (factor - 1.0).abs() > 0.0).map(named).collect::<Vec<_>>()
+    };
+    wanted.extend(factors("torque", Change::TorqueGain, [low, high]));
+    let either_way = |part: f64| [1.0 - part, 1.0 + part];
+    wanted.extend(factors("masses", Change::Mass, either_way(spec.uncertainty.mass)));
+    wanted.extend(factors("stiffnesses", Change::Stiffness, either_way(spec.uncertainty.stiffness)));
+    wanted
+}

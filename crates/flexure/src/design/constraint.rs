@@ -1,0 +1,133 @@
+//! What gains are held to.
+
+use serde::Serialize;
+
+use crate::simulate::{Measure, Run, Used};
+
+/// Something that a tuned loop is held to.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Constraint {
+    /// What it is, in words.
+    pub what: String,
+    /// The joint that comes closest, or goes farthest beyond.
+    pub joint: Option<String>,
+    /// What the loop has.
+    pub value: f64,
+    /// Largest value that is accepted, or smallest for a rate.
+    pub limit: f64,
+    /// Unit of both; nothing for pure numbers.
+    pub unit: &'static str,
+    /// Part of the limit that is left; negative where it is broken.
+    pub slack: f64,
+    /// What it is about.
+    #[serde(skip)]
+    pub kind: Kind,
+    /// More in words, if there is any.
+    pub note: Option<String>,
+}
+
+/// What a constraint is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A spectral radius that must be below 1.
+    Radius,
+    /// Something that a run is held to.
+    Run(Measure),
+    /// A loop with something to bear that does not follow.
+    Lost,
+    /// The certified rate.
+    Rate,
+}
+
+/// Spectral radius up to which a loop counts as stable: computed to about 1e-12.
+const STABLE: f64 = 1.0 - 1e-9;
+
+/// By how much a spectral radius above 1 counts more than another limit that is exceeded by the same part.
+const STEEP: f64 = 10.0;
+
+impl Constraint {
+    /// That a spectral radius is below 1.
+    pub(super) fn radius(what: String, radius: f64) -> Self {
+        let slack = STABLE - radius;
+        Self { what, joint: None, value: radius, limit: 1.0, unit: "", slack, kind: Kind::Radius, note: None }
+    }
+
+    /// What `runs` are held to, each in the run that comes closest; `at_limit` is the largest part of the instants at which a torque
+    /// limit may act.
+    pub(super) fn of_runs(runs: &[Run], at_limit: f64) -> Vec<Self> {
+        let of = |measure: Measure| {
+            let used = runs.iter().flat_map(|run| &run.summary.following.used);
+            let used = used.filter(|used| used.measure == measure).map(Self::used);
+            used.min_by(|a, b| a.slack.total_cmp(&b.slack))
+        };
+        let limits = Measure::ALL.into_iter().filter(|measure| *measure != Measure::AtLimit);
+        let share = runs.iter().map(|run| run.summary.saturated_fraction).fold(0.0, f64::max);
+        let stopped = runs.iter().any(|run| run.summary.stops > 0);
+        let constraint = |what: &str, value: f64, limit: f64| Self {
+            what: what.to_owned(),
+            joint: None,
+            value,
+            limit,
+            unit: "",
+            slack: limit - value,
+            kind: Kind::Run(Measure::AtLimit),
+            note: None,
+        };
+        let share = constraint("part of the instants at a torque limit", share, at_limit);
+        let stops = stopped.then(|| constraint("stops by the guard", 1.0, 0.0));
+        limits.filter_map(of).chain([share]).chain(stops).collect()
+    }
+
+    fn used(used: &Used) -> Self {
+        let Used { measure, joint, unit, value, limit } = used;
+        Self {
+            what: measure.what().trim_end_matches(',').to_owned(),
+            joint: Some(joint.clone()),
+            value: *value,
+            limit: *limit,
+            unit,
+            slack: 1.0 - value / limit,
+            kind: Kind::Run(*measure),
+            note: None,
+        }
+    }
+
+    /// That a loop with something to bear does not follow, with the first reason.
+    pub(super) fn lost(what: &str, reason: &str) -> Self {
+        Self {
+            what: format!("follows with {what}"),
+            joint: None,
+            value: 0.0,
+            limit: 1.0,
+            unit: "",
+            slack: -1.0,
+            kind: Kind::Lost,
+            note: Some(reason.to_owned()),
+        }
+    }
+
+    /// That a certified rate is as large as was asked [1/s].
+    pub(super) fn rate(proved: f64, asked: f64) -> Self {
+        Self {
+            what: "certified contraction rate, at least".to_owned(),
+            joint: None,
+            value: proved,
+            limit: asked,
+            unit: "1/s",
+            slack: proved / asked - 1.0,
+            kind: Kind::Rate,
+            note: None,
+        }
+    }
+
+    /// Whether the loop keeps it.
+    pub fn is_kept(&self) -> bool {
+        self.slack >= 0.0
+    }
+
+    /// By how much it is broken; 0 if it is kept.
+    pub(super) fn excess(&self) -> f64 {
+        let times = if self.kind == Kind::Radius { STEEP } else { 1.0 };
+        if self.slack.is_nan() { f64::INFINITY } else { times * (-self.slack).max(0.0) }
+    }
+}
