@@ -85,7 +85,7 @@ fn what_is_missing_is_listed_once() {
             "21 numbers are still to be supplied",
             "each of 7 joints, panda_joint1 to panda_joint7",
         ]);
-        assert!(refused.stderr.lines().count() < 20, "{}", refused.stderr);
+        assert!(refused.stderr.lines().count() < 30, "{}", refused.stderr);
     }
     // Locked joints lack nothing.
     let lock = ["--lock", "panda_joint3=0.2", "--assume", "belt", "--json"];
@@ -124,7 +124,7 @@ fn strange_joints_make_sound_drafts() {
     }
     // What is refused writes nothing.
     for (from, to, said) in [
-        ("effort=\"30\"", "effort=\"nan\"", "must be a number"),
+        ("effort=\"30\"", "effort=\"nan\"", "must be a finite number"),
         ("effort=\"30\"", "effort=\"many\"", "many"),
         ("<mass value=\"2\"/>", "<mass value=\"-2\"/>", "must be >= 0"),
     ] {

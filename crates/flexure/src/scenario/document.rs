@@ -244,12 +244,8 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base, of_robot: &[Change])
     let plant = plant::read(root, &joints, robot.as_ref());
     let context = Context { joints: &joints, robot: robot.as_ref(), times, base };
     let real = real_loop(root, &context, hold, plant.as_ref());
-    let rest = match (&robot, &plant, &real, &timed) {
-        (Some(robot), Some(plant), Some(real), Some(timed)) => {
-            Some(Rest::of(robot, plant, &real.imperfections, &timed.reference))
-        }
-        _ => None,
-    };
+    let imperfections = real.as_ref().map(|real| &*real.imperfections);
+    let rest = Rest::of(robot.as_ref(), plant.as_ref(), imperfections, timed.as_ref());
     let initial = initial::read(root, &joints, places, rest.as_ref(), &mut assumed);
     let accept = accept::read(root, &joints, times);
     let own = provenance::assumptions(root, places);

@@ -6,7 +6,7 @@ use crate::files::table::Table;
 use crate::files::{Assumption, Places, Problems};
 use crate::imperfections::{Imperfection, Spring};
 use crate::plant::deflection;
-use crate::references::Reference;
+use crate::references::document::Timed;
 use crate::robot::Robot;
 use crate::scenario::plant::Plant;
 
@@ -49,12 +49,12 @@ impl<'a> Rest<'a> {
         };
         let play = |i: usize| springs.iter().map(|spring| 2.0 * spring.dead_zone[i]).sum();
         let n = robot.joint_count();
-        Self {
+        Some(Self {
             robot,
             hardening: (0..n).map(hardening).collect(),
             play: (0..n).map(play).collect(),
-            reference: reference.initial(),
-        }
+            reference: timed.reference.initial(),
+        })
     }
 
     /// The robot at rest with its links at `q_l` in rad: springs carry gravity.
