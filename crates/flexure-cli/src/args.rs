@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 use flexure::compare::{BUDGET, SEEDS};
 use flexure::files::Change;
 use flexure::robot::DriveClass;
@@ -17,7 +18,8 @@ use flexure::robot::DriveClass;
     arg_required_else_help = true
 )]
 #[command(
-    after_help = "Exit codes: 0 done; 1 the answer is no, as for a loop that diverges; 2 bad input; 3 not decided\nwithin the budget."
+    after_help = "Exit codes: 0 done; 1 the answer is no, as for a loop that diverges; 2 bad input; 3 not decided within the budget; \
+    130 broken off by Ctrl-C, with what was found until then.\n\nExamples:\n  flexure run two-link-tanh-smooth --out out\n  flexure check panda"
 )]
 pub struct Cli {
     #[command(subcommand)]
@@ -38,8 +40,10 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    #[command(after_help = "Example:\n  flexure reproduce --out out")]
     /// Run the paper's experiments: table, figures, traces and report.html.
     Reproduce(Output),
+    #[command(after_help = "Example:\n  flexure run two-link-tanh-smooth --out out")]
     /// Simulate one closed loop: summary, trace and figure.
     Run {
         /// Scenario file, or the name of a built-in scenario.
@@ -47,8 +51,14 @@ pub enum Command {
         #[command(flatten)]
         output: Output,
     },
+    #[command(
+        after_help = "Example:\n  flexure compare task-soft --controllers vcbc,vcbc:tanh,cascade --budget 5"
+    )]
     /// Compare control laws, each with gains from the same search: table, figures and compare.html.
     Compare(Compare),
+    #[command(
+        after_help = "Examples:\n  flexure eval two-link-tanh --states states.jsonl\n  flexure eval two-link-tanh --states - < states.jsonl"
+    )]
     /// Evaluate the control law at given states.
     Eval {
         /// Scenario file, or the name of a built-in scenario.
@@ -57,6 +67,7 @@ pub enum Command {
         #[arg(long, value_name = "FILE")]
         states: PathBuf,
     },
+    #[command(after_help = "Example:\n  flexure model quanser-2dof --states states.jsonl")]
     /// Evaluate the robot model at given states.
     Model {
         /// Robot file, or the name of a built-in robot.
@@ -65,16 +76,24 @@ pub enum Command {
         #[arg(long, value_name = "FILE")]
         states: PathBuf,
     },
+    #[command(after_help = "Example:\n  flexure certify two-link-tanh --error-box 3 --direct")]
     /// Prove how fast the closed loop contracts, and where; write a certificate that others can check.
     Certify(Certify),
+    #[command(
+        after_help = "Examples:\n  flexure import panda.urdf --lock panda_finger_joint1=0 > panda.toml\n  flexure import panda.urdf --lock panda_finger_joint1=0 --assume harmonic-drive --scenario --out ."
+    )]
     /// Draft a robot file from a URDF, and a scenario for it; what is still to be supplied is marked.
     Import(Import),
+    #[command(after_help = "Example:\n  flexure check panda panda-tanh-smooth")]
     /// Validate robot and scenario files; show the joints of robots.
     Check {
         /// Files, or names of built-in robots and scenarios.
         #[arg(required = true, value_name = "FILE")]
         files: Vec<String>,
     },
+    #[command(
+        after_help = "Example:\n  flexure verify out/two-link-tanh.certificate.json --against two-link-tanh"
+    )]
     /// Check a certificate's claims without what made it.
     Verify {
         /// Certificate, a JSON file as docs/certificate.md has it.
@@ -84,14 +103,32 @@ pub enum Command {
         #[arg(long, value_name = "SCENARIO")]
         against: Option<String>,
     },
+    #[command(after_help = "Example:\n  flexure tune two-link-hardware --budget 10 --out tuned.toml")]
     /// Find gains: a complete scenario, what each gain trades, every constraint with its slack, and the evidence.
     Tune(Tune),
+    #[command(
+        after_help = "Examples:\n  flexure margins two-link-hardware\n  flexure margins task-soft --controllers cascade --budget 5"
+    )]
     /// Measure how much delay, gain error, stiffness error and noise a loop bears, by bisection in simulation.
     Margins(Margins),
+    #[command(after_help = "Example:\n  flexure list scenarios")]
     /// List what is registered.
     List {
         /// What to list; everything if left out.
         kind: Option<Kind>,
+    },
+    #[command(after_help = "Example:\n  flexure completions bash > flexure.bash")]
+    /// Print the script that lets a shell complete this command's words.
+    Completions {
+        /// The shell.
+        shell: Shell,
+    },
+    #[command(after_help = "Examples:\n  flexure man > flexure.1\n  flexure man man1")]
+    /// Print the manual page, or write a page for each command.
+    Man {
+        /// Folder for flexure.1, flexure-run.1 and the others; without it the first is printed.
+        #[arg(value_name = "DIR")]
+        folder: Option<PathBuf>,
     },
 }
 
@@ -236,6 +273,8 @@ impl Command {
             Self::Model { .. } => Some("model"),
             Self::Import(_) => Some("import"),
             Self::List { .. } => Some("list"),
+            Self::Completions { .. } => Some("completions"),
+            Self::Man { .. } => Some("man"),
             Self::Verify { against: None, .. } => Some("verify without --against"),
             Self::Verify { .. }
             | Self::Run { .. }

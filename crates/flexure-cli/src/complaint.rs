@@ -54,6 +54,9 @@ impl From<&Report> for Complaint {
 /// The key `error`: the first problem, and the others.
 #[derive(Serialize)]
 pub struct Errors {
+    /// There and true where Ctrl-C broke the answer off.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    interrupted: Option<bool>,
     error: First,
 }
 
@@ -69,6 +72,11 @@ impl Errors {
     pub fn of(reports: &[Report]) -> Option<Self> {
         let (first, others) = reports.split_first()?;
         let others = others.iter().map(Complaint::from).collect();
-        Some(Self { error: First { complaint: first.into(), others } })
+        Some(Self { interrupted: None, error: First { complaint: first.into(), others } })
+    }
+
+    /// Of an answer that was broken off.
+    pub fn interrupted(self) -> Self {
+        Self { interrupted: Some(true), ..self }
     }
 }

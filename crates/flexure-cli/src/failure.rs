@@ -10,6 +10,7 @@ use miette::{Diagnostic, MietteHandlerOpts, Report};
 use textwrap::WordSplitter;
 
 use crate::complaint::Errors;
+use crate::interrupt;
 
 /// Problems beyond these are counted, not shown.
 const MOST_SHOWN: usize = 10;
@@ -22,6 +23,8 @@ pub enum Failure {
     No(Vec<Report>),
     /// The answer was not found within the budget: exit code 3.
     Undecided(Vec<Report>),
+    /// It was broken off by Ctrl-C; what was printed is a part of the answer: exit code 130.
+    Interrupted(Vec<Report>),
     /// Whoever read the output went away: nothing to say.
     Gone,
 }
@@ -42,30 +45,50 @@ impl Failure {
         Self::No(vec![Said { code, message, hint: hint.to_owned(), place: None }.into()])
     }
 
+    /// It was broken off, as a sentence and a hint tell.
+    pub fn interrupted(message: String, hint: &str) -> Self {
+        Self::Interrupted(vec![
+            Said { code: "interrupted", message, hint: hint.to_owned(), place: None }.into(),
+        ])
+    }
+
     /// What is to be said with `--json`, if there is anything.
     pub fn errors(&self) -> Option<Errors> {
         match self {
             Self::Input(reports) | Self::No(reports) | Self::Undecided(reports) => Errors::of(reports),
+            Self::Interrupted(reports) => Errors::of(reports).map(Errors::interrupted),
             Self::Gone => None,
         }
     }
 
-    /// Says it on stderr and gives the exit code.
-    pub fn report(self) -> ExitCode {
-        let (reports, code) = match self {
-            Self::Input(reports) => (reports, 2),
-            Self::No(reports) => (reports, 1),
-            Self::Undecided(reports) => (reports, 3),
-            Self::Gone => return ExitCode::SUCCESS,
-        };
-        say_all(reports);
-        ExitCode::from(code)
+    /// The exit code that says it.
+    pub fn code(&self) -> ExitCode {
+        ExitCode::from(match self {
+            Self::Gone => 0,
+            Self::No(_) => 1,
+            Self::Input(_) => 2,
+            Self::Undecided(_) => 3,
+            Self::Interrupted(_) => interrupt::EXIT_CODE,
+        })
+    }
+
+    /// Says it on stderr.
+    pub fn say(self) {
+        match self {
+            Self::Input(reports)
+            | Self::No(reports)
+            | Self::Undecided(reports)
+            | Self::Interrupted(reports) => say_all(reports),
+            Self::Gone => {}
+        }
     }
 }
 
 impl From<Problems> for Failure {
     fn from(problems: Problems) -> Self {
-        Self::Input(problems.into_iter().map(Report::new).collect())
+        let is_interrupted = problems.is_interrupted();
+        let reports = problems.into_iter().map(Report::new).collect();
+        if is_interrupted { Self::Interrupted(reports) } else { Self::Input(reports) }
     }
 }
 
@@ -144,13 +167,53 @@ pub fn say<'a>(problems: impl IntoIterator<Item = &'a Problem>) {
 fn say_all(reports: Vec<Report>) {
     // Nobody can be told that stderr is gone.
     let mut err = io::stderr().lock();
-    let rest = reports.len().saturating_sub(MOST_SHOWN);
-    for report in reports.into_iter().take(MOST_SHOWN) {
-        let _ = writeln!(err, "{report:?}");
+    let groups = alike(reports);
+    let rest: usize = groups.iter().skip(MOST_SHOWN).map(Vec::len).sum();
+    for group in groups.iter().take(MOST_SHOWN) {
+        let shown = if group.len() < MANY_ALIKE { group.len() } else { 1 };
+        for report in &group[..shown] {
+            let _ = writeln!(err, "{report:?}");
+        }
+        if shown < group.len() {
+            let _ = writeln!(err, "  and {} more of this kind:", group.len() - shown);
+        }
+        for report in group[shown..].iter().take(MOST_SHOWN) {
+            let _ = writeln!(err, "    {}", in_a_line(report));
+        }
+        if group.len() > shown + MOST_SHOWN {
+            let _ = writeln!(err, "    …");
+        }
     }
     if rest > 0 {
         let _ = writeln!(err, "and {rest} more");
     }
+}
+
+/// So many problems of a kind are one message.
+const MANY_ALIKE: usize = 3;
+
+/// Problems that have code and hint in common, each beside the first of its kind.
+fn alike(reports: Vec<Report>) -> Vec<Vec<Report>> {
+    let kind = |report: &Report| {
+        (report.code().map(|code| code.to_string()), report.help().map(|help| help.to_string()))
+    };
+    let mut groups: Vec<Vec<Report>> = Vec::new();
+    for report in reports {
+        match groups.iter_mut().find(|group| kind(&group[0]) == kind(&report)) {
+            Some(group) => group.push(report),
+            None => groups.push(vec![report]),
+        }
+    }
+    groups
+}
+
+/// A problem with its place, without the line of the file.
+fn in_a_line(report: &Report) -> String {
+    let place = report.downcast_ref::<Problem>().and_then(|problem| {
+        let (line, column) = problem.line_column()?;
+        Some(format!("{}:{line}:{column}: ", problem.file()?))
+    });
+    place.unwrap_or_default() + &report.to_string()
 }
 
 /// Decides how problems are drawn: on a terminal in colour and in its width; elsewhere a sentence is a line, so that it

@@ -1,9 +1,10 @@
-//! The command `flexure`: arguments, printing, exit codes, progress. Everything else is in the library.
+//! The command `flexure`: arguments, printing, exit codes, progress, Ctrl-C. Everything else is in the library.
 
 mod args;
 mod commands;
 mod complaint;
 mod failure;
+mod interrupt;
 mod progress;
 
 use std::process::ExitCode;
@@ -29,11 +30,17 @@ fn main() -> ExitCode {
     let Cli { command, json, allow_outside, set } = cli;
     let outside = if allow_outside { Outside::Allowed } else { Outside::Refused };
     let reading = Reading { outside, changes: &set };
+    interrupt::install(json);
     let done = dispatch(command, reading, json);
+    interrupt::speak();
     let errors = done.as_ref().err().and_then(Failure::errors).filter(|_| json);
     match done.and(print::end(errors)) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(),
+        Err(failure) => {
+            let code = failure.code();
+            failure.say();
+            code
+        }
     }
 }
 
@@ -58,5 +65,7 @@ fn dispatch(command: Command, reading: Reading<'_>, json: bool) -> Result<(), Fa
         Command::Tune(options) => commands::tune(&options, reading, json),
         Command::Margins(options) => commands::margins(&options, reading, json),
         Command::List { kind } => commands::list(kind, json),
+        Command::Completions { shell } => commands::completions(shell, json),
+        Command::Man { folder } => commands::man(folder.as_deref(), json),
     }
 }

@@ -1,8 +1,7 @@
 //! Long jobs tell how far they are, and can be broken off.
 
 use std::ops::ControlFlow;
-
-use crate::files::Problems;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// What is told the fraction of a job that is done, and breaks it off by [`ControlFlow::Break`].
 pub type Progress<'a> = &'a (dyn Fn(f64) -> ControlFlow<()> + Sync);
@@ -15,10 +14,20 @@ pub fn unwatched(_: f64) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// Tells `progress` the fraction done.
-///
-/// # Errors
-/// [`Problems::interrupted`] if it breaks the job off.
-pub(crate) fn tell(progress: Progress<'_>, fraction: f64) -> Result<(), Problems> {
-    if progress(fraction).is_break() { Err(Problems::interrupted()) } else { Ok(()) }
+/// Parts of a job that are done side by side and count the same: the fraction done of the whole is their mean.
+#[derive(Debug)]
+pub(crate) struct Parts(Vec<AtomicU64>);
+
+impl Parts {
+    /// So many parts, of which nothing is done.
+    pub(crate) fn new(count: usize) -> Self {
+        Self((0..count).map(|_| AtomicU64::new(0.0_f64.to_bits())).collect())
+    }
+
+    /// The fraction done of the whole now that `fraction` of `part` is.
+    pub(crate) fn with(&self, part: usize, fraction: f64) -> f64 {
+        self.0[part].store(fraction.to_bits(), Ordering::Relaxed);
+        let done = self.0.iter().map(|part| f64::from_bits(part.load(Ordering::Relaxed)));
+        done.sum::<f64>() / self.0.len() as f64
+    }
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use flexure::files::{Reading, read_text};
-use flexure::prove::question::{Direct, Question, Region, SMALLEST_ERROR, prove};
+use flexure::prove::question::{Direct, Question, Region, SMALLEST_ERROR, prove_watched};
 use flexure::prove::standing::Standing;
 use flexure::prove::summary::ProofSummary;
 use flexure::report::{proof_table, write_certificate};
@@ -15,6 +15,7 @@ use serde::Serialize;
 use super::print;
 use crate::args::Certify;
 use crate::failure::{Failure, say};
+use crate::progress::Progress;
 
 /// A summary and where the certificate is.
 #[derive(Serialize)]
@@ -29,10 +30,13 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
     let scenario = load_scenario_with(&options.scenario, reading)?;
     say(&scenario.warnings);
     let question = question(options, &scenario)?;
-    let proof = prove(&scenario, &question)?;
+    let proof = {
+        let progress = Progress::of_one(&scenario.name);
+        prove_watched(&scenario, &question, &|fraction| progress.set(0, fraction))?
+    };
     let sampled = probe(&scenario)?;
     let summary = ProofSummary::new(&scenario, &proof, sampled.clone());
-    let file = match proof.verdict.proved() {
+    let file = match proof.verdict.proved().filter(|_| !proof.broken_off) {
         None => None,
         Some(certificate) => {
             let path = options
@@ -48,12 +52,18 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
     if json {
         print::json(&Outcome { summary, file })?;
     } else {
-        print::line(&proof_table(&summary))?;
+        if proof.broken_off {
+            print::line("broken off: what is here is proved, not all that was asked was looked at")?;
+        }
+        print::line(&proof_table(&summary, print::columns()))?;
         if let Some(file) = &file {
             print::line(&format!("wrote {}", file.display()))?;
         }
     }
-    ended
+    match ended {
+        Err(Failure::Undecided(reports)) if proof.broken_off => Err(Failure::Interrupted(reports)),
+        ended => ended,
+    }
 }
 
 /// Refuses to write over what is no certificate: a scenario, a pipe.

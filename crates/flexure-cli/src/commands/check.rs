@@ -109,7 +109,7 @@ fn show(verdict: &Verdict) -> Result<(), Failure> {
         counted(verdict.warnings.len(), "warning"),
     ))?;
     if let Some(rows) = robot {
-        print::line(&joint_table(rows))?;
+        print::line(&joint_table(rows, print::columns()))?;
         for Assumed { key, value, note } in assumed {
             print::line(&format!("assumed: {key} = {value}: {note}"))?;
         }
@@ -119,7 +119,7 @@ fn show(verdict: &Verdict) -> Result<(), Failure> {
             print::line(&format!("the reference is run along at {speed:.5} of its own speed"))?;
         }
         if !usage.is_empty() {
-            print::line(&usage_table(joints, usage))?;
+            print::line(&usage_table(joints, usage, print::columns()))?;
         }
     }
     if let Some(gains) = starting_gains {

@@ -3,8 +3,8 @@
 use flexure::compare::{Entrant, check_budget, entrants};
 use flexure::files::number::significant;
 use flexure::files::{Problems, Reading};
-use flexure::margins::{Margins as Found, margins as measured};
-use flexure::progress::unwatched;
+use flexure::margins::{Margins as Found, margins as margins_of};
+use flexure::progress::{PartProgress, Progress as Progressing};
 use flexure::report::margins_table;
 use flexure::scenario::{Scenario, load_scenario_with};
 use flexure::tune::tune;
@@ -13,6 +13,10 @@ use serde::Serialize;
 use super::print;
 use crate::args::Margins;
 use crate::failure::{Failure, say};
+use crate::progress::Progress;
+
+/// Runs that the margins of a loop take about: what a search for gains is weighed against.
+const RUNS: f64 = 60.0;
 
 /// The loops that were measured.
 #[derive(Serialize)]
@@ -25,30 +29,24 @@ pub fn margins(options: &Margins, reading: Reading<'_>, json: bool) -> Result<()
     let chosen = if options.controllers.is_empty() { Vec::new() } else { entrants(&options.controllers)? };
     let scenario = load_scenario_with(&options.scenario, reading)?;
     say(&scenario.warnings);
-    let loops = if chosen.is_empty() {
-        vec![measured(&scenario, &unwatched)?]
-    } else {
-        let tuned = |entrant: &Entrant| measured(&tuned(&scenario, *entrant, options)?, &unwatched);
-        chosen.iter().map(tuned).collect::<Result<_, Problems>>()?
+    let (loops, is_whole) = {
+        let each = [options.budget as f64, RUNS];
+        let weights = if chosen.is_empty() { vec![RUNS] } else { each.repeat(chosen.len()) };
+        let progress = Progress::new(&scenario.name, weights);
+        measured(&scenario, &chosen, options, &|part, fraction| progress.set(part, fraction))?
     };
+    let words = "broken off: as far as ≥ and ≤ say the loop was seen to hold";
     if json {
         print::json(&Outcome { loops: loops.clone() })?;
     } else {
-        print::line(&margins_table(&loops))?;
-        for found in &loops {
-            print::line(&format!(
-                "{} holds: it follows, with an rms error of at most {:.3} mrad and torques of at most {} N m\n\
-                 that change by at most {} N m (rms) a control period; {} runs",
-                found.law(),
-                1e3 * found.allowed_rms_e_l,
-                significant(found.allowed_max_u_m, 3),
-                significant(found.allowed_rms_torque_change, 3),
-                found.runs
-            ))?;
-            if let Some(sampled) = &found.sampled {
-                print::line(&sampled.line())?;
-            }
+        if !is_whole {
+            print::line(words)?;
         }
+        print::line(&margins_table(&loops, print::columns()))?;
+        loops.iter().try_for_each(show)?;
+    }
+    if !is_whole {
+        return Err(Failure::interrupted(words.to_owned(), "what is not there was not measured"));
     }
     let objections: Vec<_> = loops.iter().filter_map(|found| found.objection(&scenario)).collect();
     if objections.is_empty() {
@@ -57,10 +55,57 @@ pub fn margins(options: &Margins, reading: Reading<'_>, json: bool) -> Result<()
     Err(Failure::No(objections.into_iter().map(Into::into).collect()))
 }
 
+/// What the table does not say.
+fn show(found: &Found) -> Result<(), Failure> {
+    print::line(&format!(
+        "{} holds: it follows, with an rms error of at most {} mrad and torques of at most {} N m that change by at most {} N m \
+         (rms) a control period; {} runs",
+        found.law(),
+        significant(1e3 * found.allowed_rms_e_l, 3),
+        significant(found.allowed_max_u_m, 3),
+        significant(found.allowed_rms_torque_change, 3),
+        found.runs
+    ))?;
+    found.sampled.as_ref().map_or(Ok(()), |sampled| print::line(&sampled.line()))
+}
+
+/// The margins of the scenario's loop, or of those of `chosen`, and whether that is all of them; of what was broken off the loops
+/// that were measured.
+fn measured(
+    scenario: &Scenario,
+    chosen: &[Entrant],
+    options: &Margins,
+    progress: PartProgress<'_>,
+) -> Result<(Vec<Found>, bool), Problems> {
+    if chosen.is_empty() {
+        let found = margins_of(scenario, &|fraction| progress(0, fraction))?;
+        let is_whole = !found.broken_off;
+        return Ok((vec![found], is_whole));
+    }
+    let mut loops = Vec::new();
+    for (i, entrant) in chosen.iter().enumerate() {
+        let found = tuned(scenario, *entrant, options, &|fraction| progress(2 * i, fraction))
+            .and_then(|scenario| margins_of(&scenario, &|fraction| progress(2 * i + 1, fraction)));
+        match found {
+            Err(problems) if problems.is_interrupted() && !loops.is_empty() => return Ok((loops, false)),
+            found => loops.push(found?),
+        }
+        if loops.last().is_some_and(|found| found.broken_off) {
+            return Ok((loops, false));
+        }
+    }
+    Ok((loops, true))
+}
+
 /// The scenario under another law, with the gains that the search finds.
-fn tuned(scenario: &Scenario, entrant: Entrant, options: &Margins) -> Result<Scenario, Problems> {
+fn tuned(
+    scenario: &Scenario,
+    entrant: Entrant,
+    options: &Margins,
+    progress: Progressing<'_>,
+) -> Result<Scenario, Problems> {
     let mut scenario = scenario.clone();
     scenario.controller = entrant.controller(&scenario.robot)?;
-    scenario.controller = tune(&scenario, options.budget, options.seed, &unwatched)?.controller;
+    scenario.controller = tune(&scenario, options.budget, options.seed, progress)?.controller;
     Ok(scenario)
 }

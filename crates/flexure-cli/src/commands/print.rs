@@ -3,10 +3,18 @@
 use std::io::{self, BufWriter, Write};
 use std::sync::{Mutex, PoisonError};
 
+use flexure::report::WIDTH;
 use serde::Serialize;
+use terminal_size::{Width, terminal_size_of};
+use textwrap::core::display_width;
+use textwrap::{Options, WordSeparator, WordSplitter};
 
 use crate::complaint::Errors;
 use crate::failure::Failure;
+use crate::interrupt;
+
+/// A terminal that says that it is narrower is not believed.
+const NARROWEST: usize = 40;
 
 /// The document of `--json`, kept until it is known how the command ends.
 static DOCUMENT: Mutex<Option<String>> = Mutex::new(None);
@@ -49,6 +57,7 @@ pub fn rows(rows: &[impl Serialize], as_one: bool) -> Result<(), Failure> {
     if as_one {
         return json(&rows);
     }
+    interrupt::speak();
     let mut out = BufWriter::new(io::stdout().lock());
     for row in rows {
         serde_json::to_writer(&mut out, row).map_err(io::Error::from)?;
@@ -59,10 +68,48 @@ pub fn rows(rows: &[impl Serialize], as_one: bool) -> Result<(), Failure> {
 
 /// Text that ends in a newline.
 pub fn text(text: &str) -> Result<(), Failure> {
+    interrupt::speak();
     Ok(write!(io::stdout(), "{text}")?)
 }
 
-/// A line of text.
+/// Lines of text, none wider than the terminal.
 pub fn line(text: &str) -> Result<(), Failure> {
-    Ok(writeln!(io::stdout(), "{text}")?)
+    interrupt::speak();
+    match terminal_width() {
+        Some(width) => Ok(writeln!(io::stdout(), "{}", wrapped(text, width))?),
+        None => Ok(writeln!(io::stdout(), "{text}")?),
+    }
+}
+
+/// Columns that a table may take: those of the terminal; elsewhere those that it is made for.
+pub fn columns() -> usize {
+    terminal_width().unwrap_or(WIDTH)
+}
+
+/// Columns of the terminal that stdout is, if it is one.
+fn terminal_width() -> Option<usize> {
+    terminal_size_of(io::stdout()).map(|(Width(columns), _)| usize::from(columns).max(NARROWEST))
+}
+
+/// Lines wrapped between words; what goes on begins below the text after a label, or two columns in.
+fn wrapped(text: &str, width: usize) -> String {
+    let lines = text.lines().map(|line| {
+        let indent = " ".repeat(hanging(line).min(width / 3));
+        let options = Options::new(width)
+            .subsequent_indent(&indent)
+            .break_words(false)
+            .word_separator(WordSeparator::AsciiSpace)
+            .word_splitter(WordSplitter::NoHyphenation);
+        if display_width(line) <= width { line.to_owned() } else { textwrap::fill(line, options) }
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+/// Where the text of a line begins: after its label, which two blanks end.
+fn hanging(line: &str) -> usize {
+    let inside = line.trim_start();
+    let begin = line.len() - inside.len();
+    let label =
+        inside.find("  ").map(|end| &inside[..end + inside[end..].chars().take_while(|c| *c == ' ').count()]);
+    begin + label.map_or(2, display_width)
 }

@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use flexure::files::prepare;
+use flexure::files::{Problems, prepare};
 use flexure::prove::summary::ProofSummary;
 use flexure::report::{certificate_table, summary_table};
 use flexure::reproduce::{
-    Certified, REPRODUCED, certificates, reproduce as experiments, write_certificates, write_experiment,
-    write_report,
+    Certified, Experiment, REPRODUCED, certificates, reproduce as experiments, write_certificates,
+    write_experiment, write_report,
 };
 use rayon::prelude::*;
 use serde::Serialize;
@@ -29,13 +29,21 @@ pub fn reproduce(out: &Path, json: bool) -> Result<(), Failure> {
     prepare(out)?;
     let experiments = {
         let name = format!("{} experiments", REPRODUCED.len());
-        let progress = Progress::new(&name, REPRODUCED.len());
+        let progress = Progress::new(&name, REPRODUCED.map(|_| 1.0));
         experiments(&|i, fraction| progress.set(i, fraction))?
     };
+    let (experiments, broken_off): (Vec<_>, Vec<_>) =
+        experiments.into_iter().partition(|experiment| experiment.run.broken_off.is_none());
     let files: Vec<_> = experiments
         .par_iter()
         .map(|experiment| write_experiment(out, experiment))
         .collect::<Result<_, _>>()?;
+    if experiments.is_empty() {
+        return Err(Problems::interrupted().into());
+    }
+    if !broken_off.is_empty() {
+        return interrupted(&experiments, files, json);
+    }
     let certified = certificates()?;
     let certificate_files = write_certificates(out, &certified)?;
     let report = write_report(out, &experiments, &certified)?;
@@ -44,9 +52,8 @@ pub fn reproduce(out: &Path, json: bool) -> Result<(), Failure> {
         let scenarios = experiments.iter().zip(files).map(|(e, files)| Outcome::new(e, files)).collect();
         print::json(&Reproduction { scenarios, certificates, certificate_files, report })?;
     } else {
-        let summaries: Vec<_> = experiments.iter().map(|e| e.run.summary.clone()).collect();
-        print::line(&summary_table(&summaries))?;
-        print::line(&certificate_table(&certificates))?;
+        print::line(&table(&experiments))?;
+        print::line(&certificate_table(&certificates, print::columns()))?;
         print::line(&format!(
             "wrote {}, and figures (svg, png), traces (csv) and certificates (json) beside it",
             report.display()
@@ -54,4 +61,28 @@ pub fn reproduce(out: &Path, json: bool) -> Result<(), Failure> {
     }
     let objections: Vec<_> = experiments.iter().flat_map(objections).map(Into::into).collect();
     if objections.is_empty() { Ok(()) } else { Err(Failure::No(objections)) }
+}
+
+/// The experiments that were finished.
+#[derive(Serialize)]
+struct Finished<'a> {
+    scenarios: Vec<Outcome<'a>>,
+}
+
+fn interrupted(experiments: &[Experiment], files: Vec<Vec<PathBuf>>, json: bool) -> Result<(), Failure> {
+    let message =
+        format!("broken off: {} of {} experiments were finished", experiments.len(), REPRODUCED.len());
+    if json {
+        let scenarios = experiments.iter().zip(files).map(|(e, files)| Outcome::new(e, files)).collect();
+        print::json(&Finished { scenarios })?;
+    } else {
+        print::line(&message)?;
+        print::line(&table(experiments))?;
+    }
+    Err(Failure::interrupted(message, "their traces and figures are written, no report is"))
+}
+
+fn table(experiments: &[Experiment]) -> String {
+    let summaries: Vec<_> = experiments.iter().map(|e| e.run.summary.clone()).collect();
+    summary_table(&summaries, print::columns())
 }

@@ -9,7 +9,7 @@ use flexure::imperfections::Imperfection;
 use flexure::report::summary_table;
 use flexure::reproduce::{Experiment, write_experiment};
 use flexure::sampled::{Sampled, not_looked_at};
-use flexure::scenario::load_scenario_with;
+use flexure::scenario::{Scenario, load_scenario_with};
 use flexure::simulate::{Cause, FaultLog, Following, Summary, exceeded, preload};
 use serde::Serialize;
 
@@ -53,17 +53,21 @@ pub fn run(scenario: &str, reading: Reading<'_>, out: &Path, json: bool) -> Resu
     let beyond = feasible::exceeded(&scenario, &feasible::usage(&scenario)?);
     prepare(out)?;
     let experiment = {
-        let progress = Progress::new(&scenario.name, 1);
+        let progress = Progress::of_one(&scenario.name);
         Experiment::new(scenario, &|fraction| progress.set(0, fraction))?
     };
     let files = write_experiment(out, &experiment)?;
+    let broken_off = experiment.run.broken_off.map(|time| broken_off(&experiment.scenario, time));
     if experiment.run.divergence.is_none() {
         say(&exceeded(&experiment.scenario.robot, &experiment.run.trace));
     }
     if json {
         print::json(&Outcome::new(&experiment, files))?;
     } else {
-        print::line(&summary_table(std::slice::from_ref(&experiment.run.summary)))?;
+        if let Some(words) = &broken_off {
+            print::line(words)?;
+        }
+        print::line(&summary_table(std::slice::from_ref(&experiment.run.summary), print::columns()))?;
         if let Some(line) = summary_line(&experiment.run.summary) {
             print::line(&line)?;
         }
@@ -71,16 +75,30 @@ pub fn run(scenario: &str, reading: Reading<'_>, out: &Path, json: bool) -> Resu
         if let Some(line) = sampled.or_else(|| not_looked_at(&experiment.scenario)) {
             print::line(&line)?;
         }
-        print::line(&verdict(&experiment.run.summary.following))?;
+        if broken_off.is_none() {
+            print::line(&verdict(&experiment.run.summary.following))?;
+        }
         for file in &files {
             print::line(&format!("wrote {}", file.display()))?;
         }
+    }
+    if let Some(words) = broken_off {
+        return Err(Failure::interrupted(
+            words,
+            "summary, trace and figure end there; whether it follows is not known",
+        ));
     }
     let answers: Vec<Problem> = objections(&experiment).into_iter().chain(beyond).collect();
     if answers.is_empty() {
         return Ok(());
     }
     Err(Failure::No(answers.into_iter().map(Into::into).collect()))
+}
+
+/// That a run was broken off, and when.
+fn broken_off(scenario: &Scenario, time: f64) -> String {
+    let [time, end] = [time, scenario.duration].map(|seconds| short(seconds, 4));
+    format!("{}: broken off at t = {time} s of {end} s", scenario.name)
 }
 
 /// What the table does not say of a real loop.

@@ -1,27 +1,84 @@
 //! `flexure tune`: gains for a scenario.
 
-use flexure::design::{Design, SpecFile, Specified, check_budget, design};
-use flexure::files::Reading;
+use std::path::{Path, PathBuf};
+
+use flexure::design::{Design, SpecFile, Specified, check_out, design};
+use flexure::files::number::short;
+use flexure::files::{Reading, prepare, write_atomic};
+use flexure::report::{constraints_table, gains_table, margins_table, trades_table};
+use serde::Serialize;
 
 use super::print;
 use crate::args::Tune;
 use crate::failure::{Failure, say};
 use crate::progress::Progress;
 
+/// What was found and where the scenario is.
+#[derive(Serialize)]
+struct Outcome<'a> {
+    #[serde(flatten)]
+    design: &'a Design,
+    file: Option<&'a Path>,
+}
+
 pub fn tune(options: &Tune, reading: Reading<'_>, json: bool) -> Result<(), Failure> {
-    check_budget(options.budget)?;
+    flexure::compare::check_budget(options.budget)?;
     let spec = options.spec.as_deref().map_or_else(|| Ok(SpecFile::usual()), SpecFile::load)?;
     let specified = Specified::load(&options.scenario, reading, &spec)?;
+    let scenario = &specified.scenarios[0];
     say(specified.scenarios.iter().flat_map(|scenario| &scenario.warnings));
-    let found: Design = {
-        let progress = Progress::new(&specified.scenarios[0].name, 1);
+    let out = options.out.clone().unwrap_or_else(|| beside(&options.scenario, &scenario.name));
+    check_out(&out, &[Some(Path::new(&options.scenario)), options.spec.as_deref()])?;
+    specified.belongs(&out, reading.outside)?;
+    prepare(out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")))?;
+    let found = {
+        let progress = Progress::of_one(&scenario.name);
         design(&specified, &spec, options.budget, options.seed, &|fraction| progress.set(0, fraction))?
     };
-    if json {
-        print::json(&found)?;
-    } else {
-        print::line(&format!("{found:#?}"))?;
+    let file = found.feasible.then_some(out.as_path());
+    if let Some(file) = file {
+        let text = specified.with(&found.controller, &found.comment());
+        write_atomic(file, |out| out.write_all(text.as_bytes()))?;
     }
-    print::line(&specified.with(&found.controller, "tuned"))?;
-    Ok(())
+    if json {
+        print::json(&Outcome { design: &found, file })?;
+    } else {
+        let joints: Vec<String> = scenario.robot.joints.iter().map(|joint| joint.name.clone()).collect();
+        show(&found, &joints)?;
+        if let Some(file) = file {
+            print::line(&format!("wrote {}", file.display()))?;
+        }
+    }
+    if found.broken_off {
+        let words = if found.feasible {
+            "broken off: the gains are the best so far, and keep every constraint that was looked at"
+        } else {
+            "broken off: no gains keep every constraint so far"
+        };
+        return Err(Failure::interrupted(words.to_owned(), "without Ctrl-C the search goes on, and margins are measured"));
+    }
+    found.objection(scenario).map_or(Ok(()), |problem| Err(Failure::No(vec![problem.into()])))
+}
+
+/// `NAME-tuned.toml` in the folder of the scenario; of a built-in one, in the current folder.
+fn beside(scenario: &str, name: &str) -> PathBuf {
+    Path::new(scenario).with_file_name(format!("{name}-tuned.toml"))
+}
+
+fn show(found: &Design, joints: &[String]) -> Result<(), Failure> {
+    let width = print::columns();
+    print::line(&gains_table(joints, found, width))?;
+    print::line(&trades_table(&found.gains, width))?;
+    print::line(&constraints_table(&found.constraints, width))?;
+    if let Some(margins) = &found.evidence.margins {
+        print::line(&margins_table(std::slice::from_ref(margins), width))?;
+    }
+    let evidence = &found.evidence;
+    if let Some(sampled) = &evidence.sampled {
+        print::line(&sampled.line())?;
+    }
+    if let (Some(verdict), Some(rate)) = (evidence.verdict, evidence.rate_certified) {
+        print::line(&format!("contraction rate: {} 1/s, {verdict}", short(rate, 4)))?;
+    }
+    print::line(&format!("{} loops were run in the search", found.runs))
 }

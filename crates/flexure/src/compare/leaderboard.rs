@@ -34,6 +34,9 @@ pub struct Leaderboard {
     pub ranking: Vec<Standing>,
     /// The tasks, in the order that they were given in.
     pub tasks: Vec<TaskScores>,
+    /// Of a comparison that was broken off, tasks that some of the laws were finished on, with those; no part of the ranking.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub unfinished: Vec<TaskScores>,
 }
 
 /// A task and how every law did on it.
@@ -72,7 +75,7 @@ pub struct Loss<'a> {
 impl Leaderboard {
     /// Ranks the laws, which are the same in the same order on every task.
     pub fn new(budget: usize, seed: u64, tasks: Vec<TaskScores>) -> Self {
-        Self { budget, seed, ranking: standings(&tasks), tasks }
+        Self { budget, seed, ranking: standings(&tasks), tasks, unfinished: Vec::new() }
     }
 
     /// The laws in the order that they were given in.

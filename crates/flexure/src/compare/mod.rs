@@ -12,14 +12,12 @@ mod ranking;
 mod score;
 mod task;
 
-use std::ops::ControlFlow;
-
 use rayon::prelude::*;
 
 use crate::files::{Problem, Problems};
 use crate::progress::{PartProgress, Progress};
 use crate::sampled::probe;
-use crate::simulate::measure;
+use crate::simulate::{Criteria, measure_watched};
 use crate::tune::{Costs, has_random_points, tune_from};
 
 pub use entrant::{Entrant, entrants};
@@ -51,10 +49,11 @@ impl Default for Search {
     }
 }
 
-/// Compares laws on tasks, on all cores. `progress` is told how far each pair of task and law is, by its number, task by task.
+/// Compares laws on tasks, on all cores. `progress` is told how far each pair of task and law is, by its number, task by task. What
+/// it breaks off has what was finished until then: see [`Leaderboard::unfinished`].
 ///
 /// # Errors
-/// If a task can be run with no law at all. A law that cannot run a task that others can is in the leaderboard, with why.
+/// If a task can be run with no law at all, and [`Problems::interrupted`] if no pair was finished. A law that cannot run a task that others can is in the leaderboard, with why.
 pub fn compare(
     tasks: &[Task],
     entrants: &[Entrant],
@@ -63,33 +62,34 @@ pub fn compare(
 ) -> Result<Leaderboard, Problems> {
     let pairs: Vec<(&Task, &Entrant)> =
         tasks.iter().flat_map(|task| entrants.iter().map(move |entrant| (task, entrant))).collect();
-    let tried: Vec<Result<Score, Problems>> = pairs
-        .par_iter()
-        .enumerate()
-        .map(|(number, (task, entrant))| {
-            let score = score(task, **entrant, search, &|fraction| progress(number, fraction));
-            match progress(number, 1.0) {
-                ControlFlow::Continue(()) => score,
-                ControlFlow::Break(()) => Err(Problems::interrupted()),
-            }
-        })
-        .collect();
-    if let Some(Err(broken_off)) = tried.iter().find(|score| is_interrupted(score)) {
-        return Err(broken_off.clone());
+    let watched = |(number, (task, entrant)): (usize, &(&Task, &Entrant))| {
+        if progress(number, 0.0).is_break() {
+            return (number, Err(Problems::interrupted()));
+        }
+        let score = score(task, **entrant, search, &|fraction| progress(number, fraction));
+        // It is finished, whoever watches.
+        let _ = progress(number, 1.0);
+        (number, score)
+    };
+    // Begun one after the other: what is finished when it is broken off is whole tasks, but for the last.
+    let mut tried: Vec<_> = pairs.iter().enumerate().par_bridge().map(watched).collect();
+    tried.sort_by_key(|(number, _)| *number);
+    let mut tried = tried.into_iter().map(|(_, score)| score);
+    let (mut scored, mut unfinished) = (Vec::new(), Vec::new());
+    for task in tasks {
+        let of_task = entrants.iter().zip(tried.by_ref());
+        let (of_task, broken): (Vec<_>, Vec<_>) =
+            of_task.partition(|(_, score)| !score.as_ref().is_err_and(Problems::is_interrupted));
+        let is_whole = broken.is_empty();
+        if is_whole || !of_task.is_empty() {
+            let found = TaskScores::new(task, finished(of_task)?);
+            (if is_whole { &mut scored } else { &mut unfinished }).push(found);
+        }
     }
-    let mut tried = tried.into_iter();
-    let scored: Result<Vec<TaskScores>, Problems> = tasks
-        .iter()
-        .map(|task| {
-            let of_task: Vec<_> = tried.by_ref().take(entrants.len()).collect();
-            Ok(TaskScores::new(task, finished(entrants, of_task)?))
-        })
-        .collect();
-    Ok(Leaderboard::new(search.budget, search.seed, scored?))
-}
-
-fn is_interrupted(score: &Result<Score, Problems>) -> bool {
-    score.as_ref().is_err_and(Problems::is_interrupted)
+    if scored.is_empty() && unfinished.is_empty() && !pairs.is_empty() {
+        return Err(Problems::interrupted());
+    }
+    Ok(Leaderboard { unfinished, ..Leaderboard::new(search.budget, search.seed, scored) })
 }
 
 /// A law on a task, with the gains that the search finds with each seed.
@@ -111,7 +111,8 @@ fn score(task: &Task, entrant: Entrant, search: Search, progress: Progress<'_>) 
         let tuned = tune_from(&scenario, search.budget, seed, &costs, &part)?;
         let mut best = scenario.clone();
         best.controller = tuned.controller.clone();
-        found.push((seed, tuned, measure(&best)?));
+        let run = measure_watched(&best, &Criteria::of(&best)?, &|_| part(1.0))?;
+        found.push((seed, tuned, run));
     }
     Score::new(&entrant.name(), &found, |controller| {
         scenario.controller = controller.clone();
@@ -120,9 +121,9 @@ fn score(task: &Task, entrant: Entrant, search: Search, progress: Progress<'_>) 
 }
 
 /// The scores of a task; why it has none if no law could run it.
-fn finished(entrants: &[Entrant], tried: Vec<Result<Score, Problems>>) -> Result<Vec<Score>, Problems> {
-    let all_failed = tried.iter().all(Result::is_err);
-    let scores = entrants.iter().zip(tried).map(|(entrant, score)| match score {
+fn finished(tried: Vec<(&Entrant, Result<Score, Problems>)>) -> Result<Vec<Score>, Problems> {
+    let all_failed = tried.iter().all(|(_, score)| score.is_err());
+    let scores = tried.into_iter().map(|(entrant, score)| match score {
         Err(problems) if !all_failed => Ok(Score::failed(&entrant.name(), &problems.to_string())),
         score => score,
     });

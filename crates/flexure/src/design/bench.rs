@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::design::constraint::Constraint;
+use crate::design::search::Watch;
 use crate::design::spec::Spec;
 use crate::feasible;
 use crate::files::Problems;
@@ -11,7 +12,7 @@ use crate::laws::Controller;
 use crate::margins::Change;
 use crate::sampled::Outlook;
 use crate::scenario::Scenario;
-use crate::simulate::{Criteria, Run, measure_by};
+use crate::simulate::{Criteria, Run, measure_watched};
 use crate::tune::penalised_error;
 
 /// The loops that gains are tried in.
@@ -29,6 +30,7 @@ pub(super) struct Bench {
 struct Corner {
     /// What it is, in words.
     what: String,
+    change: Change,
     /// The loop under each reference with it.
     scenarios: Vec<Scenario>,
 }
@@ -37,6 +39,8 @@ struct Corner {
 pub(super) struct Outlooks<'a> {
     nominal: Vec<Outlook<'a>>,
     corners: Vec<Vec<Outlook<'a>>>,
+    /// The corner with more delay, if there is one.
+    late: Option<usize>,
 }
 
 /// Gains that were tried.
@@ -73,7 +77,7 @@ impl Bench {
         let criteria = scenarios.iter().map(Criteria::of).collect::<Result<_, _>>()?;
         let corner = |(what, change): (String, Change)| {
             let changed = scenarios.iter().map(|scenario| change.of(scenario)).collect();
-            Corner { what, scenarios: changed }
+            Corner { what, change, scenarios: changed }
         };
         let corners = wanted(scenarios[0].control_period, spec).into_iter().map(corner).collect();
         let at_limit = scenarios[0].accept.at_limit.unwrap_or(0.0);
@@ -88,9 +92,10 @@ impl Bench {
         fn of(scenarios: &[Scenario]) -> Result<Vec<Outlook<'_>>, Problems> {
             scenarios.par_iter().map(Outlook::new).collect()
         }
-        let corners =
-            self.corners.par_iter().map(|corner| of(&corner.scenarios)).collect::<Result<_, _>>()?;
-        Ok(Outlooks { nominal: of(&self.scenarios)?, corners })
+        let corners = self.corners.par_iter().map(|corner| of(&corner.scenarios)).collect::<Result<_, _>>()?;
+        let is_late = |corner: &Corner| matches!(corner.change, Change::Delay(more) if more > 0.0);
+        let late = self.corners.iter().position(is_late);
+        Ok(Outlooks { nominal: of(&self.scenarios)?, corners, late })
     }
 
     /// Tries `controller`; `cost` makes one of the error in rad of a loop that keeps its constraints. Corners are looked at where it
@@ -104,15 +109,15 @@ impl Bench {
         controller: Controller,
         cost: impl Fn(f64) -> f64,
         best: f64,
+        watch: &Watch<'_>,
     ) -> Result<Trial, Problems> {
         let radius = outlooks.nominal(&controller);
-        let mut constraints =
-            vec![Constraint::radius("small errors shrink in the sampled loop".to_owned(), radius)];
+        let mut constraints = vec![Constraint::radius("small errors shrink in the sampled loop".to_owned(), radius)];
         if !constraints[0].is_kept() {
             let cost = UNSTABLE + bounded(radius - 1.0);
             return Ok(Trial { controller, cost, constraints, runs: Vec::new() });
         }
-        let runs = self.runs(&self.scenarios, &controller)?;
+        let runs = self.runs(&self.scenarios, &controller, watch)?;
         if let Some(divergence) = runs.iter().find_map(|run| run.divergence) {
             let cost = DIVERGED + bounded(1.0 / (divergence.time + 1e-3));
             return Ok(Trial { controller, cost, constraints, runs });
@@ -140,9 +145,9 @@ impl Bench {
     ///
     /// # Errors
     /// As [`Scenario::open`].
-    pub fn lost_at(&self, controller: &Controller) -> Result<Vec<Constraint>, Problems> {
+    pub fn lost_at(&self, controller: &Controller, watch: &Watch<'_>) -> Result<Vec<Constraint>, Problems> {
         let lost = |corner: &Corner| {
-            let runs = self.runs(&corner.scenarios, controller)?;
+            let runs = self.runs(&corner.scenarios, controller, watch)?;
             let reason = runs.iter().flat_map(|run| &run.summary.following.reasons).next();
             Ok(reason.map(|reason| Constraint::lost(&corner.what, &reason.words)))
         };
@@ -155,22 +160,39 @@ impl Bench {
         self.scenarios.iter().map(|scenario| scenario.under(controller)).collect()
     }
 
-    fn runs(&self, scenarios: &[Scenario], controller: &Controller) -> Result<Vec<Run>, Problems> {
-        let loops: Vec<_> = scenarios.iter().map(|scenario| scenario.under(controller)).collect();
-        loops.par_iter().zip(&self.criteria).map(|(own, criteria)| measure_by(own, criteria)).collect()
+    fn runs(
+        &self,
+        scenarios: &[Scenario],
+        controller: &Controller,
+        watch: &Watch<'_>,
+    ) -> Result<Vec<Run>, Problems> {
+        let one = |(scenario, criteria): (&Scenario, &Criteria)| {
+            measure_watched(&scenario.under(controller), criteria, &|_| watch.go_on())
+        };
+        scenarios.par_iter().zip(&self.criteria).map(one).collect()
     }
 }
 
 impl Outlooks<'_> {
-    /// Largest spectral radius of the loops under `controller`.
+    /// By what small errors grow in the loops under `controller` in a control period, at most.
     pub fn nominal(&self, controller: &Controller) -> f64 {
         largest(self.nominal.iter(), controller)
+    }
+
+    /// A first idea of that, with the delay that they shall bear beyond their own.
+    pub fn first_idea(&self, controller: &Controller) -> f64 {
+        let late = self.late.map_or(&[][..], |late| &self.corners[late]);
+        whole(self.nominal.iter().chain(late).map(|outlook| outlook.first_idea(controller)))
     }
 }
 
 /// Those that are not looked at count as stable; what is no number does not.
 fn largest<'a>(outlooks: impl Iterator<Item = &'a Outlook<'a>>, controller: &Controller) -> f64 {
-    let radii = outlooks.map(|outlook| outlook.radius(controller).unwrap_or(0.0));
+    whole(outlooks.map(|outlook| outlook.growth(controller)))
+}
+
+fn whole(radii: impl Iterator<Item = Option<f64>>) -> f64 {
+    let radii = radii.map(|radius| radius.unwrap_or(0.0));
     radii.map(|radius| if radius.is_nan() { f64::INFINITY } else { radius }).fold(0.0, f64::max)
 }
 

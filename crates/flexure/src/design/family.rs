@@ -4,6 +4,10 @@ use crate::design::least::Least;
 use crate::laws::{Controller, Drive, VcbcGains};
 
 /// A law whose gains follow from a few logarithms: the first makes the whole loop faster, the others are factors on single gains.
+///
+/// The metric of the motors of v-CBC may besides be balanced: motor errors are exchanged with link momenta at K / √(Π_m m), with motor
+/// momenta at √(Π_m / M_m), and both are equally fast where Π_m = K √(M_m / m), m being the links with the other joints free. The last
+/// number is the power of that root, joint by joint.
 #[derive(Clone, Debug)]
 pub(super) struct Family {
     base: Controller,
@@ -11,10 +15,9 @@ pub(super) struct Family {
     powers: Vec<i32>,
     /// The gains that have a factor of their own.
     own: Vec<usize>,
-    /// What proves a rate, for v-CBC.
+    /// What proves a rate, for v-CBC of which one is asked.
     least: Option<Least>,
-    /// Of v-CBC, the logarithm of √(M_m / m) of each joint, m its links with the other joints free: with that factor on the motor's metric
-    /// motor errors are exchanged with link momenta as fast as with motor momenta.
+    /// Of each joint the logarithm of √(M_m / m).
     balance: Vec<f64>,
 }
 
@@ -29,82 +32,82 @@ pub(super) enum Pace {
     Proved,
 }
 
-/// The metric of the motors.
+/// Gains of v-CBC by their keys: shaping follows from the speed.
 const EXCHANGE: &str = "motor.metric";
-
-/// Gains of v-CBC that have a factor of their own: the metrics, which no rate depends on. Shaping and damping follow from the speed.
-const METRICS: &str = ".metric";
+const MOTOR_DAMPING: &str = "motor.damping";
+const OWN: [&str; 4] = ["link.metric", "link.damping", EXCHANGE, MOTOR_DAMPING];
 
 impl Family {
-    /// Around `base`; `least` says what proves a rate.
+    /// Around `base`, for joints that move `drives`; `least` says what proves a rate.
     pub fn new(base: Controller, least: Option<Least>, drives: &[Drive]) -> Self {
-        let balance =
-            drives.iter().map(|drive| 0.5 * (drive.motor_inertia / drive.free_inertia).ln()).collect();
-        let gains = base.gains();
         let is_vcbc = matches!(base, Controller::Vcbc(_));
-        let is_own = |path: &str| !is_vcbc || path.ends_with(METRICS);
+        let gains = base.gains();
+        let is_own = |path: &str| !is_vcbc || OWN.contains(&path);
         let own = gains.iter().enumerate().filter(|(_, (path, _))| is_own(path)).map(|(i, _)| i).collect();
         let powers = base.speed_powers();
+        let balance =
+            drives.iter().map(|drive| 0.5 * (drive.motor_inertia / drive.free_inertia).ln()).collect();
         Self { base, powers, own, least, balance }
     }
 
     /// Numbers that a member follows from.
     pub fn dimension(&self) -> usize {
-        1 + self.own.len() + usize::from(self.exchange().is_some())
+        1 + self.own.len() + usize::from(self.is_vcbc())
     }
 
-    /// Which of them says how far the metrics of the motors are balanced, if there is one.
-    pub fn balance(&self) -> Option<usize> {
-        self.exchange().map(|_| 1 + self.own.len())
+    /// Whether it is of v-CBC.
+    pub fn is_vcbc(&self) -> bool {
+        matches!(self.base, Controller::Vcbc(_))
     }
 
-    /// Which of them is the factor of a motor's metric, if there is one: that of the exchange between motor errors and link momenta.
-    pub fn exchange(&self) -> Option<usize> {
-        let gains = self.base.gains();
-        self.own.iter().position(|&gain| gains[gain].0 == EXCHANGE).map(|i| 1 + i)
+    /// A member's numbers: how fast, and, of v-CBC, the factors on metric and damping of the motors, and the power of the balance.
+    pub fn numbers(&self, speed: f64, [metric, damping, balance]: [f64; 3]) -> Vec<f64> {
+        let mut x = vec![0.0; self.dimension()];
+        x[0] = speed;
+        if self.is_vcbc() {
+            let gains = self.base.gains();
+            for (i, gain) in self.own.iter().enumerate() {
+                match gains[*gain].0.as_str() {
+                    EXCHANGE => x[1 + i] = metric,
+                    MOTOR_DAMPING => x[1 + i] = damping,
+                    _ => {}
+                }
+            }
+            x[1 + self.own.len()] = balance;
+        }
+        x
     }
 
     /// The member at `x`.
     pub fn at(&self, x: &[f64], pace: Pace) -> Controller {
-        let (first, own) = x.split_first().expect("at least the speed");
-        let speed = if pace == Pace::Proved { self.ratio(*first) } else { *first };
+        let speed = if pace == Pace::Proved { x[0] - self.base_rate() } else { x[0] };
         let gains = self.base.gains();
-        let mut values: Vec<Vec<f64>> = Vec::with_capacity(gains.len());
-        for (gain, ((_, base), power)) in gains.iter().zip(&self.powers).enumerate() {
-            let factor = self.own.iter().position(|own| *own == gain).map_or(0.0, |i| own[i]);
-            let factor = (f64::from(*power) * speed + factor).exp();
-            let balanced = |joint: usize| match self.balance() {
-                Some(balance) if gains[gain].0 == EXCHANGE => (x[balance] * self.balance[joint]).exp(),
-                _ => 1.0,
-            };
-            values.push(base.iter().enumerate().map(|(i, value)| value * factor * balanced(i)).collect());
-        }
-        let member = self.base.with_gains(&values);
+        let member = gains.iter().zip(&self.powers).enumerate().map(|(gain, ((path, base), power))| {
+            let factor = self.own.iter().position(|own| *own == gain).map_or(0.0, |i| x[1 + i]);
+            let factor = f64::from(*power) * speed + factor;
+            let balance = if path == EXCHANGE { x[1 + self.own.len()] } else { 0.0 };
+            let balanced = |(value, root): (&f64, &f64)| value * (factor + balance * root).exp();
+            base.iter().zip(&self.balance).map(balanced).collect()
+        });
+        let member = self.base.with_gains(&member.collect::<Vec<Vec<f64>>>());
         match (member, &self.least, pace) {
             (Controller::Vcbc(gains), Some(least), Pace::AtLeast(rate)) => {
                 Controller::Vcbc(Box::new(least.raised(&gains, rate)))
             }
             (Controller::Vcbc(gains), Some(least), Pace::Proved) => {
-                Controller::Vcbc(Box::new(least.exactly(&gains, first.exp())))
+                Controller::Vcbc(Box::new(least.exactly(&gains, x[0].exp())))
             }
             (member, ..) => member,
         }
     }
 
-    /// The speed at which the slowest joint of the base has the rate of this logarithm: metrics belong to it.
-    fn ratio(&self, rate: f64) -> f64 {
-        let Controller::Vcbc(gains) = &self.base else { return rate };
-        rate - slowest(gains).ln()
-    }
-
-    /// The logarithm of the rate that members at speed zero shape their errors with.
+    /// The logarithm of the rate that members at speed 0 shape their errors with: the smallest Λ of the links [1/s].
     pub fn base_rate(&self) -> f64 {
         let Controller::Vcbc(gains) = &self.base else { return 0.0 };
-        slowest(gains).ln()
+        smallest(gains).ln()
     }
 }
 
-/// The smallest Λ of the links [1/s].
-fn slowest(gains: &VcbcGains) -> f64 {
+fn smallest(gains: &VcbcGains) -> f64 {
     gains.link.shaping.iter().copied().fold(f64::INFINITY, f64::min)
 }

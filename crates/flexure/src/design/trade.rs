@@ -4,6 +4,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::design::bench::{Bench, Outlooks, Trial};
+use crate::design::search::Watch;
 use crate::files::Problems;
 use crate::laws::Controller;
 
@@ -14,7 +15,7 @@ pub struct Trade {
     pub gain: String,
     /// Its values, a joint each.
     pub values: Vec<f64>,
-    /// What becomes of the loop; none if it is unstable as sampled then, or diverges.
+    /// What becomes of the loop; none if it is unstable as sampled then, or diverges, or nobody waited for it.
     pub effect: Option<Effect>,
 }
 
@@ -34,13 +35,25 @@ pub struct Effect {
 /// How much more of a gain is tried.
 pub(super) const MORE: f64 = 1.25;
 
-/// What each gain of `controller`, which was tried as `trial`, trades.
-pub(super) fn trades(bench: &Bench, outlooks: &Outlooks<'_>, trial: &Trial) -> Result<Vec<Trade>, Problems> {
+/// What each gain that was on `trial` trades.
+///
+/// # Errors
+/// As [`Scenario::open`](crate::Scenario::open).
+pub(super) fn trades(
+    bench: &Bench,
+    outlooks: &Outlooks<'_>,
+    trial: &Trial,
+    watch: &Watch<'_>,
+) -> Result<Vec<Trade>, Problems> {
     let gains = trial.controller.gains();
     let one = |(number, (gain, values)): (usize, &(String, &[f64]))| {
         let more = trial.controller.with_gain(number, MORE);
-        let other = bench.try_out(outlooks, more.clone(), f64::ln, f64::NEG_INFINITY)?;
-        let effect = figures(&other).zip(figures(trial)).map(|(after, before)| Effect {
+        let other = match bench.try_out(outlooks, more.clone(), f64::ln, f64::NEG_INFINITY, watch) {
+            Err(problems) if problems.is_interrupted() => None,
+            other => Some(other?),
+        };
+        let after = other.as_ref().and_then(figures);
+        let effect = after.zip(figures(trial)).map(|(after, before)| Effect {
             error: after[0] / before[0],
             torque: after[1] / before[1],
             chatter: after[2] / before[2],

@@ -48,6 +48,9 @@ pub(crate) fn find(
     what: &str,
 ) -> Result<&'static str, Problem> {
     registry.iter().find(|(known, _)| *known == name).map(|&(_, text)| text).ok_or_else(|| {
+        if let Some(problem) = of_other_kind(name) {
+            return problem;
+        }
         let message = format!("no built-in {what} is called {}", suggest::quoted(name));
         let help = if Path::new(name).exists() {
             format!("for the file or folder of that name write ./{name}")
@@ -57,4 +60,57 @@ pub(crate) fn find(
         };
         Problem::new("unknown-name", message, help)
     })
+}
+
+/// What to say of a `name` that is one of a robot where a scenario is expected, or the other way round.
+fn of_other_kind(name: &str) -> Option<Problem> {
+    let scenarios = || SCENARIOS.iter().chain(TASKS);
+    let has = |text: &str, robot: &str| robot_of(text).is_some_and(|found| found == robot);
+    if ROBOTS.iter().any(|(known, _)| *known == name) {
+        let with: Vec<&str> =
+            scenarios().filter(|(_, text)| has(text, name)).map(|(scenario, _)| *scenario).collect();
+        let help = match with.as_slice() {
+            [] => format!("no built-in scenario has it; in a file of yours: robot = \"{name}\""),
+            with => format!(
+                "built-in scenarios with it: {}; in a file of yours: robot = \"{name}\"",
+                with.join(", ")
+            ),
+        };
+        return Some(Problem::new("wrong-kind", format!("'{name}' is a robot, must be a scenario"), help));
+    }
+    let (_, text) = scenarios().find(|(known, _)| *known == name)?;
+    let help = robot_of(text).map_or_else(String::new, |robot| format!("its robot is {robot}"));
+    Some(Problem::new("wrong-kind", format!("'{name}' is a scenario, must be a robot"), help))
+}
+
+/// The robot that the text of a built-in scenario names.
+fn robot_of(text: &str) -> Option<&str> {
+    let line = text.lines().find_map(|line| line.strip_prefix("robot = \""))?;
+    line.split('"').next()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{ROBOTS, SCENARIOS, TASKS, find, robot_of};
+
+    #[test]
+    fn robots_and_scenarios_are_told_apart() {
+        for (name, text) in SCENARIOS.iter().chain(TASKS) {
+            let robot = robot_of(text).expect("a robot");
+            assert!(ROBOTS.iter().any(|(known, _)| *known == robot), "{name}: {robot}");
+            let problem = find(robot, SCENARIOS, "scenario").expect_err("a robot");
+            assert!(
+                problem.code_word() == "wrong-kind" && problem.hint().contains(name),
+                "{}",
+                problem.hint()
+            );
+            let problem = find(name, ROBOTS, "robot").expect_err("a scenario");
+            assert!(
+                problem.code_word() == "wrong-kind" && problem.hint().ends_with(robot),
+                "{}",
+                problem.hint()
+            );
+        }
+        assert_eq!(find("pand", ROBOTS, "robot").expect_err("neither").code_word(), "unknown-name");
+    }
 }

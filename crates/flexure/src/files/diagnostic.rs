@@ -113,12 +113,12 @@ impl Problems {
 }
 
 /// The code of the problem of a job that was broken off.
-const INTERRUPTED: &str = "interrupted";
+pub(crate) const INTERRUPTED: &str = "interrupted";
 
 impl Problems {
     /// That a long job was broken off by whoever watched it.
     pub fn interrupted() -> Self {
-        Problem::new(INTERRUPTED, "broken off before the end", "what was finished until then is lost").into()
+        Problem::new(INTERRUPTED, "broken off before anything was finished", "nothing is written").into()
     }
 
     /// Whether this says that a job was [broken off](Self::interrupted).

@@ -30,6 +30,7 @@ pub use atomic::{WriteError, create_folder, prepare, write_atomic, write_togethe
 pub use base::{Outside, Reading};
 pub use builtin::{ROBOTS, SCENARIOS, TASKS};
 pub use change::Change;
+pub(crate) use diagnostic::INTERRUPTED;
 pub use diagnostic::{Problem, Problems};
 pub use document::Places;
 pub use entry::Entry;

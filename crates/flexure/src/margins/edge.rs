@@ -20,16 +20,21 @@ pub enum Edge {
         /// The farthest change that was tried: the loop holds there.
         holds: f64,
     },
+    /// The search was broken off: it holds at least as far as this.
+    Open {
+        /// The farthest change at which the loop was seen to hold; the scenario as it is if none was.
+        holds: f64,
+    },
     /// Nowhere: the loop does not hold as it is.
     Nowhere,
 }
 
 impl Edge {
-    /// The farthest change at which the loop holds, if there is one.
+    /// The farthest change at which the loop holds, if there is one and it was found.
     pub fn holds(&self) -> Option<f64> {
         match self {
             Self::Between { holds, .. } | Self::Beyond { holds } => Some(*holds).filter(|&holds| holds > 0.0),
-            Self::Nowhere => None,
+            Self::Open { .. } | Self::Nowhere => None,
         }
     }
 }
@@ -63,22 +68,32 @@ impl Way {
         Self { from, first: from * step, last }
     }
 
-    /// The edge between what `holds` and what does not, and how many changes were tried.
+    /// The edge between what `holds` and what does not, and how many changes were tried. `holds` is also told the [`Stage`] of
+    /// the search; what it breaks off ends [open](Edge::Open).
     ///
     /// # Errors
     /// Those of `holds`.
-    pub fn edge(&self, holds: &dyn Fn(f64) -> Result<bool, Problems>) -> Result<(Edge, usize), Problems> {
+    pub fn edge(&self, holds: &Trial<'_>) -> Result<(Edge, usize), Problems> {
+        let mut seen = Seen { good: self.from, tried: 0 };
+        match self.search(&mut seen, holds) {
+            Err(problems) if problems.is_interrupted() => Ok((Edge::Open { holds: seen.good }, seen.tried)),
+            found => Ok((found?, seen.tried)),
+        }
+    }
+
+    fn search(&self, seen: &mut Seen, holds: &Trial<'_>) -> Result<Edge, Problems> {
         let growth = if self.last > self.from { GROWTH } else { 1.0 / GROWTH };
         let short_of_last = |x: f64| if growth > 1.0 { x < self.last } else { x > self.last };
-        let (mut good, mut bad, mut tried) = (self.from, self.first, 0);
+        let mut bad = self.first;
         loop {
-            tried += 1;
-            if !holds(bad)? {
+            let to_last = whole((self.last / bad).ln() / growth.ln());
+            // Where the edge lies nobody knows: as far again as was gone, or at the end if that is nearer.
+            let left = seen.tried.clamp(1, to_last.max(1)) + bisections(bad / growth, bad);
+            if !seen.tries(bad, left, holds)? {
                 break;
             }
-            good = bad;
             if !short_of_last(bad) {
-                return Ok((Edge::Beyond { holds: good }, tried));
+                return Ok(Edge::Beyond { holds: bad });
             }
             bad *= growth;
             bad = if short_of_last(bad) { bad } else { self.last };
@@ -88,25 +103,72 @@ impl Way {
         let is_wide = |good: f64, bad: f64| {
             (bad - good).abs() > RESOLUTION * good.abs().max(bad.abs()) && (bad - self.from).abs() > least
         };
-        while is_wide(good, bad) {
-            let middle = 0.5 * (good + bad);
-            tried += 1;
-            if holds(middle)? {
-                good = middle;
-            } else {
+        while is_wide(seen.good, bad) {
+            let middle = 0.5 * (seen.good + bad);
+            if !seen.tries(middle, bisections(seen.good, middle), holds)? {
                 bad = middle;
             }
         }
-        Ok((Edge::Between { holds: good, fails: bad }, tried))
+        Ok(Edge::Between { holds: seen.good, fails: bad })
     }
+}
+
+/// Whether a loop holds under a change; also told how far the search is.
+pub type Trial<'a> = dyn Fn(f64, Stage) -> Result<bool, Problems> + 'a;
+
+/// How far a search is.
+#[derive(Clone, Copy, Debug)]
+pub struct Stage {
+    /// Changes that were tried.
+    pub tried: usize,
+    /// Changes that are likely to be tried after this one.
+    pub left: usize,
+}
+
+impl Stage {
+    /// The fraction done of the search, with `fraction` of this trial.
+    pub fn fraction(self, fraction: f64) -> f64 {
+        (self.tried as f64 + fraction) / (self.tried + 1 + self.left) as f64
+    }
+}
+
+/// What a search has seen.
+struct Seen {
+    /// The farthest change that holds.
+    good: f64,
+    tried: usize,
+}
+
+impl Seen {
+    fn tries(&mut self, x: f64, left: usize, holds: &Trial<'_>) -> Result<bool, Problems> {
+        let is_good = holds(x, Stage { tried: self.tried, left })?;
+        self.tried += 1;
+        if is_good {
+            self.good = x;
+        }
+        Ok(is_good)
+    }
+}
+
+/// A number of trials, rounded up.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to [0, 1000]")]
+fn whole(trials: f64) -> usize {
+    trials.ceil().clamp(0.0, 1000.0) as usize
+}
+
+/// Bisections after which a bracket is as narrow as it shall be.
+fn bisections(good: f64, bad: f64) -> usize {
+    whole(((bad - good).abs() / (RESOLUTION * good.abs().max(bad.abs()))).log2())
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Edge, Way};
+    use std::cell::RefCell;
+
+    use super::{Edge, Problems, Way};
 
     fn edge(way: Way, holds: impl Fn(f64) -> bool) -> Edge {
-        way.edge(&|x| Ok(holds(x))).expect("nothing goes wrong").0
+        way.edge(&|x, _| Ok(holds(x))).expect("nothing goes wrong").0
     }
 
     #[test]
@@ -125,7 +187,8 @@ mod tests {
 
     #[test]
     fn what_bears_nothing_is_found_soon() {
-        let (found, tried) = Way::outward(0.0, 1e-4, 1.0).edge(&|_| Ok(false)).expect("nothing goes wrong");
+        let (found, tried) =
+            Way::outward(0.0, 1e-4, 1.0).edge(&|_, _| Ok(false)).expect("nothing goes wrong");
         assert!(
             tried < 30 && matches!(found, Edge::Between { holds: 0.0, fails } if fails < 1e-9),
             "{found:?}"
@@ -136,5 +199,35 @@ mod tests {
     fn stops_at_the_end_of_the_way() {
         assert_eq!(edge(Way::inward(1.0, 0.01), |_| true), Edge::Beyond { holds: 0.01 });
         assert_eq!(edge(Way::outward(0.0, 0.1, 1.0), |_| true), Edge::Beyond { holds: 1.0 });
+    }
+
+    /// A search that is broken off says how far it came; its fraction is 1 at the end, and near the truth on the way.
+    #[test]
+    fn a_search_says_how_far_it_is() {
+        let way = Way::outward(0.0, 1e-4, 1.0);
+        let stages = RefCell::new(Vec::new());
+        let (_, tried) = way
+            .edge(&|x, stage| {
+                stages.borrow_mut().push(stage);
+                Ok(x < 0.0123)
+            })
+            .expect("nothing goes wrong");
+        let stages = stages.into_inner();
+        assert!(stages.iter().enumerate().all(|(i, stage)| stage.tried == i));
+        let last = stages.last().expect("some").fraction(1.0);
+        assert!(last > 0.9, "{last}");
+        for stage in &stages[tried / 2..] {
+            let (said, truth) = (stage.fraction(0.0), stage.tried as f64 / tried as f64);
+            assert!((said - truth).abs() < 0.2, "{said} of {truth}");
+        }
+        for limit in [0, 3, tried - 1] {
+            let broken = way.edge(&|x, stage| {
+                if stage.tried == limit { Err(Problems::interrupted()) } else { Ok(x < 0.0123) }
+            });
+            let (edge, after) = broken.expect("an open edge");
+            assert_eq!(after, limit);
+            let Edge::Open { holds } = edge else { panic!("{edge:?}") };
+            assert!((0.0..0.0123).contains(&holds) && (limit == 0) == (holds == 0.0), "{holds}");
+        }
     }
 }

@@ -3,17 +3,15 @@
 mod change;
 mod edge;
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::feasible;
 use crate::files::{Problem, Problems};
-use crate::progress::{Progress, tell};
+use crate::progress::{Parts, Progress};
 use crate::sampled::{Sampled, probe};
 use crate::scenario::{Hold, Scenario};
-use crate::simulate::{Criteria, Run, measure_by};
+use crate::simulate::{Criteria, Run, measure_watched};
 
 pub use change::Change;
 pub use edge::Edge;
@@ -68,8 +66,11 @@ pub struct Margins {
     pub noise_to_torque: Option<f64>,
     /// Runs that were simulated.
     pub runs: usize,
-    /// Whether small errors shrink in the loop as it is.
+    /// Whether small errors shrink in the loop as it is; none if it was not looked at.
     pub sampled: Option<Sampled>,
+    /// Whether it was broken off: edges may be [open](Edge::Open), and what is measured last is not there.
+    #[serde(skip)]
+    pub broken_off: bool,
 }
 
 /// A loop holds if it follows, by the verdict on runs, and its error, torque and chatter are at most this many times what they are
@@ -89,17 +90,17 @@ const CHATTER: f64 = 0.5;
 /// what encoders show.
 const LITTLE: f64 = 0.1;
 
-/// Runs that margins take about.
-const USUAL: f64 = 60.0;
+/// Part of the work that the searches are; the runs before and after them take the rest.
+const SEARCHES: f64 = 0.96;
 
 /// What is changed, and how far.
 type Search = (fn(f64) -> Change, edge::Way);
 
 /// Measures the margins of a scenario's loop. Each is where the loop still holds on the way from the scenario as it is: loops that
-/// hold again farther out are not looked for.
+/// hold again farther out are not looked for. What `progress` breaks off has what was found until then ([`Margins::broken_off`]).
 ///
 /// # Errors
-/// As [`run`](crate::simulate::run), and for a loop in continuous time, which has no devices that could be late.
+/// As [`run`](crate::simulate::run), [`Problems::interrupted`] if the loop as it is was not even run, and for a loop in continuous time, which has no devices that could be late.
 ///
 /// # Panics
 /// Never: there are as many edges as searches.
@@ -111,17 +112,11 @@ pub fn margins(scenario: &Scenario, progress: Progress<'_>) -> Result<Margins, P
     }
     let scenario = feasible::pinned(scenario)?;
     let criteria = Criteria::of(&scenario)?;
-    let nominal = measure_by(&scenario, &criteria)?;
+    let (before, after) = (0.5 * (1.0 - SEARCHES), 0.5 * (1.0 + SEARCHES));
+    let nominal = measure_watched(&scenario, &criteria, &|fraction| progress(before * fraction))?;
     let rms = nominal.divergence.is_none().then_some(nominal.summary.rms_e_l);
     let follows = nominal.summary.following.follows;
     let allowed = Allowed::beside(&nominal);
-    let tried = AtomicUsize::new(0);
-    let try_change = |change: Change| {
-        let done = tried.fetch_add(1, Ordering::Relaxed) as f64;
-        // How many there will be is not known: the fraction grows ever slower.
-        tell(progress, done / (done + USUAL))?;
-        Ok(allowed.holds(&measure_by(&change.of(&scenario), &criteria)?))
-    };
     let period = scenario.control_period;
     let searches: [Search; 6] = [
         (Change::Delay, edge::Way::outward(0.0, 0.125 * period, scenario.duration / 4.0)),
@@ -131,14 +126,22 @@ pub fn margins(scenario: &Scenario, progress: Progress<'_>) -> Result<Margins, P
         (Change::Stiffness, edge::Way::inward(1.0, 100.0)),
         (Change::Noise, edge::Way::outward(0.0, 1e-6, 1.0)),
     ];
-    let found: Vec<Result<(Edge, usize), Problems>> = searches
-        .par_iter()
-        .map(
-            |(change, way)| {
-                if follows { way.edge(&|x| try_change(change(x))) } else { Ok((Edge::Nowhere, 0)) }
-            },
-        )
-        .collect();
+    let parts = Parts::new(searches.len());
+    let search = |(part, (change, way)): (usize, &Search)| {
+        if !follows {
+            return Ok((Edge::Nowhere, 0));
+        }
+        let tell = |fraction: f64| progress(before + SEARCHES * parts.with(part, fraction));
+        let found = way.edge(&|x, stage| {
+            let changed = change(x).of(&scenario);
+            let run = measure_watched(&changed, &criteria, &|fraction| tell(stage.fraction(fraction)))?;
+            Ok(allowed.holds(&run))
+        });
+        // One that is done sooner than it seemed counts as done.
+        let _ = tell(1.0);
+        found
+    };
+    let found: Vec<Result<(Edge, usize), Problems>> = searches.par_iter().enumerate().map(search).collect();
     let mut edges = Vec::new();
     let mut runs = 1;
     for found in found {
@@ -146,11 +149,21 @@ pub fn margins(scenario: &Scenario, progress: Progress<'_>) -> Result<Margins, P
         edges.push(edge);
         runs += tried;
     }
+    let mut broken_off = edges.iter().any(|edge| matches!(edge, Edge::Open { .. }));
     let [delay, gain_low, gain_high, stiffness_low, stiffness_high, noise] =
         edges.try_into().expect("six searches");
     let little = noise.holds().map(|holds| LITTLE * holds);
-    let noisy =
-        little.map(|little| measure_by(&Change::Noise(little).of(&scenario), &criteria)).transpose()?;
+    let noisy = little.map(|little| {
+        let changed = Change::Noise(little).of(&scenario);
+        measure_watched(&changed, &criteria, &|fraction| progress(after + (1.0 - after) * fraction))
+    });
+    let noisy = match noisy.transpose() {
+        Err(problems) if problems.is_interrupted() => {
+            broken_off = true;
+            None
+        }
+        noisy => noisy?,
+    };
     let per_noise = |of: fn(&Run) -> f64| {
         let (little, noisy) = little.zip(noisy.as_ref().filter(|run| run.divergence.is_none()))?;
         let excess = of(noisy).powi(2) - of(&nominal).powi(2);
@@ -174,7 +187,8 @@ pub fn margins(scenario: &Scenario, progress: Progress<'_>) -> Result<Margins, P
         noise_to_error: per_noise(|run| run.summary.rms_e_l),
         noise_to_torque: per_noise(|run| run.summary.rms_torque_change),
         runs: runs + usize::from(noisy.is_some()),
-        sampled: probe(&scenario)?,
+        sampled: if broken_off { None } else { probe(&scenario)? },
+        broken_off,
     })
 }
 

@@ -10,6 +10,7 @@ use flexure_core::scalar::{Interval, Scalar};
 use serde::Serialize;
 
 use crate::files::{Problem, Problems};
+use crate::progress::Progress;
 use crate::prove::closed_loop::along_reference;
 use crate::prove::engine::envelope::closed_loop::{Place, Slope, TrackingLoop};
 use crate::prove::engine::envelope::slab::QUANTITIES;
@@ -66,14 +67,20 @@ pub struct Limit {
 }
 
 /// Bounds along the reference of `scenario` in the tube {W ≤ `level`}, `level` in J, looking at `budget` slabs of time at
-/// most.
+/// most. Where `progress` breaks it off they are those of the slabs so far, which hold and are less tight; none if not all of the
+/// run was looked at yet.
 ///
 /// # Errors
 /// If the robot has too many joints, the samples of the reference make no path, Π_l is not constant, or the reference's
 /// third derivative jumps, which no tube outlives.
-pub fn along(scenario: &Scenario, level: &Number, budget: usize) -> Result<Along, Problems> {
+pub fn along(
+    scenario: &Scenario,
+    level: &Number,
+    budget: usize,
+    progress: Progress<'_>,
+) -> Result<Option<Along>, Problems> {
     let level = level.bounds().hi();
-    Ok(bounds(scenario, &*enclosed(scenario)?, level, budget))
+    Ok(bounds(scenario, &*enclosed(scenario)?, level, budget, progress))
 }
 
 /// An upper bound of W in J at the scenario's initial state: 0 where the robot starts on its reference, but for rounding.
@@ -117,12 +124,18 @@ pub(crate) fn uneven_metric(scenario: &Scenario) -> Option<Problem> {
     Some(scenario.places.problem("controller.link.metric_hardening", "metric", message, help))
 }
 
-fn bounds(scenario: &Scenario, system: &dyn TrackingLoop, level: f64, budget: usize) -> Along {
+fn bounds(
+    scenario: &Scenario,
+    system: &dyn TrackingLoop,
+    level: f64,
+    budget: usize,
+    progress: Progress<'_>,
+) -> Option<Along> {
     let robot = &scenario.robot;
     let given = [&robot.limits.velocity, &robot.limits.deflection, &robot.limits.torque];
     let limits: Vec<Interval> = given.into_iter().flatten().map(|&limit| robot.bounds(limit)).collect();
     let duration = scenario.bounds(scenario.duration).hi();
-    let course = course(system, &AlongRequest { level, duration, limits, budget });
+    let course = course(system, &AlongRequest { level, duration, limits, budget }, progress)?;
     let n = system.joints();
     let peaks = |quantity: usize| {
         let of = |f: &dyn Fn(usize) -> f64| (quantity * n..(quantity + 1) * n).map(f).collect();
@@ -136,12 +149,13 @@ fn bounds(scenario: &Scenario, system: &dyn TrackingLoop, level: f64, budget: us
     let limit = |(joint, quantity): (usize, usize)| {
         let limit = given[quantity][joint];
         limit.is_finite().then(|| {
-            let verdict = verdict(scenario, system, &course, level, quantity * n + joint, limit);
+            let is_watched = || progress(1.0).is_continue();
+            let verdict = verdict(scenario, system, &course, level, quantity * n + joint, limit, &is_watched);
             Limit { joint, key: keys[quantity], limit, verdict }
         })
     };
     let [velocity, deflection, torque] = [0, 1, 2].map(peaks);
-    Along {
+    Some(Along {
         level,
         error: ErrorTube::new(system, level, &vec![Interval::ZERO; n]).errors()[..n]
             .iter()
@@ -152,10 +166,10 @@ fn bounds(scenario: &Scenario, system: &dyn TrackingLoop, level: f64, budget: us
         torque,
         limits: (0..n).flat_map(|i| (0..QUANTITIES.len()).map(move |k| (i, k))).filter_map(limit).collect(),
         slabs: course.spent,
-    }
+    })
 }
 
-/// Whether quantity `k` keeps `limit`.
+/// Whether quantity `k` keeps `limit`; a state that exceeds it is looked for as long as it `goes_on`.
 fn verdict(
     scenario: &Scenario,
     system: &dyn TrackingLoop,
@@ -163,6 +177,7 @@ fn verdict(
     level: f64,
     k: usize,
     limit: f64,
+    goes_on: &dyn Fn() -> bool,
 ) -> Verdict<f64, Exceeding> {
     let exact = scenario.robot.bounds(limit);
     let (bound, time) = course.bound(k);
@@ -170,7 +185,7 @@ fn verdict(
         return Verdict::Proved(bound);
     }
     let (seen, _) = course.seen(k);
-    let found = (seen > exact.hi())
+    let found = (seen > exact.hi() && goes_on())
         .then(|| exceeding::first(scenario, &candidates(system, level, course, k), level, k, exact.hi()))
         .flatten();
     found.map_or_else(

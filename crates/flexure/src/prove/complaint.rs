@@ -1,14 +1,28 @@
 //! What to say of a proof that is none, or not of everything that was asked.
 
-use crate::files::Problem;
+use crate::files::{INTERRUPTED, Problem};
 use crate::prove::along::Limit;
 use crate::prove::engine::verdict::Verdict;
 use crate::prove::question::Proof;
 use crate::scenario::Scenario;
 
 impl Proof {
-    /// What to say where nothing was proved, and whether that is because it is wrong.
+    /// What to say where not everything that was asked was proved, and whether that is because it is wrong.
     pub fn complaint(&self, scenario: &Scenario) -> Option<(Problem, bool)> {
+        match self.found(scenario) {
+            Some((problem, true)) => Some((problem, true)),
+            _ if self.broken_off => {
+                let message =
+                    format!("{}: broken off before all that was asked was looked at", scenario.name);
+                let help = "what was proved until then stands; no certificate is written";
+                Some((Problem::new(INTERRUPTED, message, help), false))
+            }
+            found => found,
+        }
+    }
+
+    /// What there is to say of what was looked at.
+    fn found(&self, scenario: &Scenario) -> Option<(Problem, bool)> {
         let problem =
             |code, message: String, help: &str| scenario.places.problem("controller", code, message, help);
         match &self.verdict {

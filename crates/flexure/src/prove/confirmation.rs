@@ -1,10 +1,12 @@
 //! A certified rate once more, by the engine that knows nothing of how it was found.
 
 use crate::files::Problems;
+use crate::progress::Progress;
 use crate::prove::closed_loop::over_region;
 use crate::prove::engine::certificate::Certificate;
-use crate::prove::engine::direct::{DirectWitness, Proved, prove};
+use crate::prove::engine::direct::{DirectWitness, Proved, prove_watched};
 use crate::prove::engine::verdict::Verdict;
+use crate::prove::question::Direct;
 use crate::scenario::Scenario;
 
 /// What is left of a certified rate for the direct engine to prove: the certificate's last digits are those of its own
@@ -14,17 +16,17 @@ const SHARE: f64 = 1.0 - 1e-9;
 /// What the direct engine says of a certified rate.
 pub type Confirmation = Verdict<Proved, DirectWitness>;
 
-/// Proves the contraction rate of `certificate` again, on its region and for link speeds of up to `speed` [rad/s], from
-/// the full inequality, looking at no more than `budget` boxes.
+/// Proves the contraction rate of `certificate` again, on its region and for link speeds of up to `direct.speed`, from the full
+/// inequality, looking at no more than `direct.budget` boxes. What `progress` breaks off is undecided.
 ///
 /// # Errors
 /// If the robot has too many joints, or the law is not v-CBC.
 pub fn confirm(
     scenario: &Scenario,
     certificate: &Certificate,
-    speed: f64,
-    budget: usize,
+    direct: Direct,
+    progress: Progress<'_>,
 ) -> Result<Confirmation, Problems> {
     let rate = certificate.contraction_rate.bounds().lo() * SHARE;
-    Ok(prove(&*over_region(scenario, certificate, speed)?, rate, budget))
+    Ok(prove_watched(&*over_region(scenario, certificate, direct.speed)?, rate, direct.budget, progress))
 }

@@ -1,6 +1,7 @@
 //! Proving: a scenario file as a question, the engines that answer it, and what an answer is compared with.
 
 pub mod along;
+mod asked_rate;
 mod closed_loop;
 mod complaint;
 pub mod confirmation;

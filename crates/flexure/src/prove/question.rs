@@ -1,22 +1,22 @@
 //! A scenario file as a proof: its numbers enclosed, its region chosen, its rates certified.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant as Clock;
 
 use flexure_core::scalar::Interval;
 
 use crate::files::{Problem, Problems};
-use crate::linalg::Symmetric;
+use crate::progress::{Progress, unwatched};
 use crate::prove::along::{Along, along, start_level, uneven_metric};
+use crate::prove::asked_rate::at_rate;
 use crate::prove::confirmation::{Confirmation, confirm};
 use crate::prove::decimals::{gains, robot};
-use crate::prove::engine::certificate::{BlockName, Certificate, CertifiedPhi, DecimalLaw};
-use crate::prove::engine::momentum;
+use crate::prove::engine::certificate::{Certificate, CertifiedPhi, DecimalLaw};
 use crate::prove::engine::number::Number;
-use crate::prove::engine::rate::Inequality;
 use crate::prove::engine::region::{RequestedRegion, level_that_holds, region};
-use crate::prove::engine::structural::{self, positions};
-use crate::prove::engine::verdict::{Undecided, Verdict};
-use crate::prove::engine::witness::{RateWitness, WitnessState, against};
+use crate::prove::engine::structural;
+use crate::prove::engine::verdict::Verdict;
+use crate::prove::engine::witness::RateWitness;
 use crate::prove::paper::paper_rate;
 use crate::prove::sampling::{Sampled, sample};
 use crate::prove::subject::subject;
@@ -100,6 +100,8 @@ pub struct Proof {
     pub assumptions: Vec<String>,
     /// Time that it took in s.
     pub wall_seconds: f64,
+    /// Whether it was broken off: what is here holds, and more may have been proved of what was asked beside the rates.
+    pub broken_off: bool,
 }
 
 /// The closed loop of `scenario` as the prover takes it; `start` is W where the run begins, from above, if it is known.
@@ -228,26 +230,68 @@ impl Scenario {
 /// # Errors
 /// Where no certificate can speak of it: with the place and the reason.
 pub fn prove(scenario: &Scenario, question: &Question) -> Result<Proof, Problems> {
+    prove_watched(scenario, question, &unwatched)
+}
+
+/// Parts of the work that the rates and the direct proof take, about; bounds along the reference take the rest.
+const RATES: f64 = 0.05;
+const DIRECT: f64 = 0.6;
+
+/// As [`prove`]; `progress` is told about what fraction is done. Once the rates are proved, what it breaks off has what was
+/// proved until then ([`Proof::broken_off`]).
+///
+/// # Errors
+/// As [`prove`], and [`Problems::interrupted`] if it was broken off before the rates were proved.
+pub fn prove_watched(
+    scenario: &Scenario,
+    question: &Question,
+    progress: Progress<'_>,
+) -> Result<Proof, Problems> {
+    let broken_off = AtomicBool::new(false);
+    let watched = |fraction: f64| {
+        let flow = progress(fraction);
+        broken_off.fetch_or(flow.is_break(), Ordering::Relaxed);
+        flow
+    };
+    let is_broken_off = || broken_off.load(Ordering::Relaxed);
     let started = Clock::now();
     let start = start_level(scenario).ok().filter(|_| !outside_travel(scenario));
     let problem = problem(scenario, question, start)?;
+    if watched(0.0).is_break() {
+        return Err(Problems::interrupted());
+    }
     let gains = scenario.vcbc()?;
     let damping: Vec<f64> =
         scenario.robot.link_damping.iter().zip(&gains.link.damping).map(|(a, b)| a + b).collect();
     let sampled = sample(&scenario.robot, &damping)?;
+    if watched(0.5 * RATES).is_break() {
+        return Err(Problems::interrupted());
+    }
     let verdict = match (certify(&problem), question.rate) {
         (Verdict::Proved(certificate), Some(rate)) => at_rate(rate, certificate, &sampled, &damping),
         (verdict, _) => verdict,
     };
+    let _ = watched(RATES);
+    let level = verdict.proved().and_then(|certificate| level_of_the_run(certificate, start));
+    // Whichever is asked for alone takes all the time.
+    let middle = match (question.direct, &level) {
+        (None, _) => RATES,
+        (Some(_), None) => 1.0,
+        (Some(_), Some(_)) => DIRECT,
+    };
+    let watched = &watched;
+    let between = |from: f64, to: f64| move |fraction: f64| watched(from + (to - from) * fraction);
     let confirmation = match (verdict.proved(), question.direct) {
-        (Some(certificate), Some(Direct { speed, budget })) => {
-            Some(confirm(scenario, certificate, speed, budget)?)
+        (Some(certificate), Some(direct)) if !is_broken_off() => {
+            Some(confirm(scenario, certificate, direct, &between(RATES, middle))?)
         }
         _ => None,
     };
-    let along = match verdict.proved().and_then(|certificate| level_of_the_run(certificate, start)) {
-        Some(level) => Some(along(scenario, &level, slabs(scenario.robot.joint_count()))?),
-        None => None,
+    let along = match level {
+        Some(level) if !is_broken_off() => {
+            along(scenario, &level, slabs(scenario.robot.joint_count()), &between(middle, 1.0))?
+        }
+        _ => None,
     };
     Ok(Proof {
         confirmation,
@@ -258,6 +302,7 @@ pub fn prove(scenario: &Scenario, question: &Question) -> Result<Proof, Problems
         sampled,
         assumptions: problem.assumptions,
         wall_seconds: started.elapsed().as_secs_f64(),
+        broken_off: is_broken_off(),
     })
 }
 
@@ -273,55 +318,6 @@ fn level_of_the_run(certificate: &Certificate, start: Option<f64>) -> Option<Num
 /// Whether {W ≤ `level`} lies in the certificate's invariant set.
 pub(crate) fn inside(certificate: &Certificate, level: f64) -> bool {
     certificate.region.level.as_ref().is_none_or(|c| level <= c.bounds().lo())
-}
-
-/// The verdict on a contraction rate of `rate`, from the largest one that was proved.
-fn at_rate(
-    rate: f64,
-    certificate: Certificate,
-    sampled: &Sampled,
-    damping: &[f64],
-) -> Verdict<Certificate, RateWitness> {
-    if rate <= certificate.contraction_rate.bounds().lo() {
-        return Verdict::Proved(certificate);
-    }
-    match slower(rate, &certificate, sampled, damping) {
-        Some(witness) => Verdict::Refuted(witness),
-        None => Verdict::Undecided(Undecided {
-            at: format!(
-                "{rate} 1/s is above the proved rate, {} 1/s, and no sample is slower",
-                certificate.contraction_rate.approximate()
-            ),
-            spent: 1,
-        }),
-    }
-}
-
-/// A state at which some block contracts more slowly than `rate`.
-fn slower(rate: f64, certificate: &Certificate, sampled: &Sampled, damping: &[f64]) -> Option<RateWitness> {
-    let sides = positions(&certificate.controller, &certificate.region.error);
-    let position = [BlockName::PhiL, BlockName::PhiM].into_iter().zip(&sides).find_map(|(block, side)| {
-        side.cases().iter().find_map(|case| {
-            let (direction, rate) = against(&side.inequality(&side.slopes(case)), rate)?;
-            let far: Vec<bool> = case.iter().map(|high| !high).collect();
-            let error = if far.is_empty() { vec![0.0; side.joints()] } else { side.error_at(&far) };
-            Some(RateWitness { block, state: WitnessState::Error(error), direction, rate })
-        })
-    });
-    let links = || {
-        let damping: Vec<_> = damping.iter().map(|&d| Interval::point(d)).collect();
-        let weight = sampled.mass_matrix.map(Interval::point);
-        let (direction, rate) = against(&Inequality { form: Symmetric::diagonal(&damping), weight }, rate)?;
-        let state = WitnessState::Configuration(sampled.configuration.clone());
-        Some(RateWitness { block: BlockName::SigmaL, state, direction, rate })
-    };
-    let motors = || {
-        let robot = &certificate.robot;
-        let damping = momentum::damping(&robot.motor_damping, &certificate.controller.motor.damping);
-        let (direction, rate) = against(&momentum::motors(robot, &damping), rate)?;
-        Some(RateWitness { block: BlockName::SigmaM, state: WitnessState::Any, direction, rate })
-    };
-    position.or_else(links).or_else(motors)
 }
 
 /// The contraction rate that is proved of `scenario` without further options [1/s]; none if none is.

@@ -4,6 +4,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 
 use super::certificates::{self, CertificateReport};
 use super::markdown::{ERRATA, subscripts};
+use super::table::proved_rate;
 use crate::files::number::{NONE, engineering};
 use crate::simulate::Summary;
 use crate::units;
@@ -142,7 +143,7 @@ fn numbers(summary: &Summary) -> [String; COLUMNS.len()] {
         engineering(summary.rms_u_m),
         engineering(100.0 * summary.saturated_fraction),
         engineering(summary.rate_pointwise),
-        optional(summary.rate_certified),
+        proved_rate(summary.rate_certified),
         engineering(summary.energy_drift),
         summary.steps.to_string(),
     ]
@@ -176,7 +177,7 @@ fn summary_table(runs: &[RunReport]) -> Markup {
         p.note {
             "Settling time: after it every " (symbols("|e_l|")) " stays below 1 mrad; — if that never happens. "
             "Rate at states: the smallest contraction rate of the law in continuous time at the states of the run, evaluated and not proved. "
-            "Rate certified: proved, on the region that `flexure certify` takes by itself; — where nothing was proved of this loop. "
+            "Rate certified: proved, on the region that " code { "flexure certify" } " takes by itself; — where nothing was proved of this loop. "
             "Energy drift: the energy balance's residual, relative to the energy that went through the robot."
         }
     }

@@ -6,19 +6,27 @@ use comfy_table::{Cell, Row};
 
 use crate::compare::{Leaderboard, Score, Spread, Standing, TIE, TaskScores};
 use crate::files::number::{NONE, short, significant};
+use crate::report::columns::laid_out;
 use crate::report::table::{headed, right};
 
-/// Tasks side by side.
-const MOST_TASKS: usize = 4;
+/// Columns that a task takes about.
+const TASK: usize = 25;
 
-/// Errors of every law on every task, then the ranking: at most 100 columns wide, without colours.
-pub fn leaderboard_table(board: &Leaderboard) -> String {
-    let blocks = board.tasks.len().div_ceil(MOST_TASKS).max(1);
+/// Errors of every law on every task, then the ranking, in so many columns, without colours.
+pub fn leaderboard_table(board: &Leaderboard, width: usize) -> String {
+    let blocks = board.tasks.len().div_ceil((width / TASK).max(1)).max(1);
     let matrices = board.tasks.chunks(board.tasks.len().div_ceil(blocks).max(1));
+    let laws: Vec<&str> = board.ranking.iter().map(|standing| standing.law.as_str()).collect();
     let mut text =
         String::from("root mean square error of the links [mrad]: median over seeds, smallest … largest\n");
     for tasks in matrices {
-        text.push_str(&matrix(board, tasks));
+        text.push_str(&matrix(&laws, tasks, width));
+        text.push('\n');
+    }
+    for task in &board.unfinished {
+        let laws: Vec<&str> = task.scores.iter().map(|score| score.law.as_str()).collect();
+        let _ = writeln!(text, "not all laws were finished on {}; of those that were:", task.task);
+        text.push_str(&matrix(&laws, std::slice::from_ref(task), width));
         text.push('\n');
     }
     text.push_str(
@@ -26,7 +34,9 @@ pub fn leaderboard_table(board: &Leaderboard) -> String {
     );
     text.push_str(&seeds(board));
     text.push('\n');
-    text.push_str(&ranking(board));
+    if !board.ranking.is_empty() {
+        text.push_str(&ranking(board, width));
+    }
     for task in board.hopeless() {
         let _ = write!(text, "\nno law follows on {}:", task.task);
         for score in &task.scores {
@@ -37,17 +47,17 @@ pub fn leaderboard_table(board: &Leaderboard) -> String {
     text
 }
 
-fn matrix(board: &Leaderboard, tasks: &[TaskScores]) -> String {
+fn matrix(laws: &[&str], tasks: &[TaskScores], width: usize) -> String {
     let titles = tasks.iter().map(|task| task.task.replacen('-', "\n", 1)).collect::<Vec<_>>();
     let mut table = headed(["law"].into_iter().chain(titles.iter().map(String::as_str)));
-    for standing in &board.ranking {
+    for law in laws {
         let cells = tasks.iter().map(|task| {
-            let score = task.scores.iter().find(|score| score.law == standing.law);
+            let score = task.scores.iter().find(|score| score.law == *law);
             right(score.map_or(NONE.to_owned(), |score| error(task, score)))
         });
-        table.add_row(Row::from(std::iter::once(Cell::new(&standing.law)).chain(cells).collect::<Vec<_>>()));
+        table.add_row(Row::from(std::iter::once(Cell::new(law)).chain(cells).collect::<Vec<_>>()));
     }
-    table.to_string()
+    laid_out(&table, 1, width)
 }
 
 /// An error in mrad with its marks.
@@ -79,7 +89,7 @@ fn seeds(board: &Leaderboard) -> String {
         };
         Some(format!("{}: {what}\n", task.task))
     };
-    let most = board.tasks.iter().map(|task| task.seeds).max().unwrap_or(0);
+    let most = board.tasks.iter().chain(&board.unfinished).map(|task| task.seeds).max().unwrap_or(0);
     let first = format!("{most} seed{} from {} on\n", if most == 1 { "" } else { "s" }, board.seed);
     std::iter::once(first).chain(board.tasks.iter().filter_map(line)).collect()
 }
@@ -102,7 +112,7 @@ pub(super) fn spectral_radius(board: &Leaderboard, law: &str) -> String {
     radii.max_by(f64::total_cmp).map_or(NONE.to_owned(), |radius| short(radius, 5))
 }
 
-fn ranking(board: &Leaderboard) -> String {
+fn ranking(board: &Leaderboard, width: usize) -> String {
     let titles = [
         "place",
         "law",
@@ -127,5 +137,5 @@ fn ranking(board: &Leaderboard) -> String {
         let first = [right(place(board, standing)), Cell::new(&standing.law)];
         table.add_row(Row::from(first.into_iter().chain(numbers.map(right)).collect::<Vec<_>>()));
     }
-    table.to_string()
+    laid_out(&table, 2, width)
 }

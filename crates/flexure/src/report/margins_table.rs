@@ -4,10 +4,11 @@ use comfy_table::Cell;
 
 use crate::files::number::{NONE, significant};
 use crate::margins::{Edge, Margins};
+use crate::report::columns::laid_out;
 use crate::report::table::{headed, right};
 
-/// One row a loop, at most 100 columns wide.
-pub fn margins_table(margins: &[Margins]) -> String {
+/// One row a loop, in so many columns.
+pub fn margins_table(margins: &[Margins], width: usize) -> String {
     let titles = [
         "loop",
         "rms\n|e_l|\n[mrad]",
@@ -32,7 +33,7 @@ pub fn margins_table(margins: &[Margins]) -> String {
             right(milli(loop_.noise_to_torque, 1e-3)),
         ]);
     }
-    table.to_string()
+    laid_out(&table, 1, width)
 }
 
 /// The farthest change at which the loop holds, in units of 1/`scale`.
@@ -40,6 +41,7 @@ fn upper(edge: &Edge, scale: f64) -> String {
     match edge {
         Edge::Between { holds, .. } => significant(scale * holds, 3),
         Edge::Beyond { holds } => format!("> {}", significant(scale * holds, 3)),
+        Edge::Open { holds } => format!("≥ {}", significant(scale * holds, 3)),
         Edge::Nowhere => NONE.to_owned(),
     }
 }
@@ -48,6 +50,7 @@ fn range(low: &Edge, high: &Edge) -> String {
     let low = match low {
         Edge::Between { holds, .. } => significant(*holds, 3),
         Edge::Beyond { holds } => format!("< {}", significant(*holds, 3)),
+        Edge::Open { holds } => format!("≤ {}", significant(*holds, 3)),
         Edge::Nowhere => return NONE.to_owned(),
     };
     format!("{low} … {}", upper(high, 1.0))

@@ -5,8 +5,10 @@
 mod assumptions;
 mod axes;
 mod certificates;
+mod columns;
 pub mod comparison;
 mod curve;
+mod design_table;
 pub mod decimate;
 mod effort;
 pub mod figure;
@@ -33,12 +35,14 @@ mod ticks;
 
 pub use assumptions::assumptions;
 pub use certificates::CertificateReport;
+pub use columns::WIDTH;
 pub use comparison::comparison;
 pub use effort::{chatter_figure, effort_figure};
 pub use figure::{FigureOptions, four_panel};
 pub use html::{AssumedNumber, RunReport, RunsReport, html};
 pub use leaderboard_page::leaderboard_page;
 pub use leaderboard_table::leaderboard_table;
+pub use design_table::{constraints_table, gains_table, trades_table};
 pub use margins_table::margins_table;
 pub use outputs::{write_certificate, write_figure, write_leaderboard};
 pub use proof_table::{certificate_table, proof_table};

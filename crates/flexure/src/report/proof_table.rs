@@ -3,15 +3,16 @@
 use std::fmt::Write;
 
 use crate::files::number::{NONE, engineering, short, significant};
-use crate::prove::along::Along;
+use crate::prove::along::{Along, Limit};
 use crate::prove::engine::certificate::{LoopSide, Norm, StructureName};
 use crate::prove::engine::verdict::Verdict;
 use crate::prove::summary::{BlockSummary, ProofSummary, WitnessSummary};
+use crate::report::columns::laid_out;
 use crate::report::table::{headed, right};
 use crate::units::{self, Unit};
 
-/// What was proved, refuted or left undecided, at most 100 columns wide.
-pub fn proof_table(summary: &ProofSummary) -> String {
+/// What was proved, refuted or left undecided; the table in so many columns.
+pub fn proof_table(summary: &ProofSummary, width: usize) -> String {
     let mut text = format!("{}: {}\n", summary.name, summary.verdict);
     if let Some(left_out) = left_out(summary) {
         // Writing to a text cannot fail.
@@ -21,7 +22,7 @@ pub fn proof_table(summary: &ProofSummary) -> String {
         let _ = writeln!(text, "{}", sampled.line());
     }
     if let (Some(contraction), Some(convergence)) = (summary.blocks, summary.convergence_blocks) {
-        text += &rates(summary, contraction, convergence);
+        text += &rates(summary, contraction, convergence, width);
     }
     for line in lines(summary) {
         let _ = write!(text, "\n{line}");
@@ -34,8 +35,8 @@ fn left_out(summary: &ProofSummary) -> Option<String> {
     (!summary.left_out.is_empty()).then(|| summary.left_out.join(", ").replace('_', " "))
 }
 
-/// What was proved of several scenarios, a row each.
-pub fn certificate_table(summaries: &[ProofSummary]) -> String {
+/// What was proved of several scenarios, a row each, in so many columns.
+pub fn certificate_table(summaries: &[ProofSummary], width: usize) -> String {
     let titles = [
         "proved",
         "errors\nup to\n[rad]",
@@ -61,10 +62,15 @@ pub fn certificate_table(summaries: &[ProofSummary]) -> String {
             rate(summary.direct.as_ref().and_then(|direct| direct.rate)),
         ]);
     }
-    table.to_string()
+    laid_out(&table, 1, width)
 }
 
-fn rates(summary: &ProofSummary, contraction: BlockSummary, convergence: BlockSummary) -> String {
+fn rates(
+    summary: &ProofSummary,
+    contraction: BlockSummary,
+    convergence: BlockSummary,
+    width: usize,
+) -> String {
     let mut table = headed(["block", "contraction\n[1/s]", "convergence\n[1/s]"].into_iter());
     let number = |x: Option<f64>| right(x.map_or(NONE.to_owned(), |x| significant(x, 6)));
     let mut row = |name: &str, contraction, convergence| {
@@ -76,7 +82,7 @@ fn rates(summary: &ProofSummary, contraction: BlockSummary, convergence: BlockSu
     row("σ_m  motor momenta", Some(contraction.sigma_m), Some(convergence.sigma_m));
     row("closed loop", summary.contraction_rate, summary.convergence_rate);
     row("the paper's formula", Some(summary.paper_rate), None);
-    table.to_string()
+    laid_out(&table, 1, width)
 }
 
 fn lines(summary: &ProofSummary) -> Vec<String> {
@@ -173,30 +179,52 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
 fn bounds(along: &Along) -> Vec<String> {
     let mut lines = vec![
         format!(
-            "along        while W ≤ {} J: |q̇_l| ≤ {} rad/s",
+            "along        while W ≤ {} J: |q̇_l| {}",
             short(along.level, 3),
-            list(&along.velocity.bound)
+            bounded(&along.velocity.bound, "rad/s")
         ),
-        format!("along        |q_m − q_l| ≤ {} rad", list(&along.deflection.bound)),
+        format!("along        |q_m − q_l| {}", bounded(&along.deflection.bound, "rad")),
         format!(
-            "along        |u_m| ≤ {} N m, {} N m without disturbance",
-            list(&along.torque.bound),
+            "along        |u_m| {}, {} N m without disturbance",
+            bounded(&along.torque.bound, "N m"),
             list(&along.torque.nominal)
         ),
     ];
-    lines.extend(along.limits.iter().map(|limit| {
-        let (joint, key, unit) =
-            (limit.joint + 1, limit.key, Unit::of_key(limit.key).unwrap_or(units::NONE).plain);
-        let verdict = match &limit.verdict {
-            Verdict::Proved(bound) => format!("never reached, at most {} {unit}", short(*bound, 3)),
-            Verdict::Refuted(state) => {
-                format!("exceeded: {} {unit} at t = {} s", short(state.value, 3), short(state.t, 4))
-            }
-            Verdict::Undecided(_) => "not decided".to_owned(),
-        };
-        format!("limit        {key} {} {unit} of joint {joint}: {verdict}", short(limit.limit, 4))
-    }));
+    let undecided = along.limits.iter().filter(|limit| matches!(limit.verdict, Verdict::Undecided(_)));
+    lines.extend(along.limits.iter().filter_map(limit));
+    lines.extend(open(undecided));
     lines
+}
+
+/// What is known of a limit.
+fn limit(limit: &Limit) -> Option<String> {
+    let (joint, key, unit) =
+        (limit.joint + 1, limit.key, Unit::of_key(limit.key).unwrap_or(units::NONE).plain);
+    let verdict = match &limit.verdict {
+        Verdict::Proved(bound) => format!("never reached, at most {} {unit}", short(*bound, 3)),
+        Verdict::Refuted(state) => {
+            format!("exceeded: {} {unit} at t = {} s", short(state.value, 3), short(state.t, 4))
+        }
+        Verdict::Undecided(_) => return None,
+    };
+    Some(format!("limit        {key} {} {unit} of joint {joint}: {verdict}", short(limit.limit, 4)))
+}
+
+/// Limits of which nothing is known, a line for those of a kind.
+fn open<'a>(limits: impl Iterator<Item = &'a Limit>) -> Vec<String> {
+    let mut joints: Vec<(&str, Vec<String>)> = Vec::new();
+    for Limit { key, joint, .. } in limits {
+        let joint = (joint + 1).to_string();
+        match joints.iter_mut().find(|(known, _)| known == key) {
+            Some((_, of_kind)) => of_kind.push(joint),
+            None => joints.push((key, vec![joint])),
+        }
+    }
+    let line = |(key, joints): (&str, Vec<String>)| {
+        let s = if joints.len() == 1 { "" } else { "s" };
+        format!("limit        {key} of joint{s} {}: not decided", joints.join(", "))
+    };
+    joints.into_iter().map(line).collect()
 }
 
 fn witness(witness: &WitnessSummary) -> String {
@@ -220,6 +248,15 @@ fn shortened(text: &str) -> String {
         short.push('…');
     }
     short
+}
+
+/// Bounds, if there are any: where one is not finite none are.
+fn bounded(bounds: &[f64], unit: &str) -> String {
+    if bounds.iter().all(|bound| bound.is_finite()) {
+        format!("≤ {} {unit}", list(bounds))
+    } else {
+        "not bounded".to_owned()
+    }
 }
 
 /// Numbers with blanks; one if all are the same.

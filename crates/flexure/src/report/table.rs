@@ -5,11 +5,9 @@ use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Row, Table
 
 use crate::feasible::Usage;
 use crate::files::number::{NONE, engineering, short};
+use crate::report::columns::laid_out;
 use crate::robot::JointRow;
 use crate::simulate::Summary;
-
-/// Columns of a terminal that the table is laid out for.
-const WIDTH: u16 = 100;
 
 /// A column of numbers: three lines of heading, and what stands in it.
 type Column = (&'static str, fn(&Summary) -> String);
@@ -23,15 +21,19 @@ const NUMBERS: [Column; 5] = [
 ];
 const AT_LIMIT: Column = ("at\nlimit\n[%]", |summary| number(100.0 * summary.saturated_fraction));
 const UNKNOWN: Column = ("unknown\nto the\nlaw", |summary| words(&summary.plant));
-const PROVED: Column = ("rate\nproved\n[1/s]", |summary| match summary.rate_certified {
-    // Far from the reference a rate of tanh is positive and nothing else.
-    Some(rate) if rate < 1e-3 => "<0.001".to_owned(),
-    rate => optional(rate),
-});
+const PROVED: Column = ("rate\nproved\n[1/s]", |summary| proved_rate(summary.rate_certified));
 
-/// One row a run, at most 100 columns wide, without colours: the same text on a terminal and in a file. Torque limits,
+/// A proved rate [1/s], if there is one: far from the reference that of tanh is positive and nothing else.
+pub(super) fn proved_rate(rate: Option<f64>) -> String {
+    match rate {
+        Some(rate) if rate < 1e-3 => "<0.001".to_owned(),
+        rate => optional(rate),
+    }
+}
+
+/// One row a run, in so many columns, without colours: the same text on a terminal and in a file. Torque limits,
 /// proved rates and what a plant has that the law does not know have a column where any run has them.
-pub fn summary_table(summaries: &[Summary]) -> String {
+pub fn summary_table(summaries: &[Summary], width: usize) -> String {
     let limited = summaries.iter().any(|summary| summary.saturated_fraction > 0.0);
     let proved = summaries.iter().any(|summary| summary.rate_certified.is_some());
     let unknown = summaries.iter().any(|summary| !summary.plant.is_empty());
@@ -45,7 +47,7 @@ pub fn summary_table(summaries: &[Summary]) -> String {
     for summary in summaries {
         table.add_row(row(summary, &columns));
     }
-    table.to_string()
+    laid_out(&table, 1, width)
 }
 
 /// An empty table with these column titles.
@@ -53,8 +55,7 @@ pub(super) fn headed<'a>(titles: impl Iterator<Item = &'a str>) -> Table {
     let mut table = Table::new();
     table
         .load_style(UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()))
-        .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_width(WIDTH);
+        .set_content_arrangement(ContentArrangement::Disabled);
     let centred = |title| Cell::new(title).set_alignment(CellAlignment::Center);
     table.set_header(titles.map(centred).collect::<Vec<_>>());
     table.column_iter_mut().for_each(|column| {
@@ -89,9 +90,9 @@ const JOINT_NUMBERS: [JointColumn; 11] = [
     }),
 ];
 
-/// One row a joint, at most 100 columns wide, without colours. What no joint has has no column; what carries a joint is
+/// One row a joint, in so many columns, without colours. What no joint has has no column; what carries a joint is
 /// named where it is not the joint above.
-pub fn joint_table(joints: &[JointRow]) -> String {
+pub fn joint_table(joints: &[JointRow], width: usize) -> String {
     let columns: Vec<JointColumn> = JOINT_NUMBERS
         .into_iter()
         .filter(|(_, show)| joints.iter().any(|joint| show(joint).is_some()))
@@ -109,11 +110,11 @@ pub fn joint_table(joints: &[JointRow]) -> String {
         let numbers = columns.iter().map(|(_, show)| right(show(joint).unwrap_or(NONE.to_owned())));
         table.add_row(Row::from(std::iter::once(Cell::new(name)).chain(numbers).collect::<Vec<_>>()));
     }
-    table.to_string()
+    laid_out(&table, 1, width)
 }
 
-/// One row a limit that `joints` (their names) have, at most 100 columns wide, without colours.
-pub fn usage_table(joints: &[String], usages: &[Usage]) -> String {
+/// One row a limit that `joints` (their names) have, in so many columns, without colours.
+pub fn usage_table(joints: &[String], usages: &[Usage], width: usize) -> String {
     let mut table = headed(["joint", "limit", "", "reference", "share", "t [s]"].into_iter());
     for usage in usages {
         let name = joints.get(usage.joint).map_or(NONE, String::as_str);
@@ -122,7 +123,7 @@ pub fn usage_table(joints: &[String], usages: &[Usage]) -> String {
         let words = [name, usage.key].map(Cell::new);
         table.add_row(Row::from(words.into_iter().chain(numbers.map(right)).collect::<Vec<_>>()));
     }
-    table.to_string()
+    laid_out(&table, 2, width)
 }
 
 /// A dash for what a run that diverged at once has no figure of.

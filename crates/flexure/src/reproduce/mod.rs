@@ -43,18 +43,22 @@ pub struct Experiment {
 }
 
 impl Experiment {
-    /// Runs `scenario`; `progress` is told the fraction done.
+    /// Runs `scenario`; `progress` is told the fraction done. Of a run that it breaks off nothing more is looked at.
     ///
     /// # Errors
     /// As [`run`].
     pub fn new(scenario: Scenario, progress: Progress<'_>) -> Result<Self, Problems> {
         let mut run = run(&scenario, progress)?;
-        let sampled = probe(&scenario)?;
-        if is_about(&scenario, sampled.as_ref()) {
+        let sampled = if run.broken_off.is_some() { None } else { probe(&scenario)? };
+        if run.broken_off.is_none() && is_about(&scenario, sampled.as_ref()) {
             run.summary.rate_certified = certified_rate(&scenario)?;
         }
-        let ended = run.divergence.map(|divergence| format!("; diverged at t = {:.3} s", divergence.time));
-        let subtitle = describe(&scenario) + &ended.unwrap_or_default();
+        let ended = match (run.divergence, run.broken_off) {
+            (Some(divergence), _) => format!("; diverged at t = {:.3} s", divergence.time),
+            (None, Some(time)) => format!("; broken off at t = {time:.3} s"),
+            (None, None) => String::new(),
+        };
+        let subtitle = describe(&scenario) + &ended;
         let options = FigureOptions { title: scenario.name.clone(), subtitle };
         let figure = four_panel(&run.trace, &options);
         Ok(Self { scenario, run, sampled, figure })
@@ -95,7 +99,7 @@ impl Certified {
 /// Proves the rates of the paper's experiments.
 ///
 /// # Errors
-/// If a built-in file is broken, or it was broken off.
+/// If a built-in file is broken.
 pub fn certificates() -> Result<Vec<Certified>, Problems> {
     CERTIFIED
         .par_iter()
@@ -136,10 +140,10 @@ fn unknown(options: &[&str]) -> Option<String> {
 }
 
 /// Runs the experiments of the paper, on all cores. `progress` is told the number of the experiment and the fraction of
-/// it that is done.
+/// it that is done; what it breaks off are runs that end there.
 ///
 /// # Errors
-/// If a built-in file is broken, or it was broken off.
+/// If a built-in file is broken.
 pub fn reproduce(progress: PartProgress<'_>) -> Result<Vec<Experiment>, Problems> {
     REPRODUCED
         .par_iter()

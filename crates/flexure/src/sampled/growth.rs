@@ -1,5 +1,6 @@
 //! What the maps along a reference make of small errors one after the other.
 
+use crate::laws::Controller;
 use crate::linalg::{Dense, spectral_radius};
 use crate::sampled::{Place, Probe, ROUNDING};
 
@@ -12,9 +13,8 @@ const STANDS: f64 = 1e-9;
 
 impl Probe<'_> {
     /// By what small errors grow a control period on the whole way along the reference, if less than 1 and the place `worst`, at which
-    /// they grow, is one that the robot passes in time.
-    pub(super) fn passed(&self, worst: usize) -> Option<f64> {
-        let law = &self.scenario.controller;
+    /// they grow with `law`, is one that the robot passes in time.
+    pub(super) fn passed(&self, law: &Controller, worst: usize) -> Option<f64> {
         let period = self.scenario.control_period;
         let spot = &self.spots[worst];
         let grows = |radius: f64| (MOMENT / period) * radius.ln() > LOST.ln();

@@ -88,7 +88,7 @@ pub enum Place {
 /// As [`Scenario::open`].
 pub fn probe(scenario: &Scenario) -> Result<Option<Sampled>, Problems> {
     let Some(probe) = Probe::new(scenario)? else { return Ok(None) };
-    let (radius, worst, growth) = probe.found();
+    let (radius, worst, growth) = probe.found(&scenario.controller);
     let stable = growth.is_some();
     let advice = if stable { None } else { advice::advice(&probe, worst)? };
     Ok(Some(Sampled {
@@ -108,7 +108,7 @@ pub fn probe(scenario: &Scenario) -> Result<Option<Sampled>, Problems> {
 /// # Errors
 /// As [`Scenario::open`].
 pub(crate) fn is_stable(scenario: &Scenario) -> Result<bool, Problems> {
-    Ok(Probe::new(scenario)?.is_none_or(|probe| probe.found().2.is_some()))
+    Ok(Probe::new(scenario)?.is_none_or(|probe| probe.found(&scenario.controller).2.is_some()))
 }
 
 /// The sampled loop of a scenario, made ready to be looked at under many laws.
@@ -123,9 +123,22 @@ impl<'a> Outlook<'a> {
         Probe::new(scenario).map(Self)
     }
 
-    /// The largest spectral radius that counts under `law`, NaN where the law has no slope; none where nothing is looked at.
-    pub fn radius(&self, law: &Controller) -> Option<f64> {
-        self.0.as_ref().map(|probe| probe.worst(law).0)
+    /// By what small errors grow in a control period under `law`: the largest spectral radius that counts, or what becomes of them on the
+    /// whole way along the reference where they grow at some places and shrink on the whole. NaN where the law has no slope; none where
+    /// nothing is looked at.
+    pub fn growth(&self, law: &Controller) -> Option<f64> {
+        self.0.as_ref().map(|probe| {
+            let (radius, _, growth) = probe.found(law);
+            growth.unwrap_or(radius)
+        })
+    }
+
+    /// The largest spectral radius under `law` at some of the places: a first idea, for a fifth of the effort.
+    pub fn first_idea(&self, law: &Controller) -> Option<f64> {
+        let largest = |radii: f64, radius: f64| if radius.is_nan() { radius } else { radii.max(radius) };
+        let probe = self.0.as_ref()?;
+        let some = probe.spots.iter().filter(|spot| spot.place == Place::Reference).step_by(5);
+        Some(some.map(|spot| probe.radius(spot, law)).fold(0.0, largest))
     }
 }
 
@@ -254,10 +267,10 @@ impl<'a> Probe<'a> {
         around.cycle(&self.lifted.law(law, spot.time, &motion))
     }
 
-    /// The largest spectral radius that counts, where it is, and by what small errors shrink a control period, if they do.
-    fn found(&self) -> (f64, usize, Option<f64>) {
-        let (radius, worst) = self.worst(&self.scenario.controller);
-        let growth = if radius < 1.0 + ROUNDING { Some(radius) } else { self.passed(worst) };
+    /// The largest spectral radius with `law` that counts, where it is, and by what small errors shrink a control period, if they do.
+    fn found(&self, law: &Controller) -> (f64, usize, Option<f64>) {
+        let (radius, worst) = self.worst(law);
+        let growth = if radius < 1.0 + ROUNDING { Some(radius) } else { self.passed(law, worst) };
         (radius, worst, growth)
     }
 

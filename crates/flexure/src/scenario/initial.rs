@@ -35,14 +35,15 @@ pub(crate) struct Rest<'a> {
 }
 
 impl<'a> Rest<'a> {
-    /// Of a scenario with these parts.
+    /// Of a scenario with these parts, if all could be read.
     pub fn of(
-        robot: &'a Robot,
-        plant: &Plant,
-        imperfections: &[Imperfection],
-        reference: &Reference,
-    ) -> Self {
-        let springs: Vec<&Spring> = imperfections.iter().filter_map(Imperfection::of).collect();
+        robot: Option<&'a Robot>,
+        plant: Option<&Plant>,
+        imperfections: Option<&[Imperfection]>,
+        timed: Option<&Timed>,
+    ) -> Option<Self> {
+        let (robot, plant, timed) = (robot?, plant?, timed?);
+        let springs: Vec<&Spring> = imperfections?.iter().filter_map(Imperfection::of).collect();
         let hardening = |i: usize| {
             let own = plant.spring_hardening.as_ref().map_or(0.0, |hardening| hardening[i]);
             springs.iter().fold(own, |sum, spring| sum + spring.hardening[i])

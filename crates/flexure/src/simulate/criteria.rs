@@ -63,6 +63,18 @@ impl Measure {
         }
     }
 
+    /// Its key in `[accept]`.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Error => "error",
+            Self::Torque => "torque",
+            Self::Speed => "speed",
+            Self::Deflection => "deflection",
+            Self::TorqueChange => "torque_change",
+            Self::AtLimit => "at_limit",
+        }
+    }
+
     /// Its unit at a joint of the kind `kind`.
     pub fn unit(self, kind: JointKind) -> &'static str {
         let unit: Unit = match self {

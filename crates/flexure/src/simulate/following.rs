@@ -52,7 +52,7 @@ pub struct Accepted {
 pub struct Reason {
     /// Name of the joint; none for what concerns the whole robot.
     pub joint: Option<String>,
-    /// What is beyond its limit; none for loops that diverged and robots that were stopped.
+    /// What is beyond its limit; none for loops that diverged, robots that were stopped and runs that were broken off.
     pub measure: Option<Measure>,
     /// Its largest value; NaN (null in JSON) without a measure.
     pub value: f64,
@@ -141,15 +141,21 @@ impl Watch {
         self.stopped_since = instant.stopped.then(|| self.stopped_since.unwrap_or(t));
     }
 
-    /// The verdict on the run that ends here, of a robot with these `joints`.
-    pub(crate) fn verdict(&self, joints: &[MovingJoint], divergence: Option<&Divergence>) -> Following {
+    /// The verdict on the run that ends here, of a robot with these `joints`; `broken_off` is when that was \[s\], if the run
+    /// should have gone on.
+    pub(crate) fn verdict(
+        &self,
+        joints: &[MovingJoint],
+        divergence: Option<&Divergence>,
+        broken_off: Option<f64>,
+    ) -> Following {
         let bounds = self.criteria.bounds(&self.size);
         let used = if divergence.is_some() {
             Vec::new()
         } else {
             bounds.iter().filter_map(|bound| self.used(bound, joints)).collect()
         };
-        let mut reasons = Vec::new();
+        let mut reasons: Vec<Reason> = broken_off.map(Reason::broken_off).into_iter().collect();
         match (divergence, self.stopped_since) {
             (Some(divergence), _) => reasons.push(Reason::whole(divergence.time, divergence.to_string())),
             (None, Some(since)) => {
@@ -227,6 +233,10 @@ impl Watch {
 }
 
 impl Reason {
+    fn broken_off(time: f64) -> Self {
+        Self::whole(time, format!("the run was broken off at t = {} s", short(time, 4)))
+    }
+
     fn whole(time: f64, words: String) -> Self {
         Self { joint: None, measure: None, value: f64::NAN, limit: f64::NAN, time: Some(time), words }
     }

@@ -40,7 +40,7 @@ pub use interface::{Commanded, Errors, Loop, Observed, Signal};
 pub use ledger::Ledger;
 pub use limits::exceeded;
 pub use preload::preload;
-pub use run::{Run, measure, measure_by, run};
+pub use run::{Run, measure, measure_by, measure_watched, run};
 pub use simulation::{Cause, Divergence, Hold, Instant, Simulation, Timing};
 pub use stepper::Stepper;
 pub use stepping::Stepping;

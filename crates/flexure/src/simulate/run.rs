@@ -4,7 +4,7 @@ use std::time::Instant as Clock;
 
 use crate::files::Problems;
 use crate::imperfections::Imperfection;
-use crate::progress::{Progress, tell, unwatched};
+use crate::progress::{Progress, unwatched};
 use crate::scenario::Scenario;
 use crate::simulate::assembly;
 use crate::simulate::criteria::Criteria;
@@ -25,6 +25,8 @@ pub struct Run {
     pub trace: Trace,
     /// Set if the loop diverged before the end; trace and summary then end there.
     pub divergence: Option<Divergence>,
+    /// When it was broken off \[s\], if it was: trace and summary end there, and it does not count as following.
+    pub broken_off: Option<f64>,
     /// What the guard kept of its stops; none without a guard.
     pub faults: Option<FaultLog>,
 }
@@ -39,10 +41,11 @@ impl Scenario {
     }
 }
 
-/// Simulates a scenario. `progress` is told the fraction done at every control instant.
+/// Simulates a scenario. `progress` is told the fraction done at every control instant; what it breaks off ends there
+/// ([`Run::broken_off`]).
 ///
 /// # Errors
-/// As [`Scenario::open`], and [`Problems::interrupted`] if it was broken off.
+/// As [`Scenario::open`].
 pub fn run(scenario: &Scenario, progress: Progress<'_>) -> Result<Run, Problems> {
     simulate(scenario, &Criteria::of(scenario)?, progress, true)
 }
@@ -63,6 +66,20 @@ pub fn measure_by(scenario: &Scenario, criteria: &Criteria) -> Result<Run, Probl
     simulate(scenario, criteria, &unwatched, false)
 }
 
+/// As [`measure_by`], with `progress` told the fraction done at every control instant.
+///
+/// # Errors
+/// As [`Scenario::open`], and [`Problems::interrupted`] if it was broken off: figures of a part of a run say nothing of the
+/// whole.
+pub fn measure_watched(
+    scenario: &Scenario,
+    criteria: &Criteria,
+    progress: Progress<'_>,
+) -> Result<Run, Problems> {
+    let run = simulate(scenario, criteria, progress, false)?;
+    if run.broken_off.is_some() { Err(Problems::interrupted()) } else { Ok(run) }
+}
+
 fn simulate(
     scenario: &Scenario,
     criteria: &Criteria,
@@ -76,8 +93,9 @@ fn simulate(
     let mut figures = Figures::new(limits.clone());
     let mut watch = Watch::new(criteria.clone(), limits);
     let mut recorder = traced.then(|| Recorder::new(&*held));
-    let mut divergence = None;
-    for _ in 0..=periods(scenario) {
+    let (mut divergence, mut broken_off) = (None, None);
+    let last = periods(scenario);
+    for instant in 0..=last {
         if let Err(diverged) = held.step() {
             divergence = Some(diverged);
             break;
@@ -86,13 +104,17 @@ fn simulate(
         let rate = recorder.as_mut().map_or(f64::NAN, |recorder| recorder.record(&*held));
         figures.record(&observed, rate);
         watch.record(&observed);
-        tell(progress, observed.t / scenario.duration)?;
+        // The last instant is the end of the run, whoever watches.
+        if progress(observed.t / scenario.duration).is_break() && instant < last {
+            broken_off = Some(observed.t);
+            break;
+        }
     }
     let seconds = started.elapsed().as_secs_f64();
-    let following = watch.verdict(&scenario.robot.joints, divergence.as_ref());
+    let following = watch.verdict(&scenario.robot.joints, divergence.as_ref(), broken_off);
     let summary = summary(scenario, &figures, following, &*held, divergence.is_some(), seconds);
     let trace = recorder.map(|recorder| recorder.trace).unwrap_or_default();
-    Ok(Run { summary, trace, divergence, faults: held.faults() })
+    Ok(Run { summary, trace, divergence, broken_off, faults: held.faults() })
 }
 
 /// Number of control periods in the run.

@@ -13,7 +13,7 @@ use crate::laws::Controller;
 use crate::progress::Progress;
 use crate::sampled::is_stable;
 use crate::scenario::Scenario;
-use crate::simulate::{Criteria, Run, Summary, measure_by};
+use crate::simulate::{Criteria, Run, Summary, measure_watched};
 
 /// Gains that were searched for, and what they cost.
 #[derive(Clone, Debug)]
@@ -49,7 +49,7 @@ const CHATTER: f64 = 0.05;
 /// ```
 ///
 /// # Errors
-/// As [`run`](crate::simulate::run), at the latest after the run that is under way.
+/// As [`run`](crate::simulate::run), and [`Problems::interrupted`] if it was broken off.
 pub fn tune(
     scenario: &Scenario,
     budget: usize,
@@ -87,7 +87,7 @@ pub(crate) fn tune_from(
     let mut trial = feasible::pinned(scenario)?;
     let criteria = Criteria::of(&trial)?;
     // Whatever is wrong with the scenario is so for all gains.
-    let start = measure_by(&trial, &criteria)?;
+    let start = measure_watched(&trial, &criteria, &|_| progress(0.0))?;
     let (start_cost, start_error) = (judged(&trial, &start), penalised_error(&start.summary));
     let gains: Vec<Vec<f64>> =
         scenario.controller.gains().into_iter().map(|(_, values)| values.to_vec()).collect();
@@ -102,19 +102,23 @@ pub(crate) fn tune_from(
     let (tried, broken) = (Cell::new(0_usize), Cell::new(false));
     let at = |exponents: &[f64]| {
         let mut trial = trials.borrow_mut();
-        tried.set(tried.get() + 1);
-        if progress(tried.get() as f64 / budget as f64).is_break() {
-            broken.set(true);
-        }
-        // What the search still asks for costs nothing.
+        // What the search still asks for once it is broken off costs nothing.
         if broken.get() {
             return f64::INFINITY;
         }
+        let done = tried.replace(tried.get() + 1) as f64;
         trial.controller = scaled(exponents);
-        costs
-            .at(exponents, || measure_by(&trial, &criteria).map_or(f64::INFINITY, |run| judged(&trial, &run)))
+        let watched = |fraction: f64| progress((done + fraction) / budget as f64);
+        costs.at(exponents, || match measure_watched(&trial, &criteria, &watched) {
+            Ok(run) => judged(&trial, &run),
+            Err(problems) => {
+                broken.set(broken.get() || problems.is_interrupted());
+                f64::INFINITY
+            }
+        })
     };
-    let best = search(1 + gains.len(), HALF_WIDTH, budget, seed, &at);
+    let all = |points: &[Vec<f64>]| points.iter().map(|exponents| at(exponents)).collect();
+    let best = search(1 + gains.len(), HALF_WIDTH, budget, seed, &all);
     if broken.get() {
         return Err(Problems::interrupted());
     }

@@ -23,7 +23,7 @@ const FIRST_STEP: f64 = 0.25;
 /// of the budget evenly along the first direction, a quarter at random around the best of those, and the rest by Powell's
 /// COBYLA from the best so far. Random numbers come from `seed` alone.
 ///
-/// A cost that is not a number counts as infinite. M. J. D. Powell, *A direct search optimization method that models the
+/// `costs` gives those of several points at once, which it may look at side by side. A cost that is not a number counts as infinite. M. J. D. Powell, *A direct search optimization method that models the
 /// objective and constraint functions by linear interpolation*, 1994.
 ///
 /// # Panics
@@ -33,26 +33,32 @@ pub fn search(
     half_width: f64,
     budget: usize,
     seed: u64,
-    cost: &dyn Fn(&[f64]) -> f64,
+    costs: &dyn Fn(&[Vec<f64>]) -> Vec<f64>,
 ) -> BestPoint {
-    let finite = |x: &[f64]| Some(cost(x)).filter(|cost| !cost.is_nan()).unwrap_or(f64::INFINITY);
+    let finite = |points: &[Vec<f64>]| {
+        let numbers = costs(points).into_iter();
+        numbers.map(|cost| if cost.is_nan() { f64::INFINITY } else { cost }).collect::<Vec<_>>()
+    };
     let origin = vec![0.0; dimension];
-    let mut best = BestPoint { cost: finite(&origin), at: origin.clone(), evaluations: 1 };
+    let mut best = BestPoint { cost: f64::INFINITY, at: origin.clone(), evaluations: 0 };
+    best.consider_all(std::slice::from_ref(&origin), &finite);
     let along = if dimension == 0 { 0 } else { budget / 4 };
-    for i in 0..along {
+    let line = (0..along).map(|i| {
         let mut at = origin.clone();
         at[0] = half_width * (2.0 * (i as f64 + 0.5) / along as f64 - 1.0);
-        best.consider(&at, finite(&at));
-    }
+        at
+    });
+    best.consider_all(&line.collect::<Vec<_>>(), &finite);
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
     let around =
         Uniform::new_inclusive(-0.5 * half_width, 0.5 * half_width).expect("a half width above zero");
     let center = best.at.clone();
-    while dimension > 0 && best.evaluations < budget.div_ceil(2) {
+    let scattered = if dimension == 0 { 0 } else { budget.div_ceil(2).saturating_sub(best.evaluations) };
+    let points = (0..scattered).map(|_| {
         let step = |x: &f64| (x + around.sample(&mut random)).clamp(-half_width, half_width);
-        let at: Vec<f64> = center.iter().map(step).collect();
-        best.consider(&at, finite(&at));
-    }
+        center.iter().map(step).collect()
+    });
+    best.consider_all(&points.collect::<Vec<_>>(), &finite);
     let left = budget.saturating_sub(best.evaluations);
     if left == 0 || dimension == 0 {
         return best;
@@ -60,7 +66,7 @@ pub fn search(
     let start = best.at.clone();
     let tried = std::cell::RefCell::new(best);
     let objective = |x: &[f64], (): &mut ()| {
-        let cost = finite(x);
+        let cost = finite(&[x.to_vec()])[0];
         tried.borrow_mut().consider(x, cost);
         // The method fits planes: infinity has none.
         cost.min(f64::MAX.sqrt())
@@ -87,6 +93,12 @@ pub fn has_random_points(budget: usize) -> bool {
 }
 
 impl BestPoint {
+    fn consider_all(&mut self, points: &[Vec<f64>], costs: &dyn Fn(&[Vec<f64>]) -> Vec<f64>) {
+        for (at, cost) in points.iter().zip(costs(points)) {
+            self.consider(at, cost);
+        }
+    }
+
     fn consider(&mut self, at: &[f64], cost: f64) {
         self.evaluations += 1;
         if cost < self.cost {
@@ -100,6 +112,10 @@ impl BestPoint {
 mod tests {
     use super::search;
 
+    fn each(cost: impl Fn(&[f64]) -> f64) -> impl Fn(&[Vec<f64>]) -> Vec<f64> {
+        move |points| points.iter().map(|x| cost(x)).collect()
+    }
+
     fn bowl(x: &[f64]) -> f64 {
         x.iter().zip([0.7, -1.1, 0.4]).map(|(x, c)| (x - c) * (x - c)).sum()
     }
@@ -107,7 +123,7 @@ mod tests {
     /// The bottom of a bowl, to a hundredth of the distance at the start; never more points than allowed.
     #[test]
     fn finds_the_bottom_of_a_bowl_within_the_budget() {
-        let best = search(3, 2.0, 80, 1, &bowl);
+        let best = search(3, 2.0, 80, 1, &each(bowl));
         assert!(best.cost < 1e-4 * bowl(&[0.0; 3]), "{best:?}");
         assert!(best.evaluations <= 80);
         assert_eq!(best.cost.to_bits(), bowl(&best.at).to_bits());
@@ -125,13 +141,13 @@ mod tests {
                 bowl(x)
             }
         };
-        let best = search(3, 2.0, 80, 1, &cliff);
+        let best = search(3, 2.0, 80, 1, &each(cliff));
         assert!(best.cost < 0.01, "{best:?}");
     }
 
     #[test]
     fn the_same_seed_finds_the_same_point() {
-        assert_eq!(search(3, 2.0, 40, 7, &bowl), search(3, 2.0, 40, 7, &bowl));
-        assert_ne!(search(3, 2.0, 20, 7, &bowl).at, search(3, 2.0, 20, 8, &bowl).at);
+        assert_eq!(search(3, 2.0, 40, 7, &each(bowl)), search(3, 2.0, 40, 7, &each(bowl)));
+        assert_ne!(search(3, 2.0, 20, 7, &each(bowl)).at, search(3, 2.0, 20, 8, &each(bowl)).at);
     }
 }

@@ -17,7 +17,7 @@ use flexure::files::{Outside, TASKS};
 use flexure::imperfections::Imperfection;
 use flexure::report::chatter_figure;
 use flexure::report::effort_figure;
-use flexure::report::{leaderboard_page, leaderboard_table};
+use flexure::report::{WIDTH, leaderboard_page, leaderboard_table};
 use flexure::scenario::load_scenario;
 
 fn named(names: &[&str]) -> Vec<Entrant> {
@@ -145,7 +145,7 @@ fn errors_that_overlap_over_the_seeds_are_ties() {
     assert_eq!(["lucky", "steady", "apart", "lost"].map(|law| standing(law).place), [1, 1, 3, 4]);
     assert_eq!(["lucky", "steady", "lost"].map(|law| standing(law).wins), [1, 1, 0]);
     assert_eq!(standing("lost").unfinished, 1);
-    let table = leaderboard_table(&board);
+    let table = leaderboard_table(&board, WIDTH);
     assert!(table.contains("1000…9000") && table.contains("5 seeds"), "{table}");
     assert!(leaderboard_page(&board, &[]).contains("1000…9000"));
 }
@@ -255,7 +255,7 @@ fn results_depend_on_task_law_budget_and_seed_alone() {
 
     let page = |board: &Leaderboard| leaderboard_page(board, &[]);
     assert_eq!(page(&board), page(&compared(2, &tasks, &laws, 6)));
-    assert!(leaderboard_table(&board).lines().all(|line| line.chars().count() <= 100));
+    assert!(leaderboard_table(&board, WIDTH).lines().all(|line| line.chars().count() <= 100));
 }
 
 /// The budget is kept, the search never makes a law worse, and what ranks is the error it reports.
@@ -312,7 +312,8 @@ fn laws_that_are_late(unlimited: bool) {
     let json = serde_json::to_value(&board).expect("JSON");
     assert_eq!(json["tasks"][0]["scores"][0]["rms_error"].is_null(), unlimited);
     assert!(
-        leaderboard_table(&board).contains('—') && effort_figure(&board).svg().contains("do not follow:")
+        leaderboard_table(&board, WIDTH).contains('—')
+            && effort_figure(&board).svg().contains("do not follow:")
     );
 }
 

@@ -1,18 +1,11 @@
 //! Robots and loops with their joint count hidden: what `Arm` and `Loop` promise.
 
-use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicUsize, Ordering};
-
-use flexure::compare::{Search, compare, entrants, tasks};
 use flexure::core::scalar::{Interval, Scalar};
-use flexure::files::{Outside, ROBOTS, SCENARIOS};
-use flexure::margins::margins;
+use flexure::files::{ROBOTS, SCENARIOS};
 use flexure::progress::unwatched;
-use flexure::reproduce::reproduce;
 use flexure::robot::{Arm, Mismatch, load_robot};
 use flexure::scenario::{Scenario, load_scenario};
 use flexure::simulate::{Loop, Observed, run};
-use flexure::tune::tune;
 
 use crate::common::Random;
 
@@ -239,32 +232,4 @@ fn wrong_lengths_are_refused() {
         assert!(message.contains(said), "{message}");
     }
     assert!(held.torque(0.0, &[0.0; 30], &mut [0.0; 7]).is_err(), "not a multiple of 28");
-}
-
-/// Long jobs end soon after their watcher says so, and say that they were broken off.
-#[test]
-fn long_jobs_can_be_broken_off() {
-    let calls = AtomicUsize::new(0);
-    let after = |limit: usize| {
-        calls.store(0, Ordering::Relaxed);
-        let calls = &calls;
-        move |_: f64| match calls.fetch_add(1, Ordering::Relaxed) {
-            seen if seen >= limit => ControlFlow::Break(()),
-            _ => ControlFlow::Continue(()),
-        }
-    };
-    let scenario = scenario("two-link-hardware");
-    let broken = run(&scenario, &after(10)).expect_err("broken off");
-    assert!(broken.is_interrupted() && calls.load(Ordering::Relaxed) == 11, "{broken}");
-    assert!(tune(&scenario, 1000, 0, &after(3)).expect_err("broken off").is_interrupted());
-    assert!(margins(&scenario, &after(2)).expect_err("broken off").is_interrupted());
-    let watched = after(4);
-    let (tasks, laws) =
-        (tasks(&[], Outside::Refused), entrants(&["pd".to_owned(), "vcbc".to_owned()]).expect("laws"));
-    let tasks = &tasks.expect("built in")[..2];
-    let search = Search { budget: 1000, ..Search::default() };
-    let broken = compare(tasks, &laws, search, &|_, fraction| watched(fraction)).expect_err("broken off");
-    assert!(broken.is_interrupted(), "{broken}");
-    assert!(reproduce(&|_, _| ControlFlow::Break(())).expect_err("broken off").is_interrupted());
-    assert!(run(&scenario, &unwatched).is_ok());
 }

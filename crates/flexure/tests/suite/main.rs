@@ -6,6 +6,7 @@ mod along;
 mod architecture;
 mod at_rest;
 mod bad_files;
+mod broken_off;
 mod built_in;
 mod certify;
 mod changes;

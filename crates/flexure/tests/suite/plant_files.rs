@@ -4,7 +4,7 @@ use std::fs;
 
 use flexure::files::{Problem, Problems};
 use flexure::report::html;
-use flexure::report::summary_table;
+use flexure::report::{WIDTH, summary_table};
 use flexure::reproduce::{Experiment, report};
 use flexure::scenario::{Plant, Scenario, scenario_from_text};
 use flexure::simulate::preload;
@@ -141,7 +141,7 @@ fn results_say_what_the_law_does_not_know() {
     let said = "unknown to the law: rotor coupling, spring hardening";
     assert!(experiment.figure.svg().contains("with rotor coupling, spring hardening"));
     assert!(html(&report(std::slice::from_ref(&experiment), &[])).contains(said));
-    let table = summary_table(std::slice::from_ref(summary));
+    let table = summary_table(std::slice::from_ref(summary), WIDTH);
     assert!(table.contains("unknown") && table.contains("rotor coupling"), "{table}");
 }
 

@@ -1,7 +1,10 @@
 //! Verdicts on the limits of a robot.
 
+use std::ops::ControlFlow;
+
 use flexure::core::linalg::Vector;
 use flexure::core::model::Motion;
+use flexure::progress::unwatched;
 use flexure::prove::along::{Limit, along};
 use flexure::prove::engine::verdict::Verdict;
 use flexure::scenario::load_scenario;
@@ -13,7 +16,7 @@ use super::{floats, level};
 fn verdict(key: &str, share: f64) -> Limit {
     let mut scenario = load_scenario("two-link-coupled-tanh-smooth").unwrap();
     let level = level(&scenario, 0.01);
-    let found = along(&scenario, &level, 600).unwrap();
+    let found = along(&scenario, &level, 600, &unwatched).unwrap().unwrap();
     assert!(found.limits.is_empty());
     let limits = &mut scenario.robot.limits;
     let (peaks, place) = match key {
@@ -22,7 +25,7 @@ fn verdict(key: &str, share: f64) -> Limit {
         _ => (&found.velocity, &mut limits.velocity),
     };
     place[1] = peaks.nominal[1] + share * (peaks.bound[1] - peaks.nominal[1]);
-    let found = along(&scenario, &level, 600).unwrap();
+    let found = along(&scenario, &level, 600, &unwatched).unwrap().unwrap();
     let [limit] = &found.limits[..] else { panic!("{:?}", found.limits) };
     assert_eq!((limit.joint, limit.key), (1, key));
     if let Verdict::Refuted(witness) = &limit.verdict {
@@ -75,5 +78,30 @@ fn limits_near_the_bound_are_not_wrongly_proved() {
     println!("{limit:?}");
     if let Verdict::Proved(bound) = limit.verdict {
         assert!(bound <= limit.limit);
+    }
+}
+
+/// Bounds that are broken off hold: they are those of fewer slabs, and never below what goes on finds.
+#[test]
+fn bounds_that_are_broken_off_are_wider() {
+    let scenario = load_scenario("two-link-coupled-tanh-smooth").unwrap();
+    let level = level(&scenario, 0.01);
+    let until = |limit: f64| {
+        let watched = |fraction: f64| {
+            if fraction < limit { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        };
+        along(&scenario, &level, 600, &watched).unwrap()
+    };
+    assert!(until(0.0).is_none() && until(0.03).is_none(), "the run is not covered");
+    let whole = along(&scenario, &level, 600, &unwatched).unwrap().unwrap();
+    for part in [0.1, 0.3].map(|limit| until(limit).expect("covered")) {
+        let pairs = [(&part.velocity, &whole.velocity), (&part.torque, &whole.torque)];
+        for (part, whole) in pairs {
+            assert!(
+                part.bound.iter().zip(&whole.bound).all(|(part, whole)| part >= whole),
+                "{part:?} {whole:?}"
+            );
+        }
+        assert!(part.torque.bound[1] > whole.torque.bound[1], "the rest was worth while");
     }
 }

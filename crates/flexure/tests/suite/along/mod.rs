@@ -10,6 +10,7 @@ use flexure::core::linalg::Vector;
 use flexure::core::model::{Links, Motion};
 use flexure::core::reference::Reference as _;
 use flexure::core::virtual_system::{Structure, error_coordinates};
+use flexure::progress::unwatched;
 use flexure::prove::along::{Along, along, start_level};
 use flexure::prove::engine::number::Number;
 use flexure::prove::question::{Question, Region, problem};
@@ -76,7 +77,7 @@ fn bounds_hold_and_are_tight() {
         let scenario = load_scenario(name).unwrap();
         let level = level(&scenario, disturbance);
         let start = std::time::Instant::now();
-        let found = along(&scenario, &level, 2000).unwrap();
+        let found = along(&scenario, &level, 2000, &unwatched).unwrap().unwrap();
         let seconds = start.elapsed().as_secs_f64();
         let ratios = if name.starts_with("pendulum") {
             sampled(&floats::pendulum(&scenario), &found, scenario.duration)
@@ -105,7 +106,7 @@ fn torques_that_jump_are_bounded() {
         start: 0.3,
         duration: 0.9,
     });
-    let found = along(&scenario, &level(&scenario, 1e-6), 2000).unwrap();
+    let found = along(&scenario, &level(&scenario, 1e-6), 2000, &unwatched).unwrap().unwrap();
     let system = floats::arm(&scenario);
     let mut largest = [0.0_f64; 2];
     for t in [0.3_f64, 1.2].iter().flat_map(|&t| [t - 1e-9, t, t + 1e-9]) {
@@ -127,7 +128,7 @@ fn torques_that_jump_are_bounded() {
         start: 0.3,
         duration: 0.9,
     });
-    let problems = along(&scenario, &Number::decimal(1e-6), 10).unwrap_err();
+    let problems = along(&scenario, &Number::decimal(1e-6), 10, &unwatched).unwrap_err();
     assert!(problems.to_string().contains("quintic jumps"), "{problems}");
 }
 
@@ -158,7 +159,7 @@ fn seven_joints() {
     let mut scenario = load_scenario("panda-tanh-smooth").unwrap();
     let level = level(&scenario, 1e-4);
     scenario.duration = 0.04;
-    let found = along(&scenario, &level, 8).unwrap();
+    let found = along(&scenario, &level, 8, &unwatched).unwrap().unwrap();
     for (bound, nominal) in found.torque.bound.iter().zip(&found.torque.nominal) {
         assert!(nominal <= bound && *bound < nominal + 0.3, "{bound} {nominal}");
     }

@@ -2,6 +2,7 @@
 
 use flexure::core::linalg::Vector;
 use flexure::core::model::{Links, Motion};
+use flexure::progress::unwatched;
 use flexure::prove::along::{along, start_level};
 use flexure::scenario::Scenario;
 use flexure::scenario::load_scenario;
@@ -20,7 +21,7 @@ fn stays<L: Links<f64, N> + Clone, const N: usize>(
 ) -> f64 {
     let level = level(scenario, largest);
     assert!(start_level(scenario).unwrap() <= level.bounds().lo());
-    let found = along(scenario, &level, 1000).unwrap();
+    let found = along(scenario, &level, 1000, &unwatched).unwrap().unwrap();
     let bounds = bounds(&found);
     let [q_l, q_m] = [&scenario.initial.q_l, &scenario.initial.q_m].map(|q| Vector::from_fn(|i| q[i]));
     let start = Motion { q_l, q_m, v_l: Vector::ZERO, v_m: Vector::ZERO };

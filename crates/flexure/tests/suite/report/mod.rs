@@ -8,7 +8,7 @@ use flexure::report::AssumedNumber;
 use flexure::report::RunsReport;
 use flexure::report::decimate::{bucket_size, decimate, envelope};
 use flexure::report::{
-    CertificateReport, FigureOptions, RunReport, certificate_table, comparison, four_panel, html,
+    CertificateReport, FigureOptions, RunReport, WIDTH, certificate_table, comparison, four_panel, html,
     proof_table, summary_table,
 };
 use flexure::scenario::load_scenario;
@@ -223,9 +223,9 @@ fn proof() -> ProofSummary {
 
 #[test]
 fn proofs_fit_100_columns() {
-    let table = certificate_table(&[proof()]);
+    let table = certificate_table(&[proof()], WIDTH);
     assert!(table.lines().all(|line| line.chars().count() <= 100), "{table}");
-    let text = proof_table(&proof());
+    let text = proof_table(&proof(), WIDTH);
     for line in ["region", "invariant", "start", "mass matrix", "tightness", "measures", "structure"] {
         assert!(text.contains(&format!("\n{line} ")), "{line} in\n{text}");
     }
@@ -254,7 +254,7 @@ fn the_page_stands_alone_and_comes_out_the_same() {
 #[test]
 fn the_terminal_table_fits_100_columns() {
     let long = fake::summary("a-scenario-with-quite-a-long-name-in-it");
-    let table = summary_table(&[fake::summary("paper-tanh"), long]);
+    let table = summary_table(&[fake::summary("paper-tanh"), long], WIDTH);
     assert!(table.lines().all(|line| line.chars().count() <= 100), "{table}");
     assert!(table.contains("5790") && table.contains("123×10⁻⁹") && !table.contains('\u{1b}'), "{table}");
     assert!(!table.contains("proved") && !table.contains("limit"), "no run has them: {table}");
@@ -265,10 +265,10 @@ fn the_terminal_table_fits_100_columns() {
         rate_certified: Some(2.5),
         ..fake::summary("two-link-coupled-tanh-smooth")
     };
-    let table = summary_table(std::slice::from_ref(&longest));
+    let table = summary_table(std::slice::from_ref(&longest), WIDTH);
     assert!(table.lines().all(|line| line.chars().count() <= 100), "{table}");
     assert!(table.contains(" two-link-coupled-tanh-smooth ") && table.contains("2.50"), "{table}");
-    let limited = summary_table(&[Summary { saturated_fraction: 0.25, ..longest }]);
+    let limited = summary_table(&[Summary { saturated_fraction: 0.25, ..longest }], WIDTH);
     assert!(limited.contains("limit") && limited.contains("25.0"), "{limited}");
     assert!(limited.lines().all(|line| line.chars().count() <= 100), "{limited}");
 }

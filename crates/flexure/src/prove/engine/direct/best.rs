@@ -1,5 +1,6 @@
 //! The best rate that can be proved, next to the best that samples allow.
 
+use crate::progress::unwatched;
 use crate::prove::engine::direct::bisection::{Proved, bisect};
 use crate::prove::engine::direct::flow::Flow;
 use crate::prove::engine::direct::samples;
@@ -42,7 +43,7 @@ const FACTORS: [f64; 13] = [
 /// does not shrink, in some direction.
 pub fn best_rate(flow: &dyn Flow, budget: usize) -> Verdict<BestRate, DirectWitness> {
     let undecided = |at: String, spent| Verdict::Undecided(Undecided { at, spent });
-    let Some(mut weakest) = samples::weakest(flow) else {
+    let Some(mut weakest) = samples::weakest(flow, &|| true) else {
         return undecided("the metric is positive definite at no sample".to_owned(), 0);
     };
     let Some((mut upper, _)) = weakest.bounds(flow, 0.0) else {
@@ -56,7 +57,7 @@ pub fn best_rate(flow: &dyn Flow, budget: usize) -> Verdict<BestRate, DirectWitn
         let end = spent + (budget - spent) / (FACTORS.len() - done);
         // A witness lowers what is possible: the same part of less.
         while spent < end && upper > 0.0 {
-            let (verdict, boxes) = bisect(flow, upper * factor, end - spent);
+            let (verdict, boxes) = bisect(flow, upper * factor, end - spent, &unwatched);
             spent += boxes;
             match verdict {
                 Verdict::Proved(Proved { rate, .. }) => {

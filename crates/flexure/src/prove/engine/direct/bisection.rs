@@ -3,6 +3,7 @@
 use flexure_core::scalar::Interval;
 
 use crate::linalg::Symmetric;
+use crate::progress::{Progress, unwatched};
 use crate::prove::engine::direct::definite::{Definite, definite};
 use crate::prove::engine::direct::flow::{Balance, Flow};
 use crate::prove::engine::direct::witness::{DirectWitness, Sample};
@@ -22,38 +23,61 @@ pub struct Proved {
 ///
 /// [`Verdict::Proved`] is rigorous for every value of constants that are intervals, and so is [`Verdict::Refuted`].
 pub fn prove(flow: &dyn Flow, beta: f64, budget: usize) -> Verdict<Proved, DirectWitness> {
+    prove_watched(flow, beta, budget, &unwatched)
+}
+
+/// [`prove`], with `progress` told about what fraction is done at every box; what it breaks off is undecided.
+pub fn prove_watched(
+    flow: &dyn Flow,
+    beta: f64,
+    budget: usize,
+    progress: Progress<'_>,
+) -> Verdict<Proved, DirectWitness> {
     /// Boxes before samples: most rates that hold with room to spare take no more, and samples cost as much as hundreds.
     const FEW: usize = 32;
-    let (verdict, spent) = bisect(flow, beta, budget.min(FEW));
-    if !matches!(verdict, Verdict::Undecided(_)) {
+    let few = budget.min(FEW);
+    let share = few as f64 / budget.max(1) as f64;
+    let (verdict, spent) = bisect(flow, beta, few, &|fraction| progress(share * fraction));
+    let goes_on = || progress(share).is_continue();
+    if !matches!(verdict, Verdict::Undecided(_)) || !goes_on() {
         return verdict;
     }
-    if let Some(witness) = samples::weakest(flow).and_then(|sample| sample.refutes(flow, beta)) {
+    if let Some(witness) = samples::weakest(flow, &goes_on).and_then(|sample| sample.refutes(flow, beta)) {
         return Verdict::Refuted(witness);
     }
-    match bisect(flow, beta, budget - spent).0 {
+    match bisect(flow, beta, budget - spent, &|fraction| progress(share + (1.0 - share) * fraction)).0 {
         Verdict::Proved(proved) => Verdict::Proved(Proved { boxes: spent + proved.boxes, ..proved }),
         Verdict::Undecided(at) => Verdict::Undecided(Undecided { spent: spent + at.spent, ..at }),
         refuted @ Verdict::Refuted(_) => refuted,
     }
 }
 
-/// [`prove`] without looking at samples first, only boxes that resist are searched for witnesses; and the boxes it took.
-pub(crate) fn bisect(flow: &dyn Flow, beta: f64, budget: usize) -> (Verdict<Proved, DirectWitness>, usize) {
+/// [`prove_watched`] without looking at samples first, only boxes that resist are searched for witnesses; and the boxes it took.
+pub(crate) fn bisect(
+    flow: &dyn Flow,
+    beta: f64,
+    budget: usize,
+    progress: Progress<'_>,
+) -> (Verdict<Proved, DirectWitness>, usize) {
     let root: Vec<Interval> = flow.coordinates().iter().map(|c| c.range).collect();
     let undecided = |at: String, spent| (Verdict::Undecided(Undecided { at, spent }), spent);
     if !beta.is_finite() {
         return undecided(format!("a rate of {beta}"), 0);
     }
     let mut relevant = None;
-    let mut open = vec![root.clone()];
-    let mut spent = 0;
-    while let Some(at) = open.pop() {
-        if spent == budget {
+    // Boxes, and the part of the region that each is by the cuts that made it.
+    let mut open = vec![(root.clone(), 1.0)];
+    let (mut spent, mut done) = (0, 0.0_f64);
+    while let Some((at, part)) = open.pop() {
+        let fraction = done.max(spent as f64 / budget.max(1) as f64);
+        if spent == budget || progress(fraction).is_break() {
             return undecided(describe(flow, &at), spent);
         }
         spent += 1;
-        let Some(Doubt { about, reach }) = decide(flow, &at, beta) else { continue };
+        let Some(Doubt { about, reach }) = decide(flow, &at, beta) else {
+            done += part;
+            continue;
+        };
         let middle: Vec<f64> = at.iter().map(|x| x.midpoint()).collect();
         if let Some(witness) = Sample::new(flow, middle).and_then(|sample| sample.refutes(flow, beta)) {
             return (Verdict::Refuted(witness), spent);
@@ -65,10 +89,10 @@ pub(crate) fn bisect(flow: &dyn Flow, beta: f64, budget: usize) -> (Verdict<Prov
         let Some((i, (left, right))) = parts else {
             return undecided(describe(flow, &at), spent);
         };
-        for part in [left, right] {
+        for half in [left, right] {
             let mut piece = at.clone();
-            piece[i] = part;
-            open.push(piece);
+            piece[i] = half;
+            open.push((piece, 0.5 * part));
         }
     }
     (Verdict::Proved(Proved { rate: beta, boxes: spent }), spent)

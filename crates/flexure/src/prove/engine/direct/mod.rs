@@ -33,7 +33,7 @@ mod witness;
 
 pub use agreement::{Agreement, law_agreement};
 pub use best::{BestRate, best_rate};
-pub use bisection::{Proved, prove};
+pub use bisection::{Proved, prove, prove_watched};
 pub use closed_loop::{StateBox, VcbcLoop, full_turn, vcbc};
 pub use flow::{Balance, Coordinate, Flow, System, Twins};
 pub use jacobian::{jacobian, symmetric_part};

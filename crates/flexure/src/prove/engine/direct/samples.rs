@@ -10,8 +10,8 @@ use crate::prove::engine::direct::witness::Sample;
 const POINTS: usize = 256;
 
 /// The weakest of samples over the region: its middle, corners, points inside, then downhill from the weakest of those.
-/// `None` where the metric is none at any of them.
-pub(crate) fn weakest(flow: &dyn Flow) -> Option<Sample> {
+/// `None` where the metric is none at any of them. Once it no longer `goes_on`, it is the weakest of those so far.
+pub(crate) fn weakest(flow: &dyn Flow, goes_on: &dyn Fn() -> bool) -> Option<Sample> {
     let coordinates = flow.coordinates();
     let root: Vec<Interval> = coordinates.iter().map(|c| c.range).collect();
     let relevant = split::relevant(flow, &root);
@@ -34,13 +34,13 @@ pub(crate) fn weakest(flow: &dyn Flow) -> Option<Sample> {
     let mixed = (0..POINTS).map(|n| at(&|k| (2.999 * radical_inverse(n + 1, prime(k))).floor() / 2.0));
     let inside = (0..POINTS).map(|n| at(&|k| radical_inverse(n + 1, prime(k))));
     let points = middle.chain(corners).chain(mixed).chain(inside);
-    let samples = points.filter_map(|point| Sample::new(flow, point));
+    let samples = points.take_while(|_| goes_on()).filter_map(|point| Sample::new(flow, point));
     let weakest = samples.min_by(|a, b| a.rate.total_cmp(&b.rate))?;
-    Some(downhill(flow, &relevant, weakest))
+    Some(downhill(flow, &relevant, weakest, goes_on))
 }
 
 /// Compass search from `best`: one coordinate at a time, steps that halve.
-fn downhill(flow: &dyn Flow, relevant: &[usize], mut best: Sample) -> Sample {
+fn downhill(flow: &dyn Flow, relevant: &[usize], mut best: Sample, goes_on: &dyn Fn() -> bool) -> Sample {
     let coordinates = flow.coordinates();
     let mut step = 0.25;
     for _ in 0..24 {
@@ -48,6 +48,9 @@ fn downhill(flow: &dyn Flow, relevant: &[usize], mut best: Sample) -> Sample {
             let range = coordinates[i].range;
             let width = if range.width().is_finite() { range.width() } else { best.at[i].abs().max(1.0) };
             for sign in [-1.0, 1.0] {
+                if !goes_on() {
+                    return best;
+                }
                 let mut at = best.at.clone();
                 at[i] = (at[i] + sign * step * width).clamp(range.lo(), range.hi());
                 if let Some(sample) = Sample::new(flow, at).filter(|sample| sample.rate < best.rate) {

@@ -9,11 +9,14 @@ pub mod tube;
 pub mod witness;
 
 use std::collections::BTreeSet;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use closed_loop::TrackingLoop;
 use flexure_core::scalar::Interval;
 use rayon::prelude::*;
 use slab::Slab;
+
+use crate::progress::Progress;
 
 /// What to bound along a reference, and how many pieces of it may be looked at.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,35 +49,49 @@ const TIGHT: f64 = 0.01;
 /// Halving a slab is worth while as long as the last time lowered its bound by this share.
 const GAIN: f64 = 0.002;
 
-/// Bounds everything that `request` asks for.
-pub fn course(system: &dyn TrackingLoop, request: &AlongRequest) -> Course {
+/// Bounds everything that `request` asks for. Where `progress` breaks it off no more slabs are cut; none if it does so before
+/// all of the time is covered.
+pub fn course(system: &dyn TrackingLoop, request: &AlongRequest, progress: Progress<'_>) -> Option<Course> {
     let first = request.budget.clamp(1, FIRST);
     let cut =
         |i: usize| if i == first { request.duration } else { request.duration * (i as f64 / first as f64) };
+    // The budget is the end that is known.
+    let looked_at = AtomicUsize::new(0);
+    let goes_on = |more: usize| {
+        let seen = looked_at.fetch_add(more, Ordering::Relaxed) as f64;
+        progress(seen / request.budget.max(1) as f64).is_continue()
+    };
     let slab = |(from, to): (f64, f64)| {
         let time = Interval::new(from, to).unwrap_or(Interval::ENTIRE);
-        Slab::new(system, request.level, time)
+        Slab::watched(system, request.level, time, &|| goes_on(0))
     };
     // In parallel, but in the order of time: the outcome does not depend on the number of cores.
     let begin: Vec<_> = (0..first).map(|i| (cut(i), cut(i + 1))).collect();
-    let mut pieces: Vec<Piece> = begin.into_par_iter().map(|times| Piece::new(slab(times), None)).collect();
+    let begun = begin
+        .into_par_iter()
+        .map(|times| goes_on(1).then(|| slab(times)).flatten().map(|slab| Piece::new(slab, None)));
+    let mut pieces: Vec<Piece> = begun.collect::<Option<_>>()?;
     let mut spent = first;
     loop {
         let marked = marked(&pieces, request, (request.budget - spent.min(request.budget)) / 2);
-        if marked.is_empty() {
+        if marked.is_empty() || !goes_on(0) {
             break;
         }
         spent += 2 * marked.len();
         let halves = |(i, piece): (usize, Piece)| {
-            if !marked.contains(&i) {
+            if !marked.contains(&i) || !goes_on(2) {
                 return vec![piece];
             }
             let (left, right) = piece.slab.time.split();
-            [left, right].map(|half| Piece::new(slab((half.lo(), half.hi())), Some(&piece))).into()
+            let half = |half: Interval| slab((half.lo(), half.hi()));
+            match half(left).zip(half(right)) {
+                Some((left, right)) => [left, right].map(|half| Piece::new(half, Some(&piece))).into(),
+                None => vec![piece],
+            }
         };
         pieces = pieces.into_par_iter().enumerate().flat_map_iter(halves).collect();
     }
-    Course { slabs: pieces.into_iter().map(|piece| piece.slab).collect(), spent }
+    Some(Course { slabs: pieces.into_iter().map(|piece| piece.slab).collect(), spent })
 }
 
 /// Which pieces to cut next: those that are farthest above their goals, at most `most`.

@@ -1,0 +1,283 @@
+//! A tuned loop with everything that speaks for it.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::design::bench::Bench;
+use crate::design::constraint::{Constraint, Kind};
+use crate::design::family::{Family, Pace};
+use crate::design::least::Least;
+use crate::design::spec::{Rate, SpecFile};
+use crate::design::specified::Specified;
+use crate::design::trade::{Trade, trades};
+use crate::design::search::{Found, Search, Watch};
+use crate::files::bounds;
+use crate::files::number::short;
+use crate::files::{Problem, Problems, read_text};
+use crate::laws::{Controller, drives};
+use crate::margins::{Margins, margins};
+use crate::progress::Progress;
+use crate::prove::question::{Question, prove_watched};
+use crate::prove::standing::Standing;
+use crate::sampled::{Sampled, probe};
+use crate::scenario::Scenario;
+use crate::simulate::{Measure, Summary};
+
+/// Gains that were tuned for a specification, and what speaks for them.
+#[derive(Clone, Debug, Serialize)]
+pub struct Design {
+    /// Name of the scenario.
+    pub name: String,
+    /// Whether every constraint is kept.
+    pub feasible: bool,
+    /// The law with the gains that were found.
+    #[serde(skip)]
+    pub controller: Controller,
+    /// What they were held to, with what is left of each limit.
+    pub constraints: Vec<Constraint>,
+    /// What each gain trades.
+    pub gains: Vec<Trade>,
+    /// What the loop does with them.
+    pub evidence: Evidence,
+    /// Where the wishes cannot be met: what can.
+    pub instead: Option<Feasible>,
+    /// Loops that were run in the search.
+    pub runs: usize,
+    /// Whether it was broken off, and this is the best so far.
+    #[serde(skip)]
+    pub broken_off: bool,
+}
+
+/// What a loop does with its gains.
+#[derive(Clone, Debug, Serialize)]
+pub struct Evidence {
+    /// The run under each reference; none of a loop that is unstable as sampled.
+    pub runs: Vec<Summary>,
+    /// The sampled loop under the first reference.
+    pub sampled: Option<Sampled>,
+    /// The contraction rate of the ideal loop that is proved [1/s]; none if none is.
+    pub rate_certified: Option<f64>,
+    /// What that is worth for the loop in the file, in words; none for laws other than v-CBC.
+    pub verdict: Option<&'static str>,
+    /// What the loop bears; none where the search was broken off or the loop does not follow.
+    pub margins: Option<Margins>,
+}
+
+/// What can be had where the wishes cannot.
+#[derive(Clone, Debug, Serialize)]
+pub struct Feasible {
+    /// The largest rate that was found to go with everything else [1/s]; none if none was.
+    pub rate: Option<f64>,
+}
+
+/// Parts of the work: where the search ends, that for a rate that is feasible, and trades.
+const SEARCHED: f64 = 0.6;
+const INSTEAD: f64 = 0.75;
+const TRADED: f64 = 0.8;
+
+/// Tunes the gains of the scenario in `specified` to what `file` asks, with at most `budget` runs in the search. What `progress`
+/// breaks off has the best so far.
+///
+/// # Errors
+/// As [`run`](crate::simulate::run), for a rate that is asked of a law without proofs, and [`Problems::interrupted`] if it was broken
+/// off before anything was tried.
+pub fn design(
+    specified: &Specified,
+    file: &SpecFile,
+    budget: usize,
+    seed: u64,
+    progress: Progress<'_>,
+) -> Result<Design, Problems> {
+    let scenario = &specified.scenarios[0];
+    let start = scenario.under(&base(scenario)?);
+    let least = match file.spec.rate {
+        Some(_) => {
+            file.refuse_rate_of(&start)?;
+            Least::of(&start)?
+        }
+        None => None,
+    };
+    let family = Family::new(start.controller, least, &drives(&scenario.robot)?);
+    let bench = Bench::new(&specified.scenarios, &file.spec)?;
+    let outlooks = bench.outlooks()?;
+    let watch = Watch::new(progress);
+    let pace = match file.spec.rate {
+        None => Pace::Free,
+        Some(Rate::AtLeast(rate)) => Pace::AtLeast(rate),
+        Some(Rate::Largest) => Pace::Proved,
+    };
+    let search = |pace, part| Search { bench: &bench, outlooks: &outlooks, family: &family, pace, watch: &watch, part };
+    // Gains of the file take part, where nothing is asked that they may not know of.
+    let takes_part = pace == Pace::Free && !scenario.has_starting_gains();
+    let own: Vec<Controller> = takes_part.then(|| scenario.controller.clone()).into_iter().collect();
+    let Found { best, mut runs, mut broken_off } = search(pace, [0.0, SEARCHED]).run(&own, budget, seed)?;
+    let tuned = bench.loops(&best.controller).swap_remove(0);
+    let mut constraints = best.constraints.clone();
+    let proof = if broken_off { None } else { prove_watched(&tuned, &Question::default(), &|_| watch.go_on()).ok() };
+    let rate = proof.as_ref().and_then(|proof| Some(proof.verdict.proved()?.contraction_rate.approximate()));
+    if let (Some(Rate::AtLeast(asked)), false) = (file.spec.rate, broken_off) {
+        constraints.push(Constraint::rate(rate.unwrap_or(0.0), asked));
+    }
+    if best.keeps() && !broken_off {
+        match bench.lost_at(&best.controller, &watch) {
+            Err(problems) if problems.is_interrupted() => broken_off = true,
+            lost => constraints.extend(lost?),
+        }
+    }
+    let feasible = best.keeps() && constraints.iter().all(Constraint::is_kept);
+    let mut instead = None;
+    if let (false, false, Some(Rate::AtLeast(_))) = (feasible, broken_off, file.spec.rate) {
+        let found = search(Pace::Proved, [SEARCHED, INSTEAD]).run(&[], budget.div_ceil(2), seed)?;
+        runs += found.runs;
+        broken_off |= found.broken_off;
+        instead = Some(Feasible { rate: found.best.keeps().then(|| (-found.best.cost).exp()) });
+    }
+    watch.tell(INSTEAD);
+    let sampled = probe(&tuned)?;
+    let verdict = proof.as_ref().map(|proof| Standing::of(&tuned, proof, sampled.as_ref()).words());
+    let gains = trades(&bench, &outlooks, &best, &watch)?;
+    watch.tell(TRADED);
+    let margins = if feasible && !broken_off {
+        let found = margins(&tuned, &|fraction| progress(TRADED + (1.0 - TRADED) * fraction))?;
+        broken_off |= found.broken_off;
+        Some(found)
+    } else {
+        None
+    };
+    Ok(Design {
+        name: scenario.name.clone(),
+        feasible,
+        constraints,
+        gains,
+        evidence: Evidence {
+            runs: best.runs.iter().map(|run| run.summary.clone()).collect(),
+            sampled,
+            rate_certified: rate,
+            verdict,
+            margins,
+        },
+        controller: best.controller,
+        instead,
+        runs,
+        broken_off,
+    })
+}
+
+/// The law of `scenario` with its starting gains.
+fn base(scenario: &Scenario) -> Result<Controller, Problems> {
+    let own = &scenario.controller;
+    Ok(match (Controller::default_for(own.kind(), &scenario.robot)?, own) {
+        (Controller::Vcbc(start), Controller::Vcbc(gains)) => {
+            Controller::Vcbc(Box::new(start.as_ref().clone().shaped_by(gains.phi)))
+        }
+        (start, _) => start,
+    })
+}
+
+impl SpecFile {
+    /// # Errors
+    /// If a rate is asked of a law of which none can be proved.
+    fn refuse_rate_of(&self, scenario: &Scenario) -> Result<(), Problem> {
+        let refused = scenario.vcbc().err();
+        refused.map_or(Ok(()), |problem| {
+            let message = format!("rate is asked for: {problem}");
+            let help = "leave rate out: the loop is then tuned to track well inside all limits";
+            Err(self.problem("rate", "unsupported", message, help))
+        })
+    }
+}
+
+/// First line of the files that tuning writes.
+const MARK: &str = "# Tuned by flexure";
+
+/// That a tuned scenario may be written to `out`: it is none of `inputs`, and no file that something else has written.
+///
+/// # Errors
+/// If it is.
+pub fn check_out(out: &Path, inputs: &[Option<&Path>]) -> Result<(), Problem> {
+    let Ok(found) = out.canonicalize() else { return Ok(()) };
+    let is_input = inputs.iter().flatten().any(|input| input.canonicalize().is_ok_and(|input| input == found));
+    let is_tuned = || read_text(out, bounds::LIMIT).is_ok_and(|text| text.starts_with(MARK));
+    if out.is_file() && !is_input && is_tuned() {
+        return Ok(());
+    }
+    let message = format!("{} is there already, and is no scenario that was tuned", out.display());
+    Err(Problem::new("exists", message, "name another file with --out, or remove this one"))
+}
+
+impl Design {
+    /// What a scenario file with these gains says of them in its first lines.
+    pub fn comment(&self) -> String {
+        let rms = self.evidence.runs.iter().map(|run| run.rms_e_l).fold(0.0, f64::max);
+        let rate = self.evidence.rate_certified.map_or_else(String::new, |rate| {
+            format!(" Of the ideal loop a contraction rate of {} 1/s is proved.", short(rate, 4))
+        });
+        format!(
+            "{}{}: rms error {} mrad, every constraint kept.{rate}\n\
+             Gains follow from the robot, the reference and the imperfections below: tune again if they change.",
+            MARK.trim_start_matches("# "),
+            if self.broken_off { ", broken off" } else { "" },
+            short(1e3 * rms, 3)
+        )
+    }
+
+    /// What is to be said if not every constraint is kept.
+    pub fn objection(&self, scenario: &Scenario) -> Option<Problem> {
+        let binding = self.binding().filter(|_| !self.feasible)?;
+        let Constraint { what, value, limit, unit, note, .. } = binding;
+        let joint = binding.joint.as_ref().map_or_else(String::new, |joint| format!(" in joint {joint}"));
+        let said = note.as_ref().map_or_else(
+            || {
+                let amount = |x: f64| format!("{} {unit}", short(x, 5)).trim_end().to_owned();
+                format!("{} where {} is the limit", amount(*value), amount(*limit))
+            },
+            Clone::clone,
+        );
+        let message = format!(
+            "{}: no gains were found that keep every constraint; what is broken most is: {what}{joint}: {said}",
+            self.name
+        );
+        let help = self.way_out().unwrap_or_default();
+        Some(scenario.places.problem("controller", "infeasible", message, help))
+    }
+
+    /// The constraint that is broken most; none if all are kept.
+    pub fn binding(&self) -> Option<&Constraint> {
+        let broken = self.constraints.iter().filter(|constraint| !constraint.is_kept());
+        broken.min_by(|a, b| a.slack.total_cmp(&b.slack))
+    }
+
+    /// What would have to change for that constraint to be kept.
+    pub fn way_out(&self) -> Option<String> {
+        let binding = self.binding()?;
+        let Constraint { what, value, limit, unit, .. } = binding;
+        let joint = binding.joint.as_ref().map_or_else(String::new, |joint| format!(" of joint {joint}"));
+        let amount = |x: f64| format!("{} {unit}", short(x, 4)).trim_end().to_owned();
+        let slower = match self.instead {
+            Some(Feasible { rate: Some(rate) }) => format!("rate = {} is feasible; or ", short(rate, 3)),
+            Some(Feasible { rate: None }) => "no rate was found to be feasible: ".to_owned(),
+            None => String::new(),
+        };
+        let way = match binding.kind {
+            Kind::Radius => {
+                "a shorter control_period, less delay, a faster velocity filter or an observer; or a SPEC that asks for less margin and \
+                 uncertainty"
+                    .to_owned()
+            }
+            Kind::Run(Measure::AtLimit) => {
+                "drives with larger torque limits, a slower reference ([reference.time_scaling] margin), or accept.at_limit above 0".to_owned()
+            }
+            Kind::Run(measure) => format!(
+                "a {}{joint} of {} would have to be accepted, where {} are: by accept.{} or the limit in the robot file; or a slower reference",
+                what,
+                amount(*value),
+                amount(*limit),
+                measure.key()
+            ),
+            Kind::Lost => "a SPEC that asks for less uncertainty and margin, or accept.error above what it leaves".to_owned(),
+            Kind::Rate => "a lower rate".to_owned(),
+        };
+        Some(format!("{slower}{way}"))
+    }
+}

@@ -1,0 +1,49 @@
+//! Tuned gains as text for the terminal.
+
+use comfy_table::Cell;
+
+use crate::design::{Constraint, Design, Trade};
+use crate::files::number::{NONE, engineering, short, significant};
+use crate::report::columns::laid_out;
+use crate::report::table::{headed, right};
+
+/// The gains, a row a joint (`joints` are their names), in so many columns.
+pub fn gains_table(joints: &[String], design: &Design, width: usize) -> String {
+    let titles: Vec<String> = design.gains.iter().map(|trade| trade.gain.replace('.', "\n")).collect();
+    let mut table = headed(std::iter::once("joint").chain(titles.iter().map(String::as_str)));
+    for (i, joint) in joints.iter().enumerate() {
+        let values = design.gains.iter().map(|trade| right(engineering(trade.values[i])));
+        table.add_row(std::iter::once(Cell::new(joint)).chain(values).collect::<Vec<_>>());
+    }
+    laid_out(&table, 1, width)
+}
+
+/// What each gain trades: by which factor figures change with a quarter more of it in all joints, in so many columns.
+pub fn trades_table(trades: &[Trade], width: usize) -> String {
+    let titles =
+        ["a quarter more of", "rms\n|e_l|", "max\n|u_m|", "torque\nchange", "decay as\nsampled"];
+    let mut table = headed(titles.into_iter());
+    for trade in trades {
+        let factor = |x: f64| right(format!("×{}", significant(x, 3)));
+        let numbers = match trade.effect {
+            Some(effect) => [effect.error, effect.torque, effect.chatter, effect.decay].map(factor),
+            None => ["unstable", NONE, NONE, NONE].map(|text| right(text.to_owned())),
+        };
+        table.add_row(std::iter::once(Cell::new(&trade.gain)).chain(numbers).collect::<Vec<_>>());
+    }
+    laid_out(&table, 1, width)
+}
+
+/// What the gains are held to, with what is left of each limit, in so many columns.
+pub fn constraints_table(constraints: &[Constraint], width: usize) -> String {
+    let mut table = headed(["constraint", "joint", "value", "limit", "left\n[%]"].into_iter());
+    for constraint in constraints {
+        let Constraint { what, joint, value, limit, unit, slack, note, .. } = constraint;
+        let amount = |x: f64| right(format!("{} {unit}", short(x, 4)).trim_end().to_owned());
+        let what = note.as_ref().map_or_else(|| what.clone(), |note| format!("{what}: {note}"));
+        let joint = joint.as_deref().unwrap_or(NONE);
+        let left = if *slack < 0.0 { "broken".to_owned() } else { significant(100.0 * slack, 3) };
+        table.add_row(vec![Cell::new(what), Cell::new(joint), amount(*value), amount(*limit), right(left)]);
+    }
+    laid_out(&table, 2, width)
+}
