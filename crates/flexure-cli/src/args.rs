@@ -6,7 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use flexure::compare::{BUDGET, SEEDS};
 use flexure::excite::{BUDGET as EXCITE_BUDGET, RESOLUTION};
-use flexure::files::Outside;
+use flexure::files::Change;
 use flexure::replay::HORIZON;
 use flexure::robot::DriveClass;
 
@@ -33,14 +33,11 @@ pub struct Cli {
 
     /// Let files name files outside of their own folders, as a scenario may a robot or samples, and a robot a URDF.
     #[arg(long, global = true)]
-    allow_outside: bool,
-}
+    pub allow_outside: bool,
 
-impl Cli {
-    /// Whether files may name files outside of their folders.
-    pub fn outside(&self) -> Outside {
-        if self.allow_outside { Outside::Allowed } else { Outside::Refused }
-    }
+    /// Change a key of the scenario before it is read, as controller.link.metric=[1, 2]; may be given several times.
+    #[arg(long, global = true, value_name = "KEY=VALUE", value_parser = change)]
+    pub set: Vec<Change>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -345,6 +342,37 @@ pub enum Kind {
     Controllers,
     Imperfections,
     Drives,
+}
+
+impl Command {
+    /// Its name, if it takes no scenario that `--set` could change.
+    pub fn without_scenario(&self) -> Option<&'static str> {
+        match self {
+            Self::Reproduce(_) => Some("reproduce"),
+            Self::Model { .. } => Some("model"),
+            Self::Import(_) => Some("import"),
+            Self::Excite(_) => Some("excite"),
+            Self::Identify(_) => Some("identify"),
+            Self::List { .. } => Some("list"),
+            Self::Completions { .. } => Some("completions"),
+            Self::Man { .. } => Some("man"),
+            Self::Verify { against: None, .. } => Some("verify without --against"),
+            Self::Verify { .. }
+            | Self::Run { .. }
+            | Self::Compare(_)
+            | Self::Eval { .. }
+            | Self::Certify(_)
+            | Self::Check { .. }
+            | Self::Tune(_)
+            | Self::Replay(_)
+            | Self::Margins(_) => None,
+        }
+    }
+}
+
+/// A change of a scenario.
+fn change(text: &str) -> Result<Change, String> {
+    Change::parse(text).map_err(|problem| format!("{problem}; {}", problem.hint()))
 }
 
 /// The name of a class of drives.

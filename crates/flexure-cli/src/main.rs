@@ -10,6 +10,7 @@ mod progress;
 use std::process::ExitCode;
 
 use clap::Parser;
+use flexure::files::{Outside, Reading};
 
 use args::{Cli, Command};
 use commands::print;
@@ -26,29 +27,11 @@ fn main() -> ExitCode {
             error.exit()
         }
     };
-    let (json, outside) = (cli.json, cli.outside());
+    let Cli { command, json, allow_outside, set } = cli;
+    let outside = if allow_outside { Outside::Allowed } else { Outside::Refused };
+    let reading = Reading { outside, changes: &set };
     interrupt::install(json);
-    let done = match cli.command {
-        Command::Reproduce(output) => commands::reproduce(&output.out, json),
-        Command::Run { scenario, output } => commands::run(&scenario, outside, &output.out, json),
-        Command::Compare(options) => commands::compare(&options, outside, json),
-        Command::Eval { scenario, states } => commands::eval(&scenario, outside, &states, json),
-        Command::Model { robot, states } => commands::model(&robot, outside, &states, json),
-        Command::Certify(options) => commands::certify(&options, outside, json),
-        Command::Check { files } => commands::check(&files, outside, json),
-        Command::Import(options) => commands::import(&options, json),
-        Command::Verify { certificate, against } => {
-            commands::verify(&certificate, against.as_deref(), outside, json)
-        }
-        Command::Tune(options) => commands::tune(&options, outside, json),
-        Command::Margins(options) => commands::margins(&options, outside, json),
-        Command::Excite(options) => commands::excite(&options, outside, json),
-        Command::Replay(options) => commands::replay(&options, outside, json),
-        Command::Identify(options) => commands::identify(&options, outside, json),
-        Command::List { kind } => commands::list(kind, json),
-        Command::Completions { shell } => commands::completions(shell, json),
-        Command::Man { folder } => commands::man(folder.as_deref(), json),
-    };
+    let done = dispatch(command, reading, json);
     interrupt::speak();
     let errors = done.as_ref().err().and_then(Failure::errors).filter(|_| json);
     match done.and(print::end(errors)) {
@@ -58,5 +41,34 @@ fn main() -> ExitCode {
             failure.say();
             code
         }
+    }
+}
+
+/// Runs a command.
+fn dispatch(command: Command, reading: Reading<'_>, json: bool) -> Result<(), Failure> {
+    if let Some(name) = command.without_scenario().filter(|_| !reading.changes.is_empty()) {
+        let message = format!("--set changes a scenario; {name} takes none");
+        return Err(Failure::input("usage", message, "flexure --help lists commands and options"));
+    }
+    match command {
+        Command::Reproduce(output) => commands::reproduce(&output.out, json),
+        Command::Run { scenario, output } => commands::run(&scenario, reading, &output.out, json),
+        Command::Compare(options) => commands::compare(&options, reading, json),
+        Command::Eval { scenario, states } => commands::eval(&scenario, reading, &states, json),
+        Command::Model { robot, states } => commands::model(&robot, reading.outside, &states, json),
+        Command::Certify(options) => commands::certify(&options, reading, json),
+        Command::Check { files } => commands::check(&files, reading, json),
+        Command::Import(options) => commands::import(&options, json),
+        Command::Verify { certificate, against } => {
+            commands::verify(&certificate, against.as_deref(), reading, json)
+        }
+        Command::Tune(options) => commands::tune(&options, reading, json),
+        Command::Margins(options) => commands::margins(&options, reading, json),
+        Command::Excite(options) => commands::excite(&options, reading.outside, json),
+        Command::Replay(options) => commands::replay(&options, reading, json),
+        Command::Identify(options) => commands::identify(&options, reading.outside, json),
+        Command::List { kind } => commands::list(kind, json),
+        Command::Completions { shell } => commands::completions(shell, json),
+        Command::Man { folder } => commands::man(folder.as_deref(), json),
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use flexure::files::{Outside, read_text};
+use flexure::files::{Reading, read_text};
 use flexure::prove::question::{Direct, Question, Region, SMALLEST_ERROR, prove_watched};
 use flexure::prove::standing::Standing;
 use flexure::prove::summary::ProofSummary;
@@ -26,8 +26,8 @@ struct Outcome {
     file: Option<PathBuf>,
 }
 
-pub fn certify(options: &Certify, outside: Outside, json: bool) -> Result<(), Failure> {
-    let scenario = load_scenario_with(&options.scenario, outside)?;
+pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<(), Failure> {
+    let scenario = load_scenario_with(&options.scenario, reading)?;
     say(&scenario.warnings);
     let question = question(options, &scenario)?;
     let proof = {

@@ -1,7 +1,7 @@
 //! `flexure check`: are these files good?
 
 use flexure::feasible::{self, Usage};
-use flexure::files::{Assumption, Outside, Problem, Problems};
+use flexure::files::{Assumption, Problem, Problems, Reading};
 use flexure::report::{joint_table, usage_table};
 use flexure::robot::{JointRow, overview, supported};
 use flexure::sampled::{Sampled, not_looked_at, probe};
@@ -73,8 +73,8 @@ struct Assumed {
     note: String,
 }
 
-pub fn check(files: &[String], outside: Outside, json: bool) -> Result<(), Failure> {
-    let verdicts: Vec<_> = files.iter().map(|file| verdict(file, outside, json)).collect();
+pub fn check(files: &[String], reading: Reading<'_>, json: bool) -> Result<(), Failure> {
+    let verdicts: Vec<_> = files.iter().map(|file| verdict(file, reading, json)).collect();
     if json {
         print::json(&verdicts)?;
     } else {
@@ -135,8 +135,8 @@ fn counted(n: usize, what: &str) -> String {
     format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
-fn verdict(file: &str, outside: Outside, json: bool) -> Verdict {
-    let Found { content, warnings, exceeded } = match content(file, outside) {
+fn verdict(file: &str, reading: Reading<'_>, json: bool) -> Verdict {
+    let Found { content, warnings, exceeded } = match content(file, reading) {
         Ok(found) => found,
         Err(problems) => return bad(file, &problems, json),
     };
@@ -160,8 +160,8 @@ struct Found {
     exceeded: Vec<Problem>,
 }
 
-fn content(file: &str, outside: Outside) -> Result<Found, Problems> {
-    match scenario::check(file, outside)? {
+fn content(file: &str, reading: Reading<'_>) -> Result<Found, Problems> {
+    match scenario::check(file, reading)? {
         Checked::Robot(robot) => {
             let rows = overview(&robot)?;
             let assumed = assumed(&robot.assumptions());

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use flexure::compare::{
     Leaderboard, Search, check_budget, check_seeds, compare as compared, entrants, tasks,
 };
-use flexure::files::{Outside, prepare};
+use flexure::files::{Reading, prepare};
 use flexure::report::{leaderboard_table, write_leaderboard};
 use flexure::scenario::Scenario;
 use serde::Serialize;
@@ -24,11 +24,11 @@ struct Outcome<'a> {
     files: Vec<PathBuf>,
 }
 
-pub fn compare(options: &Compare, outside: Outside, json: bool) -> Result<(), Failure> {
+pub fn compare(options: &Compare, reading: Reading<'_>, json: bool) -> Result<(), Failure> {
     check_budget(options.budget)?;
     check_seeds(options.seeds)?;
     let entrants = entrants(&options.controllers)?;
-    let tasks = tasks(&options.scenarios, outside)?;
+    let tasks = tasks(&options.scenarios, reading)?;
     say(tasks.iter().flat_map(|task| &task.scenario.warnings));
     let out = &options.output.out;
     prepare(out)?;

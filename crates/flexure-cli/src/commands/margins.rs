@@ -2,7 +2,7 @@
 
 use flexure::compare::{Entrant, check_budget, entrants};
 use flexure::files::number::significant;
-use flexure::files::{Outside, Problems};
+use flexure::files::{Problems, Reading};
 use flexure::margins::{Margins as Found, margins as margins_of};
 use flexure::progress::{PartProgress, Progress as Progressing};
 use flexure::report::margins_table;
@@ -24,10 +24,10 @@ struct Outcome {
     loops: Vec<Found>,
 }
 
-pub fn margins(options: &Margins, outside: Outside, json: bool) -> Result<(), Failure> {
+pub fn margins(options: &Margins, reading: Reading<'_>, json: bool) -> Result<(), Failure> {
     check_budget(options.budget)?;
     let chosen = if options.controllers.is_empty() { Vec::new() } else { entrants(&options.controllers)? };
-    let scenario = load_scenario_with(&options.scenario, outside)?;
+    let scenario = load_scenario_with(&options.scenario, reading)?;
     say(&scenario.warnings);
     let (loops, is_whole) = {
         let each = [options.budget as f64, RUNS];

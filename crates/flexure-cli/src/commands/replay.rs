@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use flexure::files::number::{duration, short};
-use flexure::files::{Outside, prepare};
+use flexure::files::{Reading, prepare};
 use flexure::logs::{Columns, read_log};
 use flexure::replay::{Replay as Found, replay as laid};
 use flexure::report::{replay_table, write_replay};
@@ -22,8 +22,8 @@ struct Outcome<'a> {
     files: Vec<PathBuf>,
 }
 
-pub fn replay(options: &Replay, outside: Outside, json: bool) -> Result<(), Failure> {
-    let scenario = load_scenario_with(&options.scenario, outside)?;
+pub fn replay(options: &Replay, reading: Reading<'_>, json: bool) -> Result<(), Failure> {
+    let scenario = load_scenario_with(&options.scenario, reading)?;
     say(&scenario.warnings);
     let columns = match &options.columns {
         None => Columns::default(),

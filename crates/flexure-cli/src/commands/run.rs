@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use flexure::feasible;
 use flexure::files::number::short;
-use flexure::files::{Outside, Problem, prepare};
+use flexure::files::{Problem, Reading, prepare};
 use flexure::imperfections::Imperfection;
 use flexure::report::summary_table;
 use flexure::reproduce::{Experiment, write_experiment};
@@ -46,8 +46,8 @@ impl<'a> Outcome<'a> {
     }
 }
 
-pub fn run(scenario: &str, outside: Outside, out: &Path, json: bool) -> Result<(), Failure> {
-    let scenario = load_scenario_with(scenario, outside)?;
+pub fn run(scenario: &str, reading: Reading<'_>, out: &Path, json: bool) -> Result<(), Failure> {
+    let scenario = load_scenario_with(scenario, reading)?;
     say(&scenario.warnings);
     say(&preload(&scenario)?);
     let beyond = feasible::exceeded(&scenario, &feasible::usage(&scenario)?);

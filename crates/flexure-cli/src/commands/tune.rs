@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use flexure::design::{Design, SpecFile, Specified, check_out, design};
 use flexure::files::number::short;
-use flexure::files::{Outside, prepare, write_atomic};
+use flexure::files::{Reading, prepare, write_atomic};
 use flexure::report::{constraints_table, gains_table, margins_table, trades_table};
 use serde::Serialize;
 
@@ -21,15 +21,15 @@ struct Outcome<'a> {
     file: Option<&'a Path>,
 }
 
-pub fn tune(options: &Tune, outside: Outside, json: bool) -> Result<(), Failure> {
+pub fn tune(options: &Tune, reading: Reading<'_>, json: bool) -> Result<(), Failure> {
     flexure::compare::check_budget(options.budget)?;
     let spec = options.spec.as_deref().map_or_else(|| Ok(SpecFile::usual()), SpecFile::load)?;
-    let specified = Specified::load(&options.scenario, outside, &spec)?;
+    let specified = Specified::load(&options.scenario, reading, &spec)?;
     let scenario = &specified.scenarios[0];
     say(specified.scenarios.iter().flat_map(|scenario| &scenario.warnings));
     let out = options.out.clone().unwrap_or_else(|| beside(&options.scenario, &scenario.name));
     check_out(&out, &[Some(Path::new(&options.scenario)), options.spec.as_deref()])?;
-    specified.belongs(&out, outside)?;
+    specified.belongs(&out, reading.outside)?;
     prepare(out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")))?;
     let found = {
         let progress = Progress::of_one(&scenario.name);

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use flexure::files::{Outside, read_text};
+use flexure::files::{Reading, read_text};
 use flexure::prove::subject::{Difference, differences};
 use flexure::scenario::load_scenario_with;
 use flexure::verify::{self, CheckReport, Claim, Rejected, quoted};
@@ -42,11 +42,11 @@ struct Against {
     differences: Vec<Difference>,
 }
 
-pub fn verify(file: &Path, against: Option<&str>, outside: Outside, json: bool) -> Result<(), Failure> {
+pub fn verify(file: &Path, against: Option<&str>, reading: Reading<'_>, json: bool) -> Result<(), Failure> {
     let text = read_text(file, verify::LARGEST)?;
     match verify::verify(&text) {
         Ok(report) => {
-            let against = against.map(|scenario| compared(&text, scenario, outside)).transpose()?;
+            let against = against.map(|scenario| compared(&text, scenario, reading)).transpose()?;
             verified(file, report, against, json)
         }
         Err(Rejected::False { claim, reason }) => rejected(file, &claim, &reason, json),
@@ -56,8 +56,8 @@ pub fn verify(file: &Path, against: Option<&str>, outside: Outside, json: bool) 
     }
 }
 
-fn compared(certificate: &str, scenario: &str, outside: Outside) -> Result<Against, Failure> {
-    let differences = differences(certificate, &load_scenario_with(scenario, outside)?)?;
+fn compared(certificate: &str, scenario: &str, reading: Reading<'_>) -> Result<Against, Failure> {
+    let differences = differences(certificate, &load_scenario_with(scenario, reading)?)?;
     Ok(Against { scenario: scenario.to_owned(), same: differences.is_empty(), differences })
 }
 

@@ -2,7 +2,7 @@
 
 use crate::feasible::{effort, pinned};
 use crate::files::number::duration;
-use crate::files::{Outside, Problem, Problems, TASKS};
+use crate::files::{Problem, Problems, Reading, TASKS};
 use crate::imperfections::Imperfection;
 use crate::scenario::{Scenario, load_scenario_with};
 
@@ -53,16 +53,17 @@ impl Task {
     }
 }
 
-/// Tasks from scenario files or names of built-in scenarios; without any, [the suite](TASKS). `outside` says whether files may
-/// name files outside of their folders.
+/// Tasks from scenario files or names of built-in scenarios; without any, [the suite](TASKS). `reading` says whether files may
+/// name files outside of their folders, and what is changed in each.
 ///
 /// # Errors
 /// With everything that is wrong with one of them, and for a scenario that is named twice.
-pub fn tasks(scenarios: &[String], outside: Outside) -> Result<Vec<Task>, Problems> {
+pub fn tasks<'a>(scenarios: &[String], reading: impl Into<Reading<'a>>) -> Result<Vec<Task>, Problems> {
+    let reading = reading.into();
     let suite = TASKS.iter().map(|(name, _)| (*name).to_owned()).collect::<Vec<_>>();
     let mut tasks: Vec<Task> = Vec::new();
     for path in if scenarios.is_empty() { &suite } else { scenarios } {
-        let scenario = load_scenario_with(path, outside)?;
+        let scenario = load_scenario_with(path, reading)?;
         if tasks.iter().any(|task| task.scenario.name == scenario.name) {
             let message = format!("two scenarios are called {}", scenario.name);
             let hint = "name each scenario once; a file's name without its ending tells them apart";

@@ -7,8 +7,8 @@
 use crate::files::Problems;
 use crate::laws::{Controller, Phi, SideGains, VcbcGains};
 use crate::prove::question::{Question, prove};
-use crate::prove::summary::BlockSummary;
 use crate::prove::sampling::{largest_diagonal, sample};
+use crate::prove::summary::BlockSummary;
 use crate::robot::Robot;
 use crate::scenario::Scenario;
 

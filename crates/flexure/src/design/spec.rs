@@ -100,7 +100,8 @@ const FORM: Form = Form {
 };
 
 const DECAY: Quantity = Quantity::positive("rate at which errors shall decay", crate::units::RATE);
-const UNCERTAIN: Quantity = Quantity::non_negative("largest part that the model may be off by", crate::units::NONE);
+const UNCERTAIN: Quantity =
+    Quantity::non_negative("largest part that the model may be off by", crate::units::NONE);
 const FACTOR: Quantity = Quantity::positive("factor on the torque", crate::units::NONE);
 
 impl SpecFile {
@@ -128,7 +129,7 @@ impl SpecFile {
 
     fn read(source: &Source) -> Result<Self, Problems> {
         let mut found = None;
-        let (spec, _) = document::parse(source, &FORM, |root, places| {
+        let (spec, _) = document::parse(source, &[], &FORM, |root, places| {
             found = Some(places.clone());
             spec(root)
         })?;
@@ -193,16 +194,17 @@ fn delay(field: &Field<'_>) -> Option<[f64; 2]> {
 fn uncertainty(field: &Field<'_>) -> Option<Uncertainty> {
     let table = field.table(&["mass", "stiffness"])?;
     let part = |key, default: f64| {
-        table.optional(key, |field| {
-            let part = field.number(&UNCERTAIN)?;
-            if part >= 1.0 {
-                let message = format!("{} is {part}, must be < 1", field.path);
-                field.error("range", message, "0.1 is a tenth either way");
-                return None;
-            }
-            Some(part)
-        })?
-        .or(Some(default))
+        table
+            .optional(key, |field| {
+                let part = field.number(&UNCERTAIN)?;
+                if part >= 1.0 {
+                    let message = format!("{} is {part}, must be < 1", field.path);
+                    field.error("range", message, "0.1 is a tenth either way");
+                    return None;
+                }
+                Some(part)
+            })?
+            .or(Some(default))
     };
     let usual = Uncertainty::default();
     let (mass, stiffness) = (part("mass", usual.mass), part("stiffness", usual.stiffness));

@@ -6,7 +6,7 @@ use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, value};
 
 use crate::design::spec::SpecFile;
 use crate::files::source::Source;
-use crate::files::{Outside, Problem, Problems};
+use crate::files::{Outside, Problem, Problems, Reading, change};
 use crate::laws::Controller;
 use crate::scenario::{self, Hold, Scenario};
 
@@ -20,20 +20,29 @@ pub struct Specified {
 }
 
 impl Specified {
-    /// The scenario at a path, or the built-in one of that name, with what `spec` replaces.
+    /// The scenario at a path, or the built-in one of that name, with what `spec` replaces, after the changes of `reading`.
     ///
     /// # Errors
-    /// With everything that is wrong with the scenario that comes of it.
-    pub fn load(path_or_name: &str, outside: Outside, spec: &SpecFile) -> Result<Self, Problems> {
+    /// With everything that is wrong with the scenario that comes of it; `unsupported` for a change of the robot's file, which is not
+    /// the file that gains go into.
+    pub fn load<'a>(
+        path_or_name: &str,
+        reading: impl Into<Reading<'a>>,
+        spec: &SpecFile,
+    ) -> Result<Self, Problems> {
+        let Reading { outside, changes } = reading.into();
         let (source, base) = scenario::load::source(path_or_name, outside)?;
+        if let Some(change) = changes.iter().find(|change| change.is_of_robot()) {
+            return Err(change.of_another_file().into());
+        }
         // What is wrong with the scenario itself is told with its own lines.
-        let own = scenario::document::read(&source, &base)?;
+        let own = scenario::document::read(&source, &base, changes)?;
         if own.hold == Hold::Continuous {
             let help = "remove hold: the torque is then held between control instants";
             let message = "hold is \"continuous\": gains are tuned for loops with control periods";
             return Err(own.places.problem("hold", "unsupported", message, help).into());
         }
-        let mut document: DocumentMut = source.text.parse().unwrap_or_default();
+        let mut document = change::edited(&source, changes);
         spec.replace_in(&mut document);
         let references = spec.references();
         let name = if spec.name.is_empty() {
@@ -43,7 +52,7 @@ impl Specified {
         };
         let read = |document: &DocumentMut| {
             let mut scenario =
-                scenario::document::read(&Source::new(&name, &document.to_string()), &base)?;
+                scenario::document::read(&Source::new(&name, &document.to_string()), &base, &[])?;
             scenario.name.clone_from(&own.name);
             Ok::<_, Problems>(scenario)
         };
@@ -83,7 +92,7 @@ impl Specified {
     pub fn belongs(&self, path: &Path, outside: Outside) -> Result<(), Problem> {
         let text = self.document.to_string();
         let base = crate::files::base::Base::of(path, outside);
-        let read = scenario::document::read(&Source::new(&path.display().to_string(), &text), &base);
+        let read = scenario::document::read(&Source::new(&path.display().to_string(), &text), &base, &[]);
         read.map(drop).map_err(|problems| {
             let message = format!(
                 "{} could not be read where it is to be written: {}",

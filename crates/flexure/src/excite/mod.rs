@@ -121,7 +121,7 @@ pub fn excite(
     let base = Base::of(out, outside);
     let read = |plan: &draft::Plan<'_>| {
         let toml = plan.toml(&path);
-        document::read(&Source::new(&out.display().to_string(), &toml), &base)
+        document::read(&Source::new(&out.display().to_string(), &toml), &base, &[])
             .map(|scenario| (toml, scenario))
     };
     fit(&mut plan, |plan| feasible::usage(&read(plan)?.1))?;

@@ -3,6 +3,7 @@
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
+use crate::files::change::Change;
 use crate::files::diagnostic::Problem;
 use crate::files::source::{self, Source};
 use crate::files::{builtin, suggest};
@@ -24,6 +25,28 @@ pub enum Outside {
     Refused,
     /// A file may name any file.
     Allowed,
+}
+
+/// How a document is read.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Reading<'a> {
+    /// Whether the file may name files outside of its folder.
+    pub outside: Outside,
+    /// What is changed before anything is read.
+    pub changes: &'a [Change],
+}
+
+impl<'a> Reading<'a> {
+    /// With these changes.
+    pub fn changed(changes: &'a [Change]) -> Self {
+        Self { changes, ..Self::default() }
+    }
+}
+
+impl From<Outside> for Reading<'_> {
+    fn from(outside: Outside) -> Self {
+        Self { outside, changes: &[] }
+    }
 }
 
 /// Where the file that is being read came from.

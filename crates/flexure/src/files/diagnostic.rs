@@ -28,7 +28,7 @@ impl Problem {
 
     /// The same problem, at the bytes `span` of `source`.
     pub(crate) fn at(self, source: &Source, span: Range<usize>) -> Self {
-        Self { place: Some(Box::new((source.clone(), span))), ..self }
+        Self { place: Some(Box::new(source.part_with(span))), ..self }
     }
 
     /// The same problem, at `span` of `source` if it has no place yet.

@@ -8,6 +8,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 
 use crate::files::bounds;
+use crate::files::change::Change;
 use crate::files::decimals::Decimals;
 use crate::files::diagnostic::{Problem, Problems};
 use crate::files::normal::Normal;
@@ -67,6 +68,11 @@ impl Log {
     /// Warnings, or errors, noted so far.
     fn count(&self, warnings: bool) -> usize {
         self.problems.borrow().iter().filter(|problem| problem.is_warning() == warnings).count()
+    }
+
+    /// Whether something is wrong.
+    fn has_errors(&self) -> bool {
+        self.count(false) > 0
     }
 
     /// Whether more errors would go unreported.
@@ -159,26 +165,28 @@ impl Form {
     }
 }
 
-/// Reads `source` as TOML and hands the root table to `read`.
+/// Reads `source` as TOML, makes the `changes` and hands the root table to `read`.
 pub(crate) fn parse<T>(
     source: &Source,
+    changes: &[Change],
     form: &Form,
     read: impl FnOnce(&Table<'_>, &Places) -> Option<T>,
 ) -> Result<(T, Vec<Problem>), Problems> {
+    let source = &source.with(changes);
     let log = Log::new(source);
-    if source.text.trim_start().starts_with('<') {
+    if source.of_file().trim_start().starts_with('<') {
         let message = format!("this is XML; a {} is TOML", form.what);
         let help = "a URDF has no springs and no motors: `flexure import robot.urdf > robot.toml` writes a robot file \
                     to complete";
         log.error(0..0, "wrong-kind", message, help);
         return log.finish(None);
     }
-    if let Some((span, objection)) = bounds::objection(&source.text) {
+    if let Some((span, objection)) = bounds::objection(source.of_file()) {
         let help = format!("a {} is far smaller: is it the right file?", form.what);
         log.error(span, "huge", objection, help);
         return log.finish(None);
     }
-    let (root, errors) = DeTable::parse_recoverable(&source.text);
+    let (mut root, errors) = DeTable::parse_recoverable(source.of_file());
     for error in distinct(&errors) {
         let help =
             "not valid TOML: text stands in quotes, numbers like 0.5, arrays like [1.0, 2.0], one key a line";
@@ -188,6 +196,14 @@ pub(crate) fn parse<T>(
         return log.finish(None);
     }
     if form.refuse_stranger(root.get_ref(), &log) {
+        return log.finish(None);
+    }
+    for (change, at) in changes.iter().zip(source.changes()) {
+        if let Err(problem) = change.apply(root.get_mut(), at, source) {
+            log.push(problem);
+        }
+    }
+    if log.has_errors() {
         return log.finish(None);
     }
     let places = Places::of(source, root.get_ref());

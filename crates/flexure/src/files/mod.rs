@@ -9,6 +9,7 @@ mod atomic;
 pub(crate) mod base;
 pub(crate) mod bounds;
 pub(crate) mod builtin;
+pub(crate) mod change;
 pub(crate) mod decimals;
 pub(crate) mod diagnostic;
 pub(crate) mod document;
@@ -26,8 +27,9 @@ pub(crate) mod suggest;
 pub(crate) mod table;
 
 pub use atomic::{WriteError, create_folder, prepare, write_atomic, write_together};
-pub use base::Outside;
+pub use base::{Outside, Reading};
 pub use builtin::{ROBOTS, SCENARIOS, TASKS};
+pub use change::Change;
 pub(crate) use diagnostic::INTERRUPTED;
 pub use diagnostic::{Problem, Problems};
 pub use document::Places;

@@ -33,7 +33,8 @@ impl Site<'_> {
 
     /// The line, counted from 1.
     pub fn line(&self) -> usize {
-        self.log.source.line_column(self.span.start).map_or(0, |(line, _)| line)
+        let (part, span) = self.log.source.part_with(self.span.clone());
+        part.line_column(span.start).map_or(0, |(line, _)| line)
     }
 
     /// What another file was read to; its problems are noted as they are, at this place if they have none.

@@ -8,9 +8,10 @@ use std::sync::Arc;
 
 use miette::{MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 
+use crate::files::change::{self, Change};
 use crate::files::diagnostic::Problem;
 
-/// A file's name and text, or a part of it from some line on; cheap to clone.
+/// A file's name and text, or a part of it from some line on, perhaps with changes appended; cheap to clone.
 #[derive(Clone, Debug)]
 pub(crate) struct Source {
     pub name: Arc<str>,
@@ -19,6 +20,8 @@ pub(crate) struct Source {
     shown: Arc<str>,
     /// Lines of the file before `text`.
     lines_before: usize,
+    /// What `text` is put together from, and where in it that begins: the file and the changes; nothing for a file alone.
+    parts: Arc<[(usize, Source)]>,
 }
 
 impl Source {
@@ -31,7 +34,39 @@ impl Source {
     pub fn part(name: &str, text: &str, lines_before: usize) -> Self {
         let text: Arc<str> = text.into();
         let shown = if text.contains(is_hostile) { harmless(text.to_string()).into() } else { text.clone() };
-        Self { name: name.into(), text, shown, lines_before }
+        Self { name: name.into(), text, shown, lines_before, parts: Arc::from([]) }
+    }
+
+    /// With the texts of `changes` behind that of the file.
+    pub fn with(&self, changes: &[Change]) -> Self {
+        if changes.is_empty() {
+            return self.clone();
+        }
+        let (mut text, mut parts) = (self.text.to_string(), vec![(0, self.clone())]);
+        for change in changes {
+            text.push('\n');
+            parts.push((text.len(), Self::new(change::NAME, change.text())));
+            text.push_str(change.text());
+        }
+        Self { parts: parts.into(), ..Self::new(&self.name, &text) }
+    }
+
+    /// The text of the file alone.
+    pub fn of_file(&self) -> &str {
+        self.parts.first().map_or(&self.text, |(_, file)| &file.text)
+    }
+
+    /// Where the changes begin in the text.
+    pub fn changes(&self) -> impl Iterator<Item = usize> {
+        self.parts.iter().skip(1).map(|(start, _)| *start)
+    }
+
+    /// The part, file or change, that `span` is in, and where in it.
+    pub fn part_with(&self, span: Range<usize>) -> (Self, Range<usize>) {
+        match self.parts.iter().rfind(|(start, _)| *start <= span.start) {
+            Some((start, part)) => (part.clone(), span.start - start..span.end - start),
+            None => (self.clone(), span),
+        }
     }
 
     /// Line and column of the byte at `offset`, counted from 1; the column in characters.

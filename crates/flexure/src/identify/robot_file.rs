@@ -53,7 +53,7 @@ impl RobotFile {
             (source::read(path, bounds::LIMIT)?, Base::of(path, outside))
         };
         let (text, gaps) = filled(&source.text);
-        let robot = document::read(&Source::new(&source.name, &text), &base)?;
+        let robot = document::read(&Source::new(&source.name, &text), &base, &[])?;
         Ok(Self { robot, gaps, text })
     }
 
@@ -92,7 +92,7 @@ impl RobotFile {
 }
 
 fn readable(text: &str, path: &Path, outside: Outside) -> Result<Robot, Problems> {
-    document::read(&Source::new(&path.display().to_string(), text), &Base::of(path, outside)).map_err(|problems| {
+    document::read(&Source::new(&path.display().to_string(), text), &Base::of(path, outside), &[]).map_err(|problems| {
         if problems.iter().any(|problem| matches!(problem.code_word(), "unreadable" | "outside")) {
             let message = format!("{} could not be read where it is to be written", path.display());
             let help = "the robot's file names another: write the result into the folder of that one";

@@ -141,7 +141,7 @@ impl Kind for ModelError {
 /// The robot in another file, which must be of the same kind.
 fn other_robot(field: &Field<'_>, context: &Context<'_>) -> Option<Robot> {
     let name = field.text()?;
-    let other = field.absorb(robot::robot(name, context.base))?;
+    let other = field.absorb(robot::robot(name, context.base, &[]))?;
     let own = context.robot?;
     let (theirs, ours) = (other.joint_count(), own.joint_count());
     let fault = if theirs != ours {

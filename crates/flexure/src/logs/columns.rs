@@ -66,7 +66,7 @@ impl Columns {
         } else {
             source::read(Path::new(said), bounds::LIMIT)?
         };
-        parse(&source, &FORM, |table, _| columns(table, robot))
+        parse(&source, &[], &FORM, |table, _| columns(table, robot))
     }
 }
 

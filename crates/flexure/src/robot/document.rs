@@ -5,6 +5,7 @@ use std::path::Path;
 use flexure_core::scalar::Interval;
 
 use crate::files::base::Base;
+use crate::files::change::Change;
 use crate::files::decimals::Decimals;
 use crate::files::document::{self, Form};
 use crate::files::normal::Normal;
@@ -83,7 +84,7 @@ impl Robot {
 /// # Errors
 /// With everything that is wrong.
 pub fn robot_from_text(name: &str, text: &str, folder: &Path) -> Result<Robot, Problems> {
-    read(&Source::new(name, text), &Base::Folder(folder.to_owned(), Outside::Refused))
+    read(&Source::new(name, text), &Base::Folder(folder.to_owned(), Outside::Refused), &[])
 }
 
 /// Acceleration of gravity where nothing is said [m/s²].
@@ -96,8 +97,9 @@ const FORM: Form = Form {
     other: ("controller", "scenario file", "give the robot that robot = \"...\" in it names"),
 };
 
-pub(crate) fn read(source: &Source, base: &Base) -> Result<Robot, Problems> {
-    let (mut robot, warnings) = document::parse(source, &FORM, |root, places| robot(root, places, base))?;
+pub(crate) fn read(source: &Source, base: &Base, changes: &[Change]) -> Result<Robot, Problems> {
+    let (mut robot, warnings) =
+        document::parse(source, changes, &FORM, |root, places| robot(root, places, base))?;
     robot.warnings = warnings;
     Ok(robot)
 }

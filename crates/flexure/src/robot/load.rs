@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::files::base::Base;
 use crate::files::bounds;
+use crate::files::change::Change;
 use crate::files::source::{self, Source};
 use crate::files::{Outside, Problems, ROBOTS, builtin};
 use crate::robot::document::{self, Robot};
@@ -25,10 +26,10 @@ pub fn load_robot(path_or_name: &str) -> Result<Robot, Problems> {
 /// With everything that is wrong.
 pub fn load_robot_with(path_or_name: &str, outside: Outside) -> Result<Robot, Problems> {
     if builtin::is_name(path_or_name) {
-        return robot(path_or_name, &Base::BuiltIn);
+        return robot(path_or_name, &Base::BuiltIn, &[]);
     }
     let path = Path::new(path_or_name);
-    document::read(&source::read(path, bounds::LIMIT)?, &Base::of(path, outside))
+    document::read(&source::read(path, bounds::LIMIT)?, &Base::of(path, outside), &[])
 }
 
 impl Robot {
@@ -41,13 +42,13 @@ impl Robot {
     }
 }
 
-/// The robot at `path_or_name`, relative to `base`.
-pub(crate) fn robot(path_or_name: &str, base: &Base) -> Result<Robot, Problems> {
+/// The robot at `path_or_name`, relative to `base`, its file changed by `changes`.
+pub(crate) fn robot(path_or_name: &str, base: &Base, changes: &[Change]) -> Result<Robot, Problems> {
     if builtin::is_name(path_or_name) {
         let text = builtin::find(path_or_name, ROBOTS, "robot")?;
-        return document::read(&Source::new(path_or_name, text), &Base::BuiltIn);
+        return document::read(&Source::new(path_or_name, text), &Base::BuiltIn, changes);
     }
-    document::read(&base.read(path_or_name, bounds::LIMIT)?, &base.beside(path_or_name))
+    document::read(&base.read(path_or_name, bounds::LIMIT)?, &base.beside(path_or_name), changes)
 }
 
 #[cfg(test)]

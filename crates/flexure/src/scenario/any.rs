@@ -5,11 +5,11 @@ use std::path::Path;
 use toml::de::DeTable;
 
 use crate::files::base::Base;
-use crate::files::{Outside, Problems, ROBOTS, bounds, builtin, source};
+use crate::files::{Problems, ROBOTS, Reading, bounds, builtin, source};
+use crate::robot::Robot;
 use crate::robot::document as robot;
-use crate::robot::{Robot, load_robot};
 use crate::scenario::document as scenario;
-use crate::scenario::{Scenario, load_scenario};
+use crate::scenario::{Scenario, load_scenario_with};
 
 /// What a file turned out to be.
 #[derive(Clone, Debug)]
@@ -21,17 +21,19 @@ pub enum Checked {
 }
 
 /// Loads the robot or scenario at a path, or the built-in one of that name: a file with the key `links` is a robot. It is read
-/// once, so that it may be a pipe. `outside` says whether files may name files outside of their folders.
+/// once, so that it may be a pipe. `reading` says whether files may name files outside of their folders, and what is changed.
 ///
 /// # Errors
 /// With everything that is wrong.
-pub fn check(path_or_name: &str, outside: Outside) -> Result<Checked, Problems> {
+pub fn check<'a>(path_or_name: &str, reading: impl Into<Reading<'a>>) -> Result<Checked, Problems> {
+    let reading = reading.into();
+    let Reading { outside, changes } = reading;
     if builtin::is_name(path_or_name) {
         let is_robot = ROBOTS.iter().any(|(name, _)| *name == path_or_name);
         return Ok(if is_robot {
-            Checked::Robot(Box::new(load_robot(path_or_name)?))
+            Checked::Robot(Box::new(crate::robot::robot(path_or_name, &Base::BuiltIn, changes)?))
         } else {
-            Checked::Scenario(Box::new(load_scenario(path_or_name)?))
+            Checked::Scenario(Box::new(load_scenario_with(path_or_name, reading)?))
         });
     }
     let path = Path::new(path_or_name);
@@ -40,8 +42,8 @@ pub fn check(path_or_name: &str, outside: Outside) -> Result<Checked, Problems> 
     let is_robot = bounds::objection(&source.text).is_none()
         && DeTable::parse_recoverable(&source.text).0.get_ref().contains_key("links");
     Ok(if is_robot {
-        Checked::Robot(Box::new(robot::read(&source, &base)?))
+        Checked::Robot(Box::new(robot::read(&source, &base, changes)?))
     } else {
-        Checked::Scenario(Box::new(scenario::read(&source, &base)?))
+        Checked::Scenario(Box::new(scenario::read(&source, &base, changes)?))
     })
 }

@@ -6,6 +6,7 @@ use flexure_core::scalar::Interval;
 
 use crate::estimators::{DisturbanceObserver, Estimator, document as estimator};
 use crate::files::base::Base;
+use crate::files::change::Change;
 use crate::files::decimals::Decimals;
 use crate::files::document::{self, Form};
 use crate::files::field::Field;
@@ -187,7 +188,7 @@ pub enum Hold {
 /// # Errors
 /// With everything that is wrong, in the robot's file as well.
 pub fn scenario_from_text(name: &str, text: &str, folder: &Path) -> Result<Scenario, Problems> {
-    read(&Source::new(name, text), &Base::Folder(folder.to_owned(), Outside::Refused))
+    read(&Source::new(name, text), &Base::Folder(folder.to_owned(), Outside::Refused), &[])
 }
 
 const FORM: Form = Form {
@@ -212,16 +213,19 @@ const FORM: Form = Form {
     ),
 };
 
-pub(crate) fn read(source: &Source, base: &Base) -> Result<Scenario, Problems> {
+/// Reads `source`, after `changes` of it and of the file of its robot.
+pub(crate) fn read(source: &Source, base: &Base, changes: &[Change]) -> Result<Scenario, Problems> {
+    let of_robot: Vec<_> = changes.iter().filter_map(Change::of_robot).collect();
+    let own: Vec<_> = changes.iter().filter(|change| change.of_robot().is_none()).cloned().collect();
     let (mut scenario, warnings) =
-        document::parse(source, &FORM, |root, places| scenario(root, places, base))?;
+        document::parse(source, &own, &FORM, |root, places| scenario(root, places, base, &of_robot))?;
     scenario.warnings.extend(warnings);
     Ok(scenario)
 }
 
-fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> {
+fn scenario(root: &Table<'_>, places: &Places, base: &Base, of_robot: &[Change]) -> Option<Scenario> {
     let robot = root.required("robot", "path of a robot file or name of a built-in robot");
-    let robot = robot.and_then(|field| read_robot(&field, base));
+    let robot = robot.and_then(|field| read_robot(&field, base, of_robot));
     let joints = links::per_joint(
         robot.as_ref().map_or("the robot", |robot| &robot.name),
         robot.as_ref().map(Robot::joint_count),
@@ -240,12 +244,8 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base) -> Option<Scenario> 
     let plant = plant::read(root, &joints, robot.as_ref());
     let context = Context { joints: &joints, robot: robot.as_ref(), times, base };
     let real = real_loop(root, &context, hold, plant.as_ref());
-    let rest = match (&robot, &plant, &real, &timed) {
-        (Some(robot), Some(plant), Some(real), Some(timed)) => {
-            Some(Rest::of(robot, plant, &real.imperfections, &timed.reference))
-        }
-        _ => None,
-    };
+    let imperfections = real.as_ref().map(|real| &*real.imperfections);
+    let rest = Rest::of(robot.as_ref(), plant.as_ref(), imperfections, timed.as_ref());
     let initial = initial::read(root, &joints, places, rest.as_ref(), &mut assumed);
     let accept = accept::read(root, &joints, times);
     let own = provenance::assumptions(root, places);
@@ -329,9 +329,9 @@ fn times(root: &Table<'_>) -> Option<(f64, f64)> {
 }
 
 /// The robot named or pointed at; problems with its file go to the scenario's log.
-fn read_robot(field: &Field<'_>, base: &Base) -> Option<Robot> {
+fn read_robot(field: &Field<'_>, base: &Base, changes: &[Change]) -> Option<Robot> {
     let name = field.text()?;
-    field.absorb(robot::robot(name, base))
+    field.absorb(robot::robot(name, base, changes))
 }
 
 /// What makes a loop a real one.

@@ -6,7 +6,7 @@ use crate::files::table::Table;
 use crate::files::{Assumption, Places, Problems};
 use crate::imperfections::{Imperfection, Spring};
 use crate::plant::deflection;
-use crate::references::Reference;
+use crate::references::document::Timed;
 use crate::robot::Robot;
 use crate::scenario::plant::Plant;
 
@@ -35,26 +35,27 @@ pub(crate) struct Rest<'a> {
 }
 
 impl<'a> Rest<'a> {
-    /// Of a scenario with these parts.
+    /// Of a scenario with these parts, if all could be read.
     pub fn of(
-        robot: &'a Robot,
-        plant: &Plant,
-        imperfections: &[Imperfection],
-        reference: &Reference,
-    ) -> Self {
-        let springs: Vec<&Spring> = imperfections.iter().filter_map(Imperfection::of).collect();
+        robot: Option<&'a Robot>,
+        plant: Option<&Plant>,
+        imperfections: Option<&[Imperfection]>,
+        timed: Option<&Timed>,
+    ) -> Option<Self> {
+        let (robot, plant, timed) = (robot?, plant?, timed?);
+        let springs: Vec<&Spring> = imperfections?.iter().filter_map(Imperfection::of).collect();
         let hardening = |i: usize| {
             let own = plant.spring_hardening.as_ref().map_or(0.0, |hardening| hardening[i]);
             springs.iter().fold(own, |sum, spring| sum + spring.hardening[i])
         };
         let play = |i: usize| springs.iter().map(|spring| 2.0 * spring.dead_zone[i]).sum();
         let n = robot.joint_count();
-        Self {
+        Some(Self {
             robot,
             hardening: (0..n).map(hardening).collect(),
             play: (0..n).map(play).collect(),
-            reference: reference.initial(),
-        }
+            reference: timed.reference.initial(),
+        })
     }
 
     /// The robot at rest with its links at `q_l` in rad: springs carry gravity.

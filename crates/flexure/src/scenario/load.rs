@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::files::base::Base;
 use crate::files::bounds;
 use crate::files::source::{self, Source};
-use crate::files::{Outside, Problems, SCENARIOS, TASKS, builtin};
+use crate::files::{Outside, Problems, Reading, SCENARIOS, TASKS, builtin};
 use crate::scenario::document::{self, Scenario};
 
 /// Loads the scenario file at a path, or the built-in scenario of that name.
@@ -19,13 +19,17 @@ pub fn load_scenario(path_or_name: &str) -> Result<Scenario, Problems> {
     load_scenario_with(path_or_name, Outside::Refused)
 }
 
-/// As [`load_scenario`]; `outside` says whether files may name files outside of their folders.
+/// As [`load_scenario`]; `reading` says whether files may name files outside of their folders, and what is changed.
 ///
 /// # Errors
 /// With everything that is wrong, in the robot's file as well.
-pub fn load_scenario_with(path_or_name: &str, outside: Outside) -> Result<Scenario, Problems> {
+pub fn load_scenario_with<'a>(
+    path_or_name: &str,
+    reading: impl Into<Reading<'a>>,
+) -> Result<Scenario, Problems> {
+    let Reading { outside, changes } = reading.into();
     let (source, base) = source(path_or_name, outside)?;
-    document::read(&source, &base)
+    document::read(&source, &base, changes)
 }
 
 /// The text of the scenario at a path or of that name, and what paths in it are relative to.

@@ -4,10 +4,12 @@
 
 mod along;
 mod architecture;
+mod at_rest;
 mod bad_files;
 mod broken_off;
 mod built_in;
 mod certify;
+mod changes;
 mod closed_forms;
 mod common;
 mod compare;

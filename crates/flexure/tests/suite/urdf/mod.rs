@@ -4,6 +4,7 @@ mod bad;
 mod drives;
 mod geometry;
 mod import;
+mod typical;
 
 use std::path::Path;
 
