@@ -139,7 +139,7 @@ fn nasty_logs() {
     }
     place.run(&["replay", "s.toml", "--log", "none.csv"]).refused(&["cannot read none.csv"]);
     place.run(&["replay", "s.toml", "--log", "."]).refused(&["cannot read ."]);
-    place.run(&["replay", "s.toml"]).refused(&["--log"]);
+    assert_eq!(place.run(&["replay", "s.toml"]).code, Some(2));
     place.run(&["replay", "s.toml", "--log", "out/s.csv", "--horizon", "0"]).refused(&["horizon is 0 s"]);
     place.run(&["replay", "s.toml", "--log", "out/s.csv", "--horizon", "nan"]).refused(&["horizon is NaN s"]);
     place.run(&["replay", "pendulum-tanh", "--log", "out/s.csv"]).refused(&["more than the 1 joints"]);
