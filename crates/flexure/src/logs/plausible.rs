@@ -19,8 +19,11 @@ const FAR: f64 = 50.0;
 /// Position ranges below this \[rad\] say nothing of how motors and links move together.
 const STILL: f64 = 0.02;
 
-/// Motors move as links do, to this part.
+/// Motors move as links do, to this part, or what bends the spring comes from the motor.
 const TOGETHER: f64 = 0.5;
+
+/// Largest torque of a spring over the largest of its motor: a swing may carry some times what keeps it up.
+const SWING: f64 = 5.0;
 
 /// What is doubtful about `log`, a log of `robot`; an error where the robot cannot have done it.
 pub(super) fn check(log: &Log, robot: &Robot) -> Result<Vec<Problem>, Problems> {
@@ -119,16 +122,21 @@ fn apart(log: &Log, robot: &Robot, i: usize) -> Option<Problem> {
         return None;
     }
     let deflection: Vec<f64> = q_m.iter().zip(&q_l).map(|(q_m, q_l)| q_m - q_l).collect();
-    if range(&deflection) < TOGETHER * moved {
+    let bending = 0.5 * robot.stiffness[i] * range(&deflection);
+    let given =
+        log.u_m.iter().skip(i).step_by(log.joints).fold(0.0, |given: f64, torque| given.max(torque.abs()));
+    if range(&deflection) < TOGETHER * moved || bending < SWING * given {
         return None;
     }
     let ratio = range(&q_m) / range(&q_l);
     let what = format!(
-        "joint {}: the motor moves over {} rad and the link over {} rad, {} rad apart: no spring gives so far",
+        "joint {}: the motor moves over {} rad and the link over {} rad; that bends the spring with {} N m, and the motor gives \
+         {} N m at most",
         robot.joints[i].name,
         significant(range(&q_m), 3),
         significant(range(&q_l), 3),
-        significant(range(&deflection), 3)
+        significant(bending, 3),
+        significant(given, 3)
     );
     let help = if ratio > 5.0 {
         "motors are seen from the link side of the gear: --columns with q_m.motor_side = true, or scale"
