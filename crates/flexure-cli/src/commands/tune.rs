@@ -80,5 +80,8 @@ fn show(found: &Design, joints: &[String]) -> Result<(), Failure> {
     if let (Some(verdict), Some(rate)) = (evidence.verdict, evidence.rate_certified) {
         print::line(&format!("contraction rate: {} 1/s, {verdict}", short(rate, 4)))?;
     }
+    if let Some(frail) = found.frail() {
+        print::line(&format!("the loop is frail: it does not bear {frail}; that is wished for, a SPEC can ask for it"))?;
+    }
     print::line(&format!("{} loops were run in the search", found.runs))
 }

@@ -19,6 +19,8 @@ pub struct Constraint {
     pub unit: &'static str,
     /// Part of the limit that is left; negative where it is broken.
     pub slack: f64,
+    /// Whether it must be kept; else it is wished for, and what keeps it is preferred.
+    pub asked: bool,
     /// What it is about.
     #[serde(skip)]
     pub kind: Kind,
@@ -49,7 +51,7 @@ impl Constraint {
     /// That a spectral radius is below 1.
     pub(super) fn radius(what: String, radius: f64) -> Self {
         let slack = STABLE - radius;
-        Self { what, joint: None, value: radius, limit: 1.0, unit: "", slack, kind: Kind::Radius, note: None }
+        Self { what, joint: None, value: radius, limit: 1.0, unit: "", slack, asked: true, kind: Kind::Radius, note: None }
     }
 
     /// What `runs` are held to, each in the run that comes closest; `at_limit` is the largest part of the instants at which a torque
@@ -70,6 +72,7 @@ impl Constraint {
             limit,
             unit: "",
             slack: limit - value,
+            asked: true,
             kind: Kind::Run(Measure::AtLimit),
             note: None,
         };
@@ -87,6 +90,7 @@ impl Constraint {
             limit: *limit,
             unit,
             slack: 1.0 - value / limit,
+            asked: true,
             kind: Kind::Run(*measure),
             note: None,
         }
@@ -101,6 +105,7 @@ impl Constraint {
             limit: 1.0,
             unit: "",
             slack: -1.0,
+            asked: true,
             kind: Kind::Lost,
             note: Some(reason.to_owned()),
         }
@@ -115,9 +120,15 @@ impl Constraint {
             limit: asked,
             unit: "1/s",
             slack: proved / asked - 1.0,
+            asked: true,
             kind: Kind::Rate,
             note: None,
         }
+    }
+
+    /// The same, `asked` or wished for.
+    pub(super) fn asked(self, asked: bool) -> Self {
+        Self { asked, ..self }
     }
 
     /// Whether the loop keeps it.

@@ -125,7 +125,7 @@ pub fn design(
             lost => constraints.extend(lost?),
         }
     }
-    let feasible = best.keeps() && constraints.iter().all(Constraint::is_kept);
+    let feasible = best.keeps() && constraints.iter().all(|constraint| constraint.is_kept() || !constraint.asked);
     let mut instead = None;
     if let (false, false, Some(Rate::AtLeast(_))) = (feasible, broken_off, file.spec.rate) {
         let found = search(Pace::Proved, [SEARCHED, INSTEAD]).run(&[], budget.div_ceil(2), seed)?;
@@ -214,11 +214,12 @@ impl Design {
             format!(" Of the ideal loop a contraction rate of {} 1/s is proved.", short(rate, 4))
         });
         format!(
-            "{}{}: rms error {} mrad, every constraint kept.{rate}\n\
+            "{}{}: rms error {} mrad, {} kept.{rate}\n\
              Gains follow from the robot, the reference and the imperfections below: tune again if they change.",
             MARK.trim_start_matches("# "),
             if self.broken_off { ", broken off" } else { "" },
-            short(1e3 * rms, 3)
+            short(1e3 * rms, 3),
+            if self.frail().is_some() { "what is asked is" } else { "every constraint is" },
         )
     }
 
@@ -242,9 +243,16 @@ impl Design {
         Some(scenario.places.problem("controller", "infeasible", message, help))
     }
 
-    /// The constraint that is broken most; none if all are kept.
+    /// What is wished for and not borne, in words: the loop is frail there.
+    pub fn frail(&self) -> Option<String> {
+        let frail = self.constraints.iter().filter(|constraint| !constraint.asked && !constraint.is_kept());
+        let words: Vec<&str> = frail.map(|constraint| constraint.what.as_str()).collect();
+        (!words.is_empty()).then(|| words.join("; "))
+    }
+
+    /// The constraint that is broken most of those that are asked; none if all are kept.
     pub fn binding(&self) -> Option<&Constraint> {
-        let broken = self.constraints.iter().filter(|constraint| !constraint.is_kept());
+        let broken = self.constraints.iter().filter(|constraint| constraint.asked && !constraint.is_kept());
         broken.min_by(|a, b| a.slack.total_cmp(&b.slack))
     }
 

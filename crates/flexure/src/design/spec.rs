@@ -34,36 +34,22 @@ pub enum Rate {
     Largest,
 }
 
-/// Largest parts by which the robot may differ from its model, either way.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Largest parts by which the robot may differ from its model, either way; none where nothing is asked.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Uncertainty {
     /// Of all masses and inertias of the links.
-    pub mass: f64,
+    pub mass: Option<f64>,
     /// Of all springs.
-    pub stiffness: f64,
+    pub stiffness: Option<f64>,
 }
 
-/// Margins of a loop.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Margins of a loop; none where nothing is asked.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AskedMargins {
-    /// Delay beyond the longest, in s; none for half a control period.
+    /// Delay beyond the longest, in s.
     pub delay: Option<f64>,
     /// Smallest and largest factor on the torque of the motors.
-    pub gain: [f64; 2],
-}
-
-impl Default for Uncertainty {
-    /// A twentieth of the masses, a tenth of the springs: what a data sheet is off by.
-    fn default() -> Self {
-        Self { mass: 0.05, stiffness: 0.1 }
-    }
-}
-
-impl Default for AskedMargins {
-    /// A fifth of the torque either way.
-    fn default() -> Self {
-        Self { delay: None, gain: [0.8, 1.25] }
-    }
+    pub gain: Option<[f64; 2]>,
 }
 
 /// A SPEC file: wishes, and what replaces parts of the scenario.
@@ -193,21 +179,16 @@ fn delay(field: &Field<'_>) -> Option<[f64; 2]> {
 
 fn uncertainty(field: &Field<'_>) -> Option<Uncertainty> {
     let table = field.table(&["mass", "stiffness"])?;
-    let part = |key, default: f64| {
-        table
-            .optional(key, |field| {
-                let part = field.number(&UNCERTAIN)?;
-                if part >= 1.0 {
-                    let message = format!("{} is {part}, must be < 1", field.path);
-                    field.error("range", message, "0.1 is a tenth either way");
-                    return None;
-                }
-                Some(part)
-            })?
-            .or(Some(default))
+    let part = |field: &Field<'_>| {
+        let part = field.number(&UNCERTAIN)?;
+        if part >= 1.0 {
+            let message = format!("{} is {part}, must be < 1", field.path);
+            field.error("range", message, "0.1 is a tenth either way");
+            return None;
+        }
+        Some(part)
     };
-    let usual = Uncertainty::default();
-    let (mass, stiffness) = (part("mass", usual.mass), part("stiffness", usual.stiffness));
+    let (mass, stiffness) = (table.optional("mass", part), table.optional("stiffness", part));
     Some(Uncertainty { mass: mass?, stiffness: stiffness? })
 }
 
@@ -223,5 +204,5 @@ fn margins(field: &Field<'_>) -> Option<AskedMargins> {
         }
         Some([low, high])
     });
-    Some(AskedMargins { delay: delay?, gain: gain?.unwrap_or(AskedMargins::default().gain) })
+    Some(AskedMargins { delay: delay?, gain: gain? })
 }

@@ -38,11 +38,15 @@ pub fn trades_table(trades: &[Trade], width: usize) -> String {
 pub fn constraints_table(constraints: &[Constraint], width: usize) -> String {
     let mut table = headed(["constraint", "joint", "value", "limit", "left\n[%]"].into_iter());
     for constraint in constraints {
-        let Constraint { what, joint, value, limit, unit, slack, note, .. } = constraint;
+        let Constraint { what, joint, value, limit, unit, slack, asked, note, .. } = constraint;
         let amount = |x: f64| right(format!("{} {unit}", short(x, 4)).trim_end().to_owned());
         let what = note.as_ref().map_or_else(|| what.clone(), |note| format!("{what}: {note}"));
         let joint = joint.as_deref().unwrap_or(NONE);
-        let left = if *slack < 0.0 { "broken".to_owned() } else { significant(100.0 * slack, 3) };
+        let left = match (*slack < 0.0, *asked) {
+            (true, true) => "broken".to_owned(),
+            (true, false) => "not borne".to_owned(),
+            (false, _) => significant(100.0 * slack, 3),
+        };
         table.add_row(vec![Cell::new(what), Cell::new(joint), amount(*value), amount(*limit), right(left)]);
     }
     laid_out(&table, 2, width)
