@@ -11,8 +11,8 @@ use super::parameters::{Parameter, Values};
 use super::predictor::{Piece, Weighing};
 use super::prior::Prior;
 use super::step::Pace;
-use crate::linalg::{Dense, Symmetric, cholesky, solved};
 use crate::files::Problems;
+use crate::linalg::{Dense, Symmetric, cholesky, solved};
 use crate::logs::Log;
 use crate::progress::{Progress, tell};
 
@@ -46,7 +46,7 @@ const LEVELS: [RangeInclusive<i32>; 2] = [1..=3, 4..=5];
 
 /// Rounds of noise and values, and Gauss–Newton steps in each at most.
 const ROUNDS: usize = 4;
-const STEPS: usize = 12;
+const STEPS: usize = 30;
 
 /// Largest change of a logarithm in a step, and of an offset in sampling periods.
 const LONGEST: f64 = 0.7;
@@ -71,9 +71,8 @@ impl Search<'_> {
         let mut weighing = self.weighed(&values, &levels);
         for round in 0..ROUNDS {
             let last = round + 1 == ROUNDS;
-            let told = |step: usize| {
-                tell(progress, (round as f64 + step as f64 / STEPS as f64) / ROUNDS as f64)
-            };
+            let told =
+                |step: usize| tell(progress, (round as f64 + step as f64 / STEPS as f64) / ROUNDS as f64);
             let enough = if last { ENOUGH } else { ROUGH };
             (values, converged) = self.climb(values, &weighing, enough, &told)?;
             if last {
