@@ -46,7 +46,7 @@ const LEVELS: [RangeInclusive<i32>; 2] = [1..=3, 4..=5];
 
 /// Rounds of noise and values, and Gauss–Newton steps in each at most.
 const ROUNDS: usize = 4;
-const STEPS: usize = 30;
+const STEPS: usize = 12;
 
 /// Largest change of a logarithm in a step, and of an offset in sampling periods.
 const LONGEST: f64 = 0.7;
