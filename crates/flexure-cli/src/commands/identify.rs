@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use flexure::files::number::{duration, significant};
+use flexure::files::number::significant;
 use flexure::files::{Outside, prepare, read_text, write_atomic};
 use flexure::identify::{Identified, RobotFile, Settings, identify as identified};
 use flexure::logs::{Columns, read_log};
@@ -84,13 +84,15 @@ fn spare_other_files(path: &PathBuf) -> Result<(), Failure> {
 
 fn tell(found: &Identified, out: Option<&PathBuf>) -> Result<(), Failure> {
     print::line(&identified_table(found))?;
-    print::line("± three standard deviations; numbers in brackets are as they were: the log does not know them")?;
+    print::line(
+        "± three standard deviations; numbers in brackets are as they were: the log does not know them",
+    )?;
     for offset in &found.offsets {
         print::line(&format!(
-            "{}: torques act {} ± {} after they are logged",
+            "{}: torques act {:.4} ± {:.4} ms after they are logged",
             offset.log,
-            duration(offset.value),
-            duration(offset.error)
+            1e3 * offset.value,
+            1e3 * offset.error
         ))?;
     }
     for joint in &found.joints {
@@ -118,7 +120,8 @@ fn tell(found: &Identified, out: Option<&PathBuf>) -> Result<(), Failure> {
 
 /// The exit code: 1 if a stiffness or motor inertia is not known, or the search did not come to its end.
 fn ending(found: &Identified) -> Result<(), Failure> {
-    let missing: Vec<_> = found.missing().iter().map(|(joint, what)| format!("{} of {joint}", what.key)).collect();
+    let missing: Vec<_> =
+        found.missing().iter().map(|(joint, what)| format!("{} of {joint}", what.key)).collect();
     if !missing.is_empty() {
         let message = format!("the logs do not know {}", missing.join(", "));
         let hint = "excite the springs more: `flexure excite` designs such a motion; a longer log, a finer encoder; \
@@ -127,7 +130,11 @@ fn ending(found: &Identified) -> Result<(), Failure> {
     }
     if !found.converged {
         let message = "the search did not come to its end: errors are larger than they look".to_owned();
-        return Err(Failure::no("unknown", message, "is there play, or something else that the model has not?"));
+        return Err(Failure::no(
+            "unknown",
+            message,
+            "is there play, or something else that the model has not?",
+        ));
     }
     Ok(())
 }

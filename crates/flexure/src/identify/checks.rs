@@ -36,8 +36,10 @@ pub(crate) fn check(robot: &Robot, logs: &[Log], settings: &Settings) -> Result<
     };
     let mut problems = Vec::new();
     if let Some(gap) = settings.gaps.iter().find(|gap| first.q_l.is_none() && gap.is_needed()) {
-        let message = format!("{} leaves {} open, and the links have no encoders in the log", robot.name, gap.name());
-        let help = "with motor encoders alone the search starts from the robot file: give a guess, 30 % off will do";
+        let message =
+            format!("{} leaves {} open, and the links have no encoders in the log", robot.name, gap.name());
+        let help =
+            "with motor encoders alone the search starts from the robot file: give a guess, 30 % off will do";
         problems.push(Problem::new("log", message, help));
     }
     for log in logs {
@@ -64,7 +66,8 @@ fn alone(robot: &Robot, log: &Log) -> Vec<Problem> {
     }
     if log.q_m.is_none() {
         let message = format!("{name} has no motor positions");
-        let help = "motor inertia and friction are seen from the motor only: log q_m, on the link side of the gear";
+        let help =
+            "motor inertia and friction are seen from the motor only: log q_m, on the link side of the gear";
         return vec![problem("log", message, help)];
     }
     let sizes = [&log.q_l, &log.q_m].into_iter().flatten().all(|signal| signal.len() == log.u_m.len());
@@ -74,17 +77,26 @@ fn alone(robot: &Robot, log: &Log) -> Vec<Problem> {
     }
     if !(log.period > 0.0 && log.period <= SLOWEST) {
         let message = format!("{name} has a sample every {} s, must be at most {SLOWEST} s", log.period);
-        return vec![problem("log", message, "springs swing at 5 to 100 Hz: log at 200 Hz or faster, 1 kHz is good")];
+        return vec![problem(
+            "log",
+            message,
+            "springs swing at 5 to 100 Hz: log at 200 Hz or faster, 1 kHz is good",
+        )];
     }
     if log.duration() < SHORTEST {
         let message = format!("{name} lasts {:.2} s, must last at least {SHORTEST} s", log.duration());
         return vec![problem("log", message, "20 s of a motion that excites every joint are good")];
     }
     let finite = |signal: &[f64]| signal.iter().position(|x| !x.is_finite());
-    for (key, signal) in [("q_l", log.q_l.as_deref()), ("q_m", log.q_m.as_deref()), ("u_m", Some(&*log.u_m))] {
+    for (key, signal) in [("q_l", log.q_l.as_deref()), ("q_m", log.q_m.as_deref()), ("u_m", Some(&*log.u_m))]
+    {
         if let Some(at) = signal.and_then(finite) {
             let message = format!("{name}: {key} of joint {} is no number at sample {}", at % n + 1, at / n);
-            return vec![problem("not-finite", message, "cut the gap out: give the parts as logs of their own")];
+            return vec![problem(
+                "not-finite",
+                message,
+                "cut the gap out: give the parts as logs of their own",
+            )];
         }
     }
     (0..n).filter_map(|i| of_joint(robot, log, i)).collect()
@@ -94,15 +106,21 @@ fn of_joint(robot: &Robot, log: &Log, i: usize) -> Option<Problem> {
     let (n, name, joint) = (log.joints, &log.name, &robot.joints[i].name);
     let range = |signal: &[f64]| {
         let values = || signal.iter().skip(i).step_by(n).copied();
-        let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+        let (low, high) =
+            (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
         (low, high)
     };
     for (side, signal) in [("link", &log.q_l), ("motor", &log.q_m)] {
         let Some(signal) = signal else { continue };
         let (low, high) = range(signal);
         if high - low < STILL {
-            let message = format!("{name}: the {side} of {joint} does not move (range {:.1e} rad)", high - low);
-            return Some(Problem::new("log", message, "move every joint; `flexure excite` designs such a motion"));
+            let message =
+                format!("{name}: the {side} of {joint} does not move (range {:.1e} rad)", high - low);
+            return Some(Problem::new(
+                "log",
+                message,
+                "move every joint; `flexure excite` designs such a motion",
+            ));
         }
     }
     let torques = || log.u_m.iter().skip(i).step_by(n).map(|u| u.abs());

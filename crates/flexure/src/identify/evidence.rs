@@ -3,6 +3,7 @@
 use super::layer::Total;
 use super::parameters::{Parameter, Values};
 use super::prior::Prior;
+use crate::files::number::short;
 use crate::linalg::{Dense, Leading, Symmetric, cholesky, eigenvectors, lower_inverse};
 
 /// What data and prior say together, in logarithms of parameters and s of offsets.
@@ -90,7 +91,7 @@ pub(crate) fn in_words(direction: &[f64], deviation: f64, values: &Values, joint
     let chief: Vec<usize> = (0..direction.len()).filter(|&i| direction[i].abs() > 0.3 * strongest).collect();
     let percent = 100.0 * deviation;
     match chief[..] {
-        [one] => format!("{} is known least, to a factor of e^{deviation:.2} ({percent:.2} %)", part(one)),
+        [one] => format!("{}, to {} % (one standard deviation)", part(one), short(percent, 2)),
         [a, b] if direction[a] * direction[b] < 0.0 => {
             let value = |i: usize| values.joints[i / Parameter::COUNT][i % Parameter::COUNT];
             let same_kind = (value(a) * direction[a] + value(b) * direction[b]).abs()
@@ -102,7 +103,7 @@ pub(crate) fn in_words(direction: &[f64], deviation: f64, values: &Values, joint
         _ => {
             let names: Vec<_> = chief.iter().take(4).map(|&i| part(i)).collect();
             let more = if chief.len() > 4 { ", …" } else { "" };
-            format!("{}{more}: known least, together", names.join(", "))
+            format!("{}{more}: a combination of them, to {} %", names.join(", "), short(percent, 2))
         }
     }
 }

@@ -106,7 +106,8 @@ fn riccati(A: &Dense<f64>, information: &Dense<f64>, Q: Dense<f64>) -> Option<De
     let (mut alpha, mut beta, mut gamma) = (transposed(A), information.clone(), Q);
     for _ in 0..DOUBLINGS {
         let inner = &Dense::identity(size) + &(&beta * &gamma);
-        let both = Dense::from_fn(size, 2 * size, |i, j| if j < size { alpha[(i, j)] } else { beta[(i, j - size)] });
+        let both =
+            Dense::from_fn(size, 2 * size, |i, j| if j < size { alpha[(i, j)] } else { beta[(i, j - size)] });
         let both = solve(&inner, &both)?;
         let by_alpha = Dense::from_fn(size, size, |i, j| both[(i, j)]);
         let by_beta = Dense::from_fn(size, size, |i, j| both[(i, size + j)]);
@@ -161,11 +162,15 @@ mod tests {
     #[test]
     fn of_a_free_motor_is_the_tracking_filter() {
         let (h, torque, position) = (1e-3, 2.0, 1e-5);
-        let gain = alone([1.0, 0.5], 1e-9, 0.0).gain(&[Noise { torque, position: [position; 2] }], h).unwrap();
+        let gain =
+            alone([1.0, 0.5], 1e-9, 0.0).gain(&[Noise { torque, position: [position; 2] }], h).unwrap();
         for (inertia, side) in [(1.0, 0), (0.5, 1)] {
             let index = torque / inertia * h * h / position;
             let (alpha, beta) = (gain[(side, side)], gain[(2 + side, side)] * h);
-            assert!((beta * beta / (1.0 - alpha) / (index * index) - 1.0).abs() < 1e-6, "{alpha} {beta} {index}");
+            assert!(
+                (beta * beta / (1.0 - alpha) / (index * index) - 1.0).abs() < 1e-6,
+                "{alpha} {beta} {index}"
+            );
             let of_alpha = 2.0 * (2.0 - alpha) - 4.0 * (1.0_f64 - alpha).sqrt();
             assert!((beta / of_alpha - 1.0).abs() < 1e-6);
         }

@@ -108,14 +108,22 @@ fn check_settings(settings: &Settings) -> Result<(), Problem> {
     }
     if !(accuracy > 0.0 && accuracy <= 1.0) {
         let message = format!("--accuracy is {accuracy}, must be > 0 and <= 1");
-        return Err(Problem::new("range", message, "the error of stiffness and motor inertia, as a part of them"));
+        return Err(Problem::new(
+            "range",
+            message,
+            "the error of stiffness and motor inertia, as a part of them",
+        ));
     }
     Ok(())
 }
 
 fn unsolvable() -> Problem {
     let message = "the logs do not fit the robot: the search left the finite numbers";
-    Problem::new("unsolvable", message, "check units, signs and order of the columns, and the masses of the links")
+    Problem::new(
+        "unsolvable",
+        message,
+        "check units, signs and order of the columns, and the masses of the links",
+    )
 }
 
 /// The numbers of the robot file; where it says zero or nothing, small parts of the torque.
@@ -187,7 +195,14 @@ fn pieces(logs: &[Log], hold_out: f64) -> Vec<Piece> {
             let mut counted = from;
             while counted < to {
                 let end = if to - counted < 2 * length { to } else { counted + length };
-                pieces.push(Piece { number: pieces.len(), log: of_log, first: counted - run_in, counted, end, held_out });
+                pieces.push(Piece {
+                    number: pieces.len(),
+                    log: of_log,
+                    first: counted - run_in,
+                    counted,
+                    end,
+                    held_out,
+                });
                 counted = end;
             }
         }

@@ -103,7 +103,8 @@ pub(crate) fn predict<L: Links<f64, N>, const N: usize>(
             gathered.begin_batch();
         }
         for i in 0..n {
-            let of = |measured: &Option<Vec<f64>>, q: f64| measured.as_ref().map_or(0.0, |y| y[k * n + i] - q);
+            let of =
+                |measured: &Option<Vec<f64>>, q: f64| measured.as_ref().map_or(0.0, |y| y[k * n + i] - q);
             errors[i] = of(&log.q_l, moving.x.q_l[i]);
             errors[n + i] = of(&log.q_m, moving.x.q_m[i]);
             if counts {
@@ -224,3 +225,77 @@ impl Gathered {
 
 /// Most unknowns of a log: those of sixteen joints and an offset.
 const MOST: usize = crate::robot::MAX_JOINTS * Parameter::COUNT + 1;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::gain::{Noise, Posture};
+    use crate::identify::layer::{Layer, layer};
+    use crate::robot::Robot;
+
+    /// An arm that moves on and swings on its springs; no joint turns back.
+    fn log(robot: &Robot) -> Log {
+        let n = robot.joint_count();
+        let (mut q_l, mut q_m, mut u_m) = (Vec::new(), Vec::new(), Vec::new());
+        for k in 0..300 {
+            let t = 1e-3 * f64::from(k);
+            for i in 0..n {
+                let swing = 1e-4 * (60.0 * t + i as f64).sin();
+                let q = -1.0 + 0.2 * i as f64 + 0.5 * t;
+                q_l.push(q + swing);
+                q_m.push(q - 2.0 * swing + 1e-3);
+                u_m.push(3.0 * (25.0 * t + i as f64).cos());
+            }
+        }
+        let (q_l, q_m) = (Some(q_l), Some(q_m));
+        Log { name: "swing".to_owned(), period: 1e-3, joints: n, q_l, q_m, dq_l: None, dq_m: None, u_m }
+    }
+
+    fn weighing(layer: &dyn Layer, log: &Log, values: &Values) -> Weighing {
+        let n = log.joints;
+        let posture = Posture {
+            mass: layer.mass(&log.q_l.as_ref().unwrap()[..n]),
+            motor_inertia: values.of(Parameter::MotorInertia),
+            stiffness: values.of(Parameter::Stiffness),
+            link_damping: values.of(Parameter::LinkDamping),
+            motor_damping: values.of(Parameter::MotorDamping),
+        };
+        let noise = vec![Noise { torque: 0.05, position: [1e-5, 5e-6] }; n];
+        Weighing {
+            gains: vec![posture.gain(&noise, log.period).unwrap()],
+            weights: vec![[1e8, -2e7, 3e8]; n],
+            pace: Pace::of(1.3 * posture.rate().unwrap(), log.period),
+        }
+    }
+
+    /// Scores are what differences of the cost say, for every unknown; the derivatives leave out how rigid-body torques change
+    /// within a period, a part in a thousand.
+    #[test]
+    fn scores_are_slopes_of_the_cost() {
+        let robot = Robot::load("panda").unwrap();
+        let (layer, log) = (layer(&robot).unwrap(), log(&robot));
+        let joint = |i: usize| [robot.stiffness[i], robot.motor_inertia[i], 0.4, 0.8, 0.3, 0.9];
+        let values = Values { joints: (0..7).map(joint).collect(), offsets: vec![0.37e-3] };
+        let weighing = weighing(&*layer, &log, &values);
+        let piece = Piece { number: 0, log: 0, first: 0, counted: 50, end: 300, held_out: false };
+        let sums = layer.lay(&log, &piece, &values, &weighing, true);
+        let scores = &sums.information.as_ref().unwrap().scores;
+        for i in 0..values.unknowns() {
+            let score: f64 = scores.iter().map(|batch| batch[i]).sum();
+            let small = if i == 42 { 1e-7 } else { 1e-4 };
+            let at = |step: f64| {
+                let mut all = vec![0.0; 43];
+                all[i] = step;
+                layer.lay(&log, &piece, &values.moved(&all), &weighing, false).cost(&weighing.weights)
+            };
+            let slope = (at(small) - at(-small)) / (2.0 * small);
+            let information = sums.information.as_ref().unwrap().matrix[i * 43 + i];
+            // What a score could be at most, by Cauchy and Schwarz: signs cancel in the sum.
+            let scale = (information * 2.0 * sums.cost(&weighing.weights)).sqrt();
+            assert!(
+                (slope + score).abs() < 0.003 * scale,
+                "unknown {i}: slope {slope}, score {score}, of {scale}"
+            );
+        }
+    }
+}

@@ -62,9 +62,8 @@ pub(crate) fn start(arm: &dyn Arm, log: &Log, q_l: &[f64], q_m: &[f64]) -> Start
         })
         .collect();
     let inputs: Vec<_> = (0..n).map(|i| smoothed(&log.u_m, n, i, &window)).collect();
-    let input = |i: usize, halves: i32| -> Vec<f64> {
-        at.iter().map(|&k| delayed(&inputs[i], k, halves)).collect()
-    };
+    let input =
+        |i: usize, halves: i32| -> Vec<f64> { at.iter().map(|&k| delayed(&inputs[i], k, halves)).collect() };
     let scales: Vec<_> = (0..n).map(|i| rms(&log.u_m, n, i).max(f64::MIN_POSITIVE)).collect();
     let misfit = |halves: i32| -> f64 {
         (0..n).map(|i| (motor_alone(&joints[i], &input(i, halves)).1 / scales[i]).powi(2)).sum()
@@ -72,11 +71,8 @@ pub(crate) fn start(arm: &dyn Arm, log: &Log, q_l: &[f64], q_m: &[f64]) -> Start
     let tried = 2 * OFFSETS.start()..=2 * OFFSETS.end();
     let best = tried.map(|halves| (halves, misfit(halves))).min_by(|a, b| a.1.total_cmp(&b.1));
     let halves = best.map_or(0, |(halves, _)| halves);
-    let mut started = Started {
-        joints: Vec::new(),
-        offset: f64::from(halves) * 0.5 * log.period,
-        unexplained: Vec::new(),
-    };
+    let mut started =
+        Started { joints: Vec::new(), offset: f64::from(halves) * 0.5 * log.period, unexplained: Vec::new() };
     for (rows, (i, scale)) in joints.iter().zip(scales.iter().enumerate()) {
         let (found, [link, motor]) = together(rows, &input(i, halves));
         started.joints.push(found);

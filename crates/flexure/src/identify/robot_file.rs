@@ -184,7 +184,10 @@ impl Edits<'_> {
         let mut source = format!("identified: {} (3 sigma) from {logs}", numbers.join(", "));
         if known.iter().any(Option::is_none) {
             source = match earlier.strip_prefix("assumed:") {
-                Some(note) => format!("assumed: {}; {source}", note.split("; identified:").next().unwrap_or(note).trim()),
+                Some(note) => format!(
+                    "assumed: {}; {source}",
+                    note.split("; identified:").next().unwrap_or(note).trim()
+                ),
                 None => source,
             };
         }
@@ -216,14 +219,18 @@ impl Edits<'_> {
             }
             if start.starts_with(&format!("[{table}.")) {
                 let header = format!("[{table}]\n");
-                let first = !self.edits.iter().any(|(span, new)| *span == (at..at) && new.starts_with(&header));
+                let first =
+                    !self.edits.iter().any(|(span, new)| *span == (at..at) && new.starts_with(&header));
                 let header = if first { header } else { String::new() };
                 self.edits.push((at..at, format!("{header}{line}\n")));
                 return Ok(());
             }
             at = end;
         }
-        let message = format!("cannot write {} into [{table}]: there is no line with that header", suggest::quoted(line));
+        let message = format!(
+            "cannot write {} into [{table}]: there is no line with that header",
+            suggest::quoted(line)
+        );
         Err(Problem::new("unsupported", message, "write the table with a header of its own, not inline"))
     }
 

@@ -89,7 +89,9 @@ mod tests {
     fn the_slope_is_that_of_the_mean() {
         for (v, torque) in [(0.002, -6.0), (-0.004, 9.0), (0.01, 0.3)] {
             let (d, at) = (1e-8, by_the_mean(v, torque).1);
-            let difference = COULOMB * (by_the_mean(v + d, torque).1.share - by_the_mean(v - d, torque).1.share) / (2.0 * d);
+            let difference = COULOMB
+                * (by_the_mean(v + d, torque).1.share - by_the_mean(v - d, torque).1.share)
+                / (2.0 * d);
             assert!((difference - at.slope).abs() < 1e-4 * (1.0 + at.slope.abs()), "{difference} for {at:?}");
         }
     }

@@ -11,8 +11,8 @@ use super::parameters::{Parameter, Values};
 use super::predictor::{Piece, Weighing};
 use super::prior::Prior;
 use super::step::Pace;
-use crate::linalg::{Dense, Symmetric, cholesky, solved};
 use crate::files::Problems;
+use crate::linalg::{Dense, Symmetric, cholesky, solved};
 use crate::logs::Log;
 use crate::progress::Progress;
 

@@ -122,14 +122,16 @@ impl<'a, L: Links<f64, N>, const N: usize> Step<'a, L, N> {
             std::array::from_fn(|j| factor.solve(&Vector::from_fn(|i| f64::from(i == j))));
         let mobility = Matrix::from_fn(|i, j| columns[j][i]);
         let bias = self.links.inverse_dynamics(middle, speed, speed, &Vector::ZERO);
-        let rubbing =
-            [&x.v_l, &x.v_m].map(|v| std::array::from_fn(|i| Rubbing::sliding(v[i])));
+        let rubbing = [&x.v_l, &x.v_m].map(|v| std::array::from_fn(|i| Rubbing::sliding(v[i])));
         let mean = Vector::from_fn(|i| torques.get(i).map_or(0.0, |held| held.mean));
         let mut frozen = Frozen { mobility, load: [-bias, mean], rubbing };
         let sliding = self.with_friction(&frozen.load, &frozen.rubbing);
         let end = self.swung(x, &Frozen { load: sliding, ..frozen });
         for i in 0..self.joints {
-            let ends = [(x.v_l[i], end.v_l[i], 1.0 / frozen.mobility[(i, i)]), (x.v_m[i], end.v_m[i], self.motor_inertia[i])];
+            let ends = [
+                (x.v_l[i], end.v_l[i], 1.0 / frozen.mobility[(i, i)]),
+                (x.v_m[i], end.v_m[i], self.motor_inertia[i]),
+            ];
             for (side, (v, end, inertia)) in ends.into_iter().enumerate() {
                 frozen.rubbing[side][i] = Rubbing::over(v, end, inertia, self.coulomb[side][i], self.h);
             }
@@ -190,12 +192,7 @@ impl<'a, L: Links<f64, N>, const N: usize> Step<'a, L, N> {
     }
 
     /// Derivatives of the links' inverse dynamics by positions and velocities.
-    fn rigid(
-        &self,
-        q: &Vector<f64, N>,
-        v: &Vector<f64, N>,
-        a: &Vector<f64, N>,
-    ) -> [Matrix<f64, N, N>; 2] {
+    fn rigid(&self, q: &Vector<f64, N>, v: &Vector<f64, N>, a: &Vector<f64, N>) -> [Matrix<f64, N, N>; 2] {
         let fixed = |x: &Vector<f64, N>| x.map(Dual::<f64, N>::constant);
         let varied = |x: &Vector<f64, N>| Vector::from_fn(|i| Dual::<f64, N>::variable(x[i], i));
         let (v_fixed, a) = (fixed(v), fixed(a));
@@ -238,7 +235,8 @@ impl<'a, L: Links<f64, N>, const N: usize> Step<'a, L, N> {
                 for i in 0..n {
                     // Torques of springs and dampers, into the rows of links and motors.
                     let (to_link, to_motor) = torque.two_rows(i, n + i);
-                    let (q_l, q_m, v_l, v_m) = (term.row(i), term.row(n + i), term.row(2 * n + i), term.row(3 * n + i));
+                    let (q_l, q_m, v_l, v_m) =
+                        (term.row(i), term.row(n + i), term.row(2 * n + i), term.row(3 * n + i));
                     let (K, D_l, D_m) = (self.stiffness[i], self.damping[0][i], self.damping[1][i]);
                     let positions = q_l.iter().zip(q_m);
                     let motions = positions.zip(v_l.iter().zip(v_m));
@@ -350,6 +348,13 @@ impl Workspace {
     pub fn new(joints: usize, width: usize) -> Self {
         let states = Tangents::zeros(4 * joints, width);
         let torques = Tangents::zeros(2 * joints, width);
-        Self { term: states.clone(), next: states.clone(), torque: torques.clone(), constant: torques.clone(), start: states, seen: torques }
+        Self {
+            term: states.clone(),
+            next: states.clone(),
+            torque: torques.clone(),
+            constant: torques.clone(),
+            start: states,
+            seen: torques,
+        }
     }
 }

@@ -15,14 +15,7 @@ pub(crate) struct Held {
 
 /// The torque of joint `joint` of `joints` over the period after sample `k`, where `torques` (samples × joints) act `offset` s
 /// later than they are logged. Before the first and after the last sample the torque is that sample's.
-pub(crate) fn held(
-    torques: &[f64],
-    joints: usize,
-    joint: usize,
-    k: usize,
-    offset: f64,
-    period: f64,
-) -> Held {
+pub(crate) fn held(torques: &[f64], joints: usize, joint: usize, k: usize, offset: f64, period: f64) -> Held {
     let periods = (offset / period).floor();
     let share = offset / period - periods;
     let last = (torques.len() / joints) as f64 - 1.0;

@@ -46,10 +46,18 @@ fn what_cannot_be_used_is_refused() {
     let still = q(&log.q_m).iter().enumerate().map(|(k, x)| if k % 2 == 1 { 0.3 } else { *x }).collect();
     assert_eq!(code_of(Log { q_m: Some(still), ..log.clone() }), "log");
     assert_eq!(code_of(Log { u_m: changed(&|_, u| u.clamp(-8.0, 8.0)), ..log.clone() }), "log-saturated");
-    assert_eq!(code_of(Log { u_m: changed(&|k, u| if k == 77 { f64::NAN } else { u }), ..log.clone() }), "not-finite");
+    assert_eq!(
+        code_of(Log { u_m: changed(&|k, u| if k == 77 { f64::NAN } else { u }), ..log.clone() }),
+        "not-finite"
+    );
     // Samples that are too few or too far apart, logs that do not fit together.
     let short = |signal: &[f64]| signal[..800].to_vec();
-    let cut = Log { q_l: Some(short(&q(&log.q_l))), q_m: Some(short(&q(&log.q_m))), u_m: short(&log.u_m), ..log.clone() };
+    let cut = Log {
+        q_l: Some(short(&q(&log.q_l))),
+        q_m: Some(short(&q(&log.q_m))),
+        u_m: short(&log.u_m),
+        ..log.clone()
+    };
     assert_eq!(code_of(cut), "log");
     assert_eq!(code_of(Log { period: 0.05, ..log.clone() }), "log");
     assert_eq!(code_of(Log { joints: 1, ..log.clone() }), "joints");

@@ -1,8 +1,8 @@
 //! Are the error bars what they say? Many arms, each with other numbers and another motion.
 
+use flexure::Robot;
 use flexure::identify::{Parameter, Settings, identify};
 use flexure::progress::unwatched;
-use flexure::Robot;
 use rayon::prelude::*;
 
 use super::arm;
@@ -20,9 +20,8 @@ fn covered<const N: usize>(robot: &Robot, seeds: u64, seconds: f64, noise: f64) 
         let mut inside = vec![(offset.value - DELAY).abs() <= offset.error];
         for (i, joint) in truth.iter().enumerate() {
             let known = Parameter::ALL.into_iter().map(|p| found.estimate(i, p)).zip(joint);
-            inside.extend(
-                known.filter(|(e, _)| e.known).map(|(e, exact)| (e.value - exact).abs() <= e.error),
-            );
+            inside
+                .extend(known.filter(|(e, _)| e.known).map(|(e, exact)| (e.value - exact).abs() <= e.error));
         }
         (inside.iter().filter(|inside| **inside).count(), inside.len())
     };

@@ -43,7 +43,8 @@ fn completed(text: &str, found: &Identified) -> String {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("arm.toml");
     fs::write(&path, text).unwrap();
-    let file = RobotFile::load(path.to_str().unwrap(), Outside::Refused).unwrap_or_else(|problems| panic!("{problems}"));
+    let file = RobotFile::load(path.to_str().unwrap(), Outside::Refused)
+        .unwrap_or_else(|problems| panic!("{problems}"));
     let logs = ["run.csv".to_owned()];
     file.completed(found, &logs, &path, Outside::Refused).unwrap_or_else(|problems| panic!("{problems}"))
 }
@@ -62,7 +63,10 @@ fn numbers_come_out_and_everything_else_stays() {
     assert_eq!(robot.stiffness, [1234.5678, 2469.1356]);
     assert_eq!(robot.motor_damping, [1234.5678, 2469.1356]);
     assert!(robot.assumed.is_empty(), "{:?}", robot.assumed);
-    assert!(text.contains("# N m/rad, of the data sheet") && text.contains("identified: 1234.5678 ± 0.5"), "{text}");
+    assert!(
+        text.contains("# N m/rad, of the data sheet") && text.contains("identified: 1234.5678 ± 0.5"),
+        "{text}"
+    );
     assert!(text.contains("# kind = \"friction\""), "{text}");
     // Once more changes nothing.
     assert_eq!(completed(&text, &found(&[])), text);
@@ -80,7 +84,8 @@ fn what_is_not_known_stays_as_it_was() {
 
 #[test]
 fn gaps_are_read_and_filled() {
-    let open = ARM.replace("stiffness = [9000.0, 4000.0]", "stiffness = [nan, 4000.0]").replace("[0.5, 0.2]", "nan");
+    let open =
+        ARM.replace("stiffness = [9000.0, 4000.0]", "stiffness = [nan, 4000.0]").replace("[0.5, 0.2]", "nan");
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("arm.toml");
     fs::write(&path, &open).unwrap();

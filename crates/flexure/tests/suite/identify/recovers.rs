@@ -61,7 +61,11 @@ fn the_same_bits_on_any_number_of_threads() {
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let found = pool.install(|| found(log.clone()));
-        found.joints.iter().flat_map(|joint| joint.parameters.iter().map(|p| p.value.to_bits())).collect::<Vec<_>>()
+        found
+            .joints
+            .iter()
+            .flat_map(|joint| joint.parameters.iter().map(|p| p.value.to_bits()))
+            .collect::<Vec<_>>()
     };
     assert_eq!(on(1), on(3));
 }

@@ -104,9 +104,7 @@ pub fn log<const N: usize>(guess: &Robot, truth: &Truth, seconds: f64, noise: f6
             let (inertia, rate) = (guess.motor_inertia[i] + 0.003 * guess.limits.torque[i], 2.0 * TAU);
             let behind = wanted[i] + weight[i] / guess.stiffness[i] - motor;
             let slower = (soon[i] - wanted[i]) / 1e-4 - speed[i];
-            let asked = weight[i]
-                + inertia * (rate * rate * behind + 1.4 * rate * slower)
-                + at(&fast[i], t);
+            let asked = weight[i] + inertia * (rate * rate * behind + 1.4 * rate * slower) + at(&fast[i], t);
             let step = guess.limits.torque[i] / 4096.0;
             u[i] = (asked / step).round() * step;
             q_l.push(read(x.q_l[i], 0));
