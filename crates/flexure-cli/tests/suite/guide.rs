@@ -78,7 +78,7 @@ fn the_page_shows_what_its_commands_print() {
         return;
     }
     let place = Place::new();
-    for robot in ["ur5", "z1", "iiwa"] {
+    for robot in ["ur5", "z1", "xarm7"] {
         place.write(&format!("{robot}.urdf"), urdf(robot));
     }
     let steps = steps(PAGE);

@@ -103,12 +103,14 @@ pub fn draft(import: &Import, robot: &str) -> String {
     entry("saturation", &["# at the torque limits of the robot".into()]);
     entry("delay", &[format!("computation = {PERIOD:?}                # s, one control period")]);
     if let Some(class) = class {
-        let friction = |joint: &MovingJoint| {
+        let typical = |joint: &MovingJoint| {
             class.drive(joint.kind, joint.drive.torque_limit.unwrap_or_default()).friction
         };
+        let friction = |joint: &MovingJoint| joint.drive.friction.unwrap_or_else(|| typical(joint));
         entry("friction", &["side = \"motor\"".into(), format!("coulomb = {}  # N m", per_joint(&friction))]);
     }
-    let friction = class.map_or(String::new(), |class| format!("; friction {}", class.friction.source));
+    let friction = class
+        .map_or(String::new(), |class| format!("; friction of the URDF, else {}", class.friction.source));
     line("\n[sources]".into());
     for (key, note) in [
         ("duration", "chosen"),
