@@ -55,7 +55,10 @@ pub fn tune(options: &Tune, reading: Reading<'_>, json: bool) -> Result<(), Fail
         } else {
             "broken off: no gains keep every constraint so far"
         };
-        return Err(Failure::interrupted(words.to_owned(), "without Ctrl-C the search goes on, and margins are measured"));
+        return Err(Failure::interrupted(
+            words.to_owned(),
+            "without Ctrl-C the search goes on, and margins are measured",
+        ));
     }
     found.objection(scenario).map_or(Ok(()), |problem| Err(Failure::No(vec![problem.into()])))
 }
@@ -81,7 +84,9 @@ fn show(found: &Design, joints: &[String]) -> Result<(), Failure> {
         print::line(&format!("contraction rate: {} 1/s, {verdict}", short(rate, 4)))?;
     }
     if let Some(frail) = found.frail() {
-        print::line(&format!("the loop is frail: it does not bear {frail}; that is wished for, a SPEC can ask for it"))?;
+        print::line(&format!(
+            "the loop is frail: it does not bear {frail}; that is wished for, a SPEC can ask for it"
+        ))?;
     }
     print::line(&format!("{} loops were run in the search", found.runs))
 }

@@ -95,7 +95,8 @@ impl Bench {
         fn of(scenarios: &[Scenario]) -> Result<Vec<Outlook<'_>>, Problems> {
             scenarios.par_iter().map(Outlook::new).collect()
         }
-        let corners = self.corners.par_iter().map(|corner| of(&corner.scenarios)).collect::<Result<_, _>>()?;
+        let corners =
+            self.corners.par_iter().map(|corner| of(&corner.scenarios)).collect::<Result<_, _>>()?;
         let is_late = |corner: &Corner| matches!(corner.change, Change::Delay(more) if more > 0.0);
         let late = self.corners.iter().position(is_late);
         Ok(Outlooks { nominal: of(&self.scenarios)?, corners, late })
@@ -115,7 +116,8 @@ impl Bench {
         watch: &Watch<'_>,
     ) -> Result<Trial, Problems> {
         let radius = outlooks.nominal(&controller);
-        let mut constraints = vec![Constraint::radius("small errors shrink in the sampled loop".to_owned(), radius)];
+        let mut constraints =
+            vec![Constraint::radius("small errors shrink in the sampled loop".to_owned(), radius)];
         if !constraints[0].is_kept() {
             let cost = UNSTABLE + bounded(radius - 1.0);
             return Ok(Trial { controller, cost, constraints, runs: Vec::new() });
@@ -147,7 +149,9 @@ impl Bench {
         let radii: Vec<f64> =
             outlooks.corners.par_iter().map(|corner| largest(corner.iter(), controller)).collect();
         let named = self.corners.iter().zip(radii);
-        named.map(|(corner, radius)| Constraint::radius(corner.what.clone(), radius).asked(corner.asked)).collect()
+        named
+            .map(|(corner, radius)| Constraint::radius(corner.what.clone(), radius).asked(corner.asked))
+            .collect()
     }
 
     /// What the loop does not bear although small errors shrink in it: each corner in which some run does not follow.
@@ -243,6 +247,11 @@ fn wanted(period: f64, spec: &Spec) -> Vec<(String, Change, bool)> {
     let (gain, mass, stiffness) = (spec.margins.gain, spec.uncertainty.mass, spec.uncertainty.stiffness);
     factors("torque", Change::TorqueGain, gain.unwrap_or(GAIN), gain.is_some());
     factors("masses", Change::Mass, either_way(mass.unwrap_or(MASS)), mass.is_some());
-    factors("stiffnesses", Change::Stiffness, either_way(stiffness.unwrap_or(STIFFNESS)), stiffness.is_some());
+    factors(
+        "stiffnesses",
+        Change::Stiffness,
+        either_way(stiffness.unwrap_or(STIFFNESS)),
+        stiffness.is_some(),
+    );
     wanted
 }

@@ -51,7 +51,17 @@ impl Constraint {
     /// That a spectral radius is below 1.
     pub(super) fn radius(what: String, radius: f64) -> Self {
         let slack = STABLE - radius;
-        Self { what, joint: None, value: radius, limit: 1.0, unit: "", slack, asked: true, kind: Kind::Radius, note: None }
+        Self {
+            what,
+            joint: None,
+            value: radius,
+            limit: 1.0,
+            unit: "",
+            slack,
+            asked: true,
+            kind: Kind::Radius,
+            note: None,
+        }
     }
 
     /// What `runs` are held to, each in the run that comes closest; `at_limit` is the largest part of the instants at which a torque

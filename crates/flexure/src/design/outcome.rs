@@ -8,10 +8,10 @@ use crate::design::bench::Bench;
 use crate::design::constraint::{Constraint, Kind};
 use crate::design::family::{Family, Pace};
 use crate::design::least::Least;
+use crate::design::search::{Found, Search, Watch};
 use crate::design::spec::{Rate, SpecFile};
 use crate::design::specified::Specified;
 use crate::design::trade::{Trade, trades};
-use crate::design::search::{Found, Search, Watch};
 use crate::files::bounds;
 use crate::files::number::short;
 use crate::files::{Problem, Problems, read_text};
@@ -107,14 +107,22 @@ pub fn design(
         Some(Rate::AtLeast(rate)) => Pace::AtLeast(rate),
         Some(Rate::Largest) => Pace::Proved,
     };
-    let search = |pace, part| Search { bench: &bench, outlooks: &outlooks, family: &family, pace, watch: &watch, part };
+    let search = |pace, part| Search {
+        bench: &bench,
+        outlooks: &outlooks,
+        family: &family,
+        pace,
+        watch: &watch,
+        part,
+    };
     // Gains of the file take part, where nothing is asked that they may not know of.
     let takes_part = pace == Pace::Free && !scenario.has_starting_gains();
     let own: Vec<Controller> = takes_part.then(|| scenario.controller.clone()).into_iter().collect();
     let Found { best, mut runs, mut broken_off } = search(pace, [0.0, SEARCHED]).run(&own, budget, seed)?;
     let tuned = bench.loops(&best.controller).swap_remove(0);
     let mut constraints = best.constraints.clone();
-    let proof = if broken_off { None } else { prove_watched(&tuned, &Question::default(), &|_| watch.go_on()).ok() };
+    let proof =
+        if broken_off { None } else { prove_watched(&tuned, &Question::default(), &|_| watch.go_on()).ok() };
     let rate = proof.as_ref().and_then(|proof| Some(proof.verdict.proved()?.contraction_rate.approximate()));
     if let (Some(Rate::AtLeast(asked)), false) = (file.spec.rate, broken_off) {
         constraints.push(Constraint::rate(rate.unwrap_or(0.0), asked));
@@ -125,7 +133,8 @@ pub fn design(
             lost => constraints.extend(lost?),
         }
     }
-    let feasible = best.keeps() && constraints.iter().all(|constraint| constraint.is_kept() || !constraint.asked);
+    let feasible =
+        best.keeps() && constraints.iter().all(|constraint| constraint.is_kept() || !constraint.asked);
     let mut instead = None;
     if let (false, false, Some(Rate::AtLeast(_))) = (feasible, broken_off, file.spec.rate) {
         let found = search(Pace::Proved, [SEARCHED, INSTEAD]).run(&[], budget.div_ceil(2), seed)?;
@@ -197,7 +206,8 @@ const MARK: &str = "# Tuned by flexure";
 /// If it is.
 pub fn check_out(out: &Path, inputs: &[Option<&Path>]) -> Result<(), Problem> {
     let Ok(found) = out.canonicalize() else { return Ok(()) };
-    let is_input = inputs.iter().flatten().any(|input| input.canonicalize().is_ok_and(|input| input == found));
+    let is_input =
+        inputs.iter().flatten().any(|input| input.canonicalize().is_ok_and(|input| input == found));
     let is_tuned = || read_text(out, bounds::LIMIT).is_ok_and(|text| text.starts_with(MARK));
     if out.is_file() && !is_input && is_tuned() {
         return Ok(());

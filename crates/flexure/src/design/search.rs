@@ -153,8 +153,9 @@ impl Search<'_> {
         } else {
             vec![[0.0; 3]]
         };
-        let of_speed =
-            |speed: &f64| scales.iter().map(|scale| self.family.numbers(origin + speed, *scale)).collect::<Vec<_>>();
+        let of_speed = |speed: &f64| {
+            scales.iter().map(|scale| self.family.numbers(origin + speed, *scale)).collect::<Vec<_>>()
+        };
         let members: Vec<Vec<f64>> = SPEEDS.iter().flat_map(of_speed).collect();
         let idea = |x: &Vec<f64>| match self.watch.go_on() {
             ControlFlow::Continue(()) => self.outlooks.first_idea(&self.family.at(x, self.pace)),

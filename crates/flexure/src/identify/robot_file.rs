@@ -92,14 +92,16 @@ impl RobotFile {
 }
 
 fn readable(text: &str, path: &Path, outside: Outside) -> Result<Robot, Problems> {
-    document::read(&Source::new(&path.display().to_string(), text), &Base::of(path, outside), &[]).map_err(|problems| {
-        if problems.iter().any(|problem| matches!(problem.code_word(), "unreadable" | "outside")) {
-            let message = format!("{} could not be read where it is to be written", path.display());
-            let help = "the robot's file names another: write the result into the folder of that one";
-            return Problem::new("unreadable", message, help).into();
-        }
-        problems
-    })
+    document::read(&Source::new(&path.display().to_string(), text), &Base::of(path, outside), &[]).map_err(
+        |problems| {
+            if problems.iter().any(|problem| matches!(problem.code_word(), "unreadable" | "outside")) {
+                let message = format!("{} could not be read where it is to be written", path.display());
+                let help = "the robot's file names another: write the result into the folder of that one";
+                return Problem::new("unreadable", message, help).into();
+            }
+            problems
+        },
+    )
 }
 
 /// `text` with its gaps filled, and which parameters have some.

@@ -20,8 +20,7 @@ pub fn gains_table(joints: &[String], design: &Design, width: usize) -> String {
 
 /// What each gain trades: by which factor figures change with a quarter more of it in all joints, in so many columns.
 pub fn trades_table(trades: &[Trade], width: usize) -> String {
-    let titles =
-        ["a quarter more of", "rms\n|e_l|", "max\n|u_m|", "torque\nchange", "decay as\nsampled"];
+    let titles = ["a quarter more of", "rms\n|e_l|", "max\n|u_m|", "torque\nchange", "decay as\nsampled"];
     let mut table = headed(titles.into_iter());
     for trade in trades {
         let factor = |x: f64| right(format!("×{}", significant(x, 3)));

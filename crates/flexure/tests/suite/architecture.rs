@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms of `src`, from the bottom up: each may use those above it in this list, and none below.
-const ROOMS: [&str; 25] = [
+const ROOMS: [&str; 26] = [
     "units",         // how numbers are measured and how that is written
     "files",         // text with places, problems that point at it, files that appear whole
     "linalg",        // matrices of run-time sizes
@@ -30,6 +30,7 @@ const ROOMS: [&str; 25] = [
     "tune",          // gains by search
     "compare",       // laws on the same tasks
     "margins",       // what a loop bears
+    "design",        // gains from a specification
     "report",        // figures, tables, pages
 ];
 
