@@ -81,8 +81,8 @@ impl Specified {
             }
             document.insert("controller", item);
         }
-        let comment: String = comment.lines().map(|line| format!("# {line}\n")).collect();
-        format!("{comment}{document}")
+        let comment: Vec<String> = comment.lines().map(|line| format!("# {line}")).collect();
+        format!("{}\n{document}", comment.join("\n"))
     }
 
     /// That the file would be read beside `path`: what it names must be found from there.

@@ -11,6 +11,11 @@ use crate::robot::{Import, JointKind, MovingJoint};
 const AMPLITUDE: (f64, f64) = (0.3, 0.1);
 const OF_THE_RANGE: f64 = 0.8;
 
+/// How far joints after the first are bent from the middle of their range \[rad\], to either side in turn, and the largest part of the
+/// range: an arm that is stretched has axes in one line, about which its last bodies weigh next to nothing.
+const BEND: f64 = 0.6;
+const BEND_OF_THE_RANGE: f64 = 0.2;
+
 /// Period of the first joint's sine in s, and how much longer that of each next joint is.
 const PERIODS: (f64, f64) = (3.0, 0.4);
 
@@ -32,7 +37,7 @@ pub fn draft(import: &Import, robot: &str) -> String {
     let Import { joints, class, name, .. } = import;
     let per_joint = |of: &dyn Fn(&MovingJoint) -> f64| list(joints.iter().map(of));
     let mut toml = format!(
-        "# {} swings about the middle of its range: a scenario to start with. What sensors, computer and drives do is typical, not\n\
+        "# {} swings about a bent posture near the middle of its range: a scenario to start with. What sensors, computer and drives do is typical, not\n\
          # measured. `flexure check` says what the motion takes, `flexure run` whether the loop follows.\n\n\
          robot = {}\n\
          duration = 10.0                    # s\n\
@@ -47,8 +52,8 @@ pub fn draft(import: &Import, robot: &str) -> String {
     let mut line = |text: String| {
         let _ = writeln!(toml, "{text}");
     };
-    line(format!("offset = {}", per_joint(&middle)));
-    line(format!("amplitude = {}", per_joint(&amplitude)));
+    line(format!("offset = {}", list(joints.iter().enumerate().map(|(i, joint)| posture(i, joint)))));
+    line(format!("amplitude = {}", list(joints.iter().enumerate().map(|(i, joint)| amplitude(i, joint)))));
     line(format!("frequency = {}  # rad/s", list((0..joints.len()).map(frequency))));
     line("\n[reference.time_scaling]".into());
     line("margin = 0.8                       # share of the robot's limits that the motion may take".into());
@@ -115,7 +120,7 @@ pub fn draft(import: &Import, robot: &str) -> String {
     for (key, note) in [
         ("duration", "chosen"),
         ("control_period", "1 kHz, as the controllers of most arms"),
-        ("reference", "chosen: about the middle of each range, of different periods"),
+        ("reference", "chosen: about a bent posture near the middle of each range, of different periods"),
         ("stop_damping", "a tenth of a second for a motor alone to lose its speed"),
         (
             "imperfection",
@@ -135,15 +140,33 @@ fn middle(joint: &MovingJoint) -> f64 {
     }
 }
 
-/// Amplitude of the sine of `joint` \[rad\].
-fn amplitude(joint: &MovingJoint) -> f64 {
+/// How far joint `i` is bent from the middle of its range \[rad\].
+fn bend(i: usize, joint: &MovingJoint) -> f64 {
+    if i == 0 || joint.kind == JointKind::Prismatic {
+        return 0.0;
+    }
+    let side = if i % 2 == 1 { 1.0 } else { -1.0 };
+    side * range(joint).map_or(BEND, |range| BEND.min(BEND_OF_THE_RANGE * range))
+}
+
+/// Where joint `i` swings about \[rad or m\].
+fn posture(i: usize, joint: &MovingJoint) -> f64 {
+    (1e6 * (middle(joint) + bend(i, joint))).round() / 1e6 + 0.0
+}
+
+/// Width of the range of `joint` \[rad or m\], if it has both ends.
+fn range(joint: &MovingJoint) -> Option<f64> {
+    joint.drive.position_upper.zip(joint.drive.position_lower).map(|(upper, lower)| upper - lower)
+}
+
+/// Amplitude of the sine of joint `i` \[rad or m\].
+fn amplitude(i: usize, joint: &MovingJoint) -> f64 {
     let most = match joint.kind {
         JointKind::Revolute => AMPLITUDE.0,
         JointKind::Prismatic => AMPLITUDE.1,
     };
-    let drive = &joint.drive;
-    let range = drive.position_upper.zip(drive.position_lower).map(|(upper, lower)| upper - lower);
-    rounded(range.map_or(most, |range| most.min(0.5 * OF_THE_RANGE * range)))
+    let room = range(joint).map(|range| 0.5 * OF_THE_RANGE * range - bend(i, joint).abs());
+    rounded(room.map_or(most, |room| most.min(room)))
 }
 
 /// Numbers as an array of TOML.
