@@ -24,5 +24,6 @@ mod run;
 mod set;
 mod shell;
 mod sixteen;
+mod tune;
 mod urdf;
 mod verify;

@@ -31,38 +31,29 @@ pub fn urdf(name: &str) -> String {
     fs::read_to_string(inside.join(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
-/// Arms for which no gains are found: with springs by the class, wrists that weigh little swing faster than 1 kHz can see.
-const TOO_STIFF: [&str; 2] = ["j2s6s200", "iiwa"];
-
-/// What the run of a robot's tuned scenario gives; none if no gains are found.
-fn followed(name: &str) -> Option<Value> {
+/// What the run of a robot's tuned scenario gives.
+fn followed(name: &str) -> Value {
     let place = Place::new();
     let (file, scenario, tuned) =
         (format!("{name}.urdf"), format!("{name}-scenario.toml"), format!("{name}-tuned.toml"));
     place.write(&file, urdf(name));
     let start = Instant::now();
     place.run(&["import", &file, "--assume", "harmonic-drive", "--scenario"]).done();
-    let outcome = place.run(&["tune", &scenario, "--out", &tuned]);
-    println!("{name}: searched for {:.0} s", start.elapsed().as_secs_f64());
-    if outcome.code == Some(1) {
-        outcome.said(&["no gains were found"]);
-        return None;
-    }
-    outcome.done();
-    Some(place.run(&["run", &tuned, "--json"]).done().json())
+    place.run(&["tune", &scenario, "--out", &tuned]).done();
+    println!("{name}: tuned within {:.0} s", start.elapsed().as_secs_f64());
+    place.run(&["run", &tuned, "--json"]).done().json()
 }
 
-/// With encoders, filter, friction, a delay of one period and torque limits: within 5 mrad, no instant at a limit.
+/// With encoders, filter, friction, a delay of one period and torque limits: within 5 mrad, no instant at a limit. Minutes each, unless
+/// optimised: `cargo test --release -p flexure-cli --test suite public_urdfs -- --ignored --nocapture`.
 #[test]
+#[ignore = "six searches for gains: minutes"]
 fn public_urdfs_become_loops_that_follow() {
     if is_out_of_reach() {
         return;
     }
     for (name, ..) in ROBOTS {
-        let Some(run) = followed(name) else {
-            assert!(TOO_STIFF.contains(&name), "{name}: no gains were found");
-            continue;
-        };
+        let run = followed(name);
         let rms = run["rms_e_l"].as_f64().unwrap_or(f64::INFINITY);
         println!("{name}: {:.2} mrad rms", 1e3 * rms);
         assert_eq!(

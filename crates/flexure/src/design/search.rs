@@ -1,7 +1,7 @@
 //! The search for the numbers that gains follow from.
 //!
-//! It begins with the sampled loop alone, which costs no run: for each speed, the metric and damping of the motors at which small errors
-//! shrink fastest. Then the loop is run at each of these speeds, and the search moves all numbers from the best of them.
+//! It begins with the sampled loop alone, which costs no run: for each speed and damping of the motors, their metric at which small
+//! errors shrink fastest. Then the loop is run with the fastest of these, and the search moves all numbers from the best of them.
 
 use std::cell::{Cell, RefCell};
 use std::ops::ControlFlow;
@@ -17,14 +17,17 @@ use crate::progress::Progress;
 use crate::tune::search;
 
 /// Loops that are run in the search for gains.
-pub const BUDGET: usize = 60;
+pub const BUDGET: usize = 40;
 
-/// Logarithms of the speeds that are looked at first; and, of v-CBC, those of the factors on metric and damping of the motors, and the
+/// Logarithms of the speeds that are looked at first; and, of v-CBC, those of the factors on damping and metric of the motors, and the
 /// powers of the balance.
 const SPEEDS: [f64; 9] = [-3.0, -2.4, -1.8, -1.2, -0.8, -0.4, 0.0, 0.4, 0.8];
 const METRICS: [f64; 5] = [-1.4, -0.7, 0.0, 0.7, 1.4];
-const DAMPINGS: [f64; 2] = [0.0, 0.9];
+const DAMPINGS: [f64; 3] = [0.0, 0.8, 1.6];
 const BALANCES: [f64; 3] = [0.0, 0.5, 1.0];
+
+/// Loops that are run before the search moves on from the best of them, at most.
+const FIRST: usize = 12;
 
 /// How far the search goes from the best of these, as a logarithm.
 const HALF_WIDTH: f64 = 1.2;
@@ -84,7 +87,7 @@ impl Search<'_> {
             self.bench.try_out(self.outlooks, controller.clone(), f64::ln, f64::INFINITY, self.watch)
         };
         self.note(&state, budget, given.iter().take(budget).map(own).collect::<Vec<_>>());
-        let ridge = self.ridge();
+        let ridge = self.ridge(FIRST.min(budget.div_ceil(2)));
         let first: Vec<&Vec<f64>> = ridge.iter().take(budget.saturating_sub(state.runs.get())).collect();
         let costs = self.note(&state, budget, first.par_iter().map(|x| self.at(x, f64::INFINITY)).collect());
         let center = costs.iter().zip(&first).min_by(|(a, _), (b, _)| a.total_cmp(b));
@@ -143,20 +146,27 @@ impl Search<'_> {
         costs
     }
 
-    /// For each speed the member whose sampled loop makes small errors shrink fastest, from slow to fast: the stable ones, or else the
-    /// one that is closest.
-    fn ridge(&self) -> Vec<Vec<f64>> {
+    /// For each speed and damping of the motors the member whose sampled loop makes small errors shrink fastest, from fast to slow: at
+    /// most `most` of the stable ones, or else the one that is closest.
+    fn ridge(&self, most: usize) -> Vec<Vec<f64>> {
         let origin = if self.pace == Pace::Proved { self.family.base_rate() } else { 0.0 };
-        let scales: Vec<[f64; 3]> = if self.family.is_vcbc() {
-            let pairs = METRICS.iter().flat_map(|metric| DAMPINGS.map(|damping| (*metric, damping)));
-            pairs.flat_map(|(metric, damping)| BALANCES.map(|balance| [metric, damping, balance])).collect()
+        let (dampings, scales): (&[f64], Vec<[f64; 2]>) = if self.family.is_vcbc() {
+            let scales = METRICS.iter().flat_map(|metric| BALANCES.map(|balance| [*metric, balance]));
+            (&DAMPINGS, scales.collect())
         } else {
-            vec![[0.0; 3]]
+            (&[0.0], vec![[0.0; 2]])
         };
-        let of_speed = |speed: &f64| {
-            scales.iter().map(|scale| self.family.numbers(origin + speed, *scale)).collect::<Vec<_>>()
+        let mut paces: Vec<[f64; 2]> =
+            SPEEDS.iter().flat_map(|speed| dampings.iter().map(|damping| [*speed, *damping])).collect();
+        // Errors are the smaller the faster the loop and the stiffer its motors.
+        paces.sort_by(|a, b| (b[0] + b[1]).total_cmp(&(a[0] + a[1])));
+        let members = |[speed, damping]: &[f64; 2]| {
+            let at = |[metric, balance]: &[f64; 2]| {
+                self.family.numbers(origin + speed, [*metric, *damping, *balance])
+            };
+            scales.iter().map(at).collect::<Vec<_>>()
         };
-        let members: Vec<Vec<f64>> = SPEEDS.iter().flat_map(of_speed).collect();
+        let members: Vec<Vec<f64>> = paces.iter().flat_map(members).collect();
         let idea = |x: &Vec<f64>| match self.watch.go_on() {
             ControlFlow::Continue(()) => self.outlooks.first_idea(&self.family.at(x, self.pace)),
             ControlFlow::Break(()) => f64::INFINITY,
@@ -169,8 +179,10 @@ impl Search<'_> {
         let each = scales.len();
         let ridge: Vec<(Vec<f64>, f64)> =
             members.chunks(each).zip(growths.chunks(each)).filter_map(best).collect();
-        if ridge.iter().any(|(_, growth)| *growth < 1.0) {
-            return ridge.into_iter().filter(|(_, growth)| *growth < 1.0).map(|(x, _)| x).collect();
+        let stable = ridge.iter().filter(|(_, growth)| *growth < 1.0).map(|(x, _)| x.clone());
+        let stable: Vec<Vec<f64>> = stable.take(most).collect();
+        if !stable.is_empty() {
+            return stable;
         }
         let closest = ridge.into_iter().min_by(|(_, a), (_, b)| a.total_cmp(b));
         closest.map(|(x, _)| x).into_iter().collect()

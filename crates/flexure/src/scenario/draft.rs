@@ -28,6 +28,9 @@ const COUNTS: (f64, f64) = (131_072.0, 1_048_576.0);
 /// One count of a linear encoder in m.
 const LINEAR_COUNT: f64 = 1e-6;
 
+/// Bandwidth of the disturbance observer [rad/s]: above the motion, and slow beside the loop.
+const OBSERVER: f64 = 20.0;
+
 /// Motors that are stopped lose their speed at this rate [1/s].
 const STOP_RATE: f64 = 10.0;
 
@@ -78,6 +81,9 @@ pub fn draft(import: &Import, robot: &str) -> String {
             );
         }
     }
+    line(format!(
+        "\n[disturbance_observer]               # makes up for friction and what the model has wrong\nbandwidth = {OBSERVER:?}                   # rad/s"
+    ));
     let mut entry = |kind: &str, rest: &[String]| {
         line(format!("\n[[imperfection]]\nkind = \"{kind}\"\n{}", rest.join("\n")));
     };
@@ -121,6 +127,7 @@ pub fn draft(import: &Import, robot: &str) -> String {
         ("duration", "chosen"),
         ("control_period", "1 kHz, as the controllers of most arms"),
         ("reference", "chosen: about a bent posture near the middle of each range, of different periods"),
+        ("disturbance_observer", "chosen: faster than the motion, slower than the loop"),
         ("stop_damping", "a tenth of a second for a motor alone to lose its speed"),
         (
             "imperfection",

@@ -14,6 +14,7 @@ mod closed_forms;
 mod common;
 mod compare;
 mod controllers;
+mod design;
 mod direct;
 mod docs;
 mod enclosures;

@@ -1,0 +1,120 @@
+//! Gains from a specification.
+
+use flexure::Scenario;
+use flexure::design::{Design, SpecFile, Specified, design};
+use flexure::files::Reading;
+use flexure::progress::unwatched;
+use flexure::prove::question::{Question, prove};
+use flexure::scenario::scenario_from_text;
+
+/// The pendulum for half a second, with `spec`.
+fn pendulum(spec: &str) -> (Specified, SpecFile) {
+    let file = SpecFile::from_text("spec.toml", spec).unwrap_or_else(|problems| panic!("{problems}"));
+    let mut specified = Specified::load("pendulum-tanh", Reading::default(), &file)
+        .unwrap_or_else(|problems| panic!("{problems}"));
+    for scenario in &mut specified.scenarios {
+        scenario.duration = 0.5;
+    }
+    (specified, file)
+}
+
+fn tuned(spec: &str, budget: usize) -> (Specified, Design) {
+    let (specified, file) = pendulum(spec);
+    let found =
+        design(&specified, &file, budget, 0, &unwatched).unwrap_or_else(|problems| panic!("{problems}"));
+    (specified, found)
+}
+
+/// A rate that is asked for is proved of the gains that were found, by the prover on its own.
+#[test]
+fn the_rate_that_is_asked_is_proved() {
+    for rate in [0.5, 4.0] {
+        let (specified, found) = tuned(&format!("rate = {rate}"), 6);
+        assert!(found.feasible, "{rate}: {:?}", found.constraints);
+        let scenario = specified.scenarios[0].under(&found.controller);
+        let proof = prove(&scenario, &Question::default()).expect("a proof");
+        let proved = proof.verdict.proved().expect("proved").contraction_rate.approximate();
+        assert!(proved >= rate, "{proved} < {rate}");
+    }
+}
+
+/// What cannot be had is said: the constraint that is in the way, and a smaller rate that can be had.
+#[test]
+fn a_rate_beyond_the_control_period_is_infeasible() {
+    let (specified, found) = tuned("rate = 5000.0", 6);
+    assert!(!found.feasible);
+    let feasible = found.instead.as_ref().and_then(|instead| instead.rate);
+    assert!(feasible.is_some_and(|rate| rate > 0.0 && rate < 5000.0), "{:?}", found.instead);
+    let problem = found.objection(&specified.scenarios[0]).expect("a no");
+    assert_eq!(problem.code_word(), "infeasible");
+    assert!(problem.hint().contains("is feasible"), "{}", problem.hint());
+}
+
+/// The same gains, bit for bit, on one thread and on several.
+#[test]
+fn threads_do_not_matter() {
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        pool.install(|| tuned("", 12).1)
+    };
+    let (one, three) = (on(1), on(3));
+    let bits = |found: &Design| -> Vec<u64> {
+        found.controller.gains().iter().flat_map(|(_, values)| values.iter().map(|x| x.to_bits())).collect()
+    };
+    assert_eq!(bits(&one), bits(&three));
+    assert_eq!(one.constraints, three.constraints);
+}
+
+/// The scenario that is written holds the loop that was tuned: its run gives the figures of the evidence.
+#[test]
+fn the_file_is_the_loop_that_was_tuned() {
+    let (specified, found) = tuned("", 6);
+    let text = specified.with(&found.controller, &found.comment());
+    let mut read: Scenario = scenario_from_text("tuned.toml", &text, ".".as_ref())
+        .unwrap_or_else(|problems| panic!("{problems}\n{text}"));
+    assert_eq!(read.controller, found.controller);
+    read.duration = 0.5;
+    let summary = read.simulate().expect("a run").summary;
+    let evidence = &found.evidence.runs[0];
+    assert_eq!(summary.rms_e_l.to_bits(), evidence.rms_e_l.to_bits());
+    assert_eq!(summary.max_abs_u_m.to_bits(), evidence.max_abs_u_m.to_bits());
+}
+
+/// Parts of the SPEC stand in the place of those of the scenario; what it does not name stays.
+#[test]
+fn a_spec_replaces_parts_of_the_scenario() {
+    let spec = "control_period = 5e-4\ndelay = [0.0, 1e-3]\n[[reference]]\nkind = \"sine\"\namplitude = 0.2\nfrequency = 1.0\n\
+                [[reference]]\nkind = \"sine\"\namplitude = 0.1\nfrequency = 2.0\n[[imperfection]]\nkind = \"torque-gain\"\nfactor = 0.9";
+    let (specified, _) = pendulum(spec);
+    assert_eq!(specified.scenarios.len(), 2);
+    let scenario = &specified.scenarios[0];
+    assert!((scenario.control_period - 5e-4).abs() < 1e-15);
+    let kinds: Vec<_> = scenario.imperfections.iter().map(|imperfection| imperfection.kind()).collect();
+    assert_eq!(kinds, ["delay", "torque-gain"]);
+    let own = Scenario::load("pendulum-tanh").expect("built in");
+    assert_eq!(scenario.initial, own.initial);
+}
+
+#[test]
+fn specs_that_cannot_be_meant_are_refused() {
+    for (spec, code) in [
+        ("rate = -1.0", "range"),
+        ("rate = \"fast\"", "unknown-name"),
+        ("rate = nan", "missing-number"),
+        ("delay = [0.002, 0.001]", "range"),
+        ("delay = [0.001]", "length"),
+        ("speed = 3", "unknown-key"),
+        ("[uncertainty]\nmass = 1.5", "range"),
+        ("[uncertainty]\nlength = 0.1", "unknown-key"),
+        ("[margins]\ngain = [1.1, 1.2]", "range"),
+        ("robot = \"panda\"", "wrong-kind"),
+        ("rate = ", "syntax"),
+    ] {
+        let problems = SpecFile::from_text("spec.toml", spec).expect_err(spec);
+        let codes: Vec<_> = problems.iter().map(|problem| problem.code_word()).collect();
+        assert!(codes.contains(&code), "{spec}: {codes:?}");
+    }
+    let file = SpecFile::from_text("spec.toml", "[[imperfection]]\nkind = \"encodre\"").expect("a spec");
+    let problems = Specified::load("pendulum-tanh", Reading::default(), &file).expect_err("an unknown kind");
+    assert!(problems.to_string().contains("encodre"));
+}
