@@ -263,7 +263,7 @@ fn before(robot: &Robot, parameter: Parameter) -> &[f64] {
     }
 }
 
-/// A value with two digits more than its error has.
+/// A value, its last digit at most a tenth of its error.
 fn written(estimate: &Estimate) -> String {
     let digits = (estimate.value / estimate.error).log10().ceil().clamp(2.0, 12.0) + 2.0;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "4 to 14")]
