@@ -72,7 +72,7 @@ fn name(path: &Path) -> String {
 }
 
 /// Refuses to write over what is no robot file: a log, a pipe.
-fn spare_other_files(path: &PathBuf) -> Result<(), Failure> {
+fn spare_other_files(path: &Path) -> Result<(), Failure> {
     let Ok(found) = path.metadata() else { return Ok(()) };
     let is_robot = || read_text(path, 1 << 20).is_ok_and(|text| text.contains("[links]"));
     if found.is_file() && is_robot() {

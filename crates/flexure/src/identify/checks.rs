@@ -71,7 +71,7 @@ fn alone(robot: &Robot, log: &Log) -> Vec<Problem> {
         return vec![problem("log", message, help)];
     }
     let sizes = [&log.q_l, &log.q_m].into_iter().flatten().all(|signal| signal.len() == log.u_m.len());
-    if !sizes || log.u_m.len() % n != 0 || log.samples() > MOST {
+    if !sizes || !log.u_m.len().is_multiple_of(n) || log.samples() > MOST {
         let message = format!("{name}: signals differ in length, or are longer than {MOST} samples");
         return vec![problem("log", message, "one row per sample")];
     }

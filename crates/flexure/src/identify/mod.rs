@@ -1,8 +1,8 @@
 //! From a log to the numbers of the joints: stiffness, motor inertia, damping and dry friction of both sides, and the time
 //! offset between torques and positions, with error bars.
 //!
-//! First a start without local minima ([`regression`]), then maximum likelihood of the innovations of a predictor of constant
-//! gain ([`search`], [`predictor`]), whose derivatives are exact ([`step`]). docs/identification.md is the guide.
+//! First a start without local minima (`regression.rs`), then maximum likelihood of the innovations of a predictor of constant
+//! gain (`search.rs`, `predictor.rs`), whose derivatives are exact (`step.rs`). docs/identification.md is the guide.
 
 mod checks;
 mod evidence;

@@ -185,8 +185,8 @@ fn least_squares(equations: &[Equation<'_>], unknowns: usize) -> Vec<f64> {
 fn residual(columns: &[Option<&[f64]>], right: &[f64], x: &[f64]) -> f64 {
     let left: Vec<f64> = (0..right.len())
         .map(|k| {
-            let of = |(column, x): (&Option<&[f64]>, &f64)| column.map_or(0.0, |column| column[k] * x);
-            right[k] - columns.iter().zip(x).map(of).sum::<f64>()
+            let known = columns.iter().zip(x).filter_map(|(column, x)| Some((*column)?[k] * x));
+            right[k] - known.sum::<f64>()
         })
         .collect();
     rms(&left, 1, 0)

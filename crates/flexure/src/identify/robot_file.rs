@@ -1,5 +1,6 @@
 //! A robot file whose numbers are identified: read with gaps, written with what was found and everything else as it was.
 
+use std::fmt::Write as _;
 use std::ops::Range;
 use std::path::Path;
 
@@ -152,10 +153,11 @@ impl Edits<'_> {
         }
         if of_all {
             let before = before(robot, parameter);
-            let value = |(estimate, before): (&Option<&Estimate>, &f64)| {
+            let value = |estimate: Option<&Estimate>, before: f64| {
                 estimate.map_or_else(|| format!("{before:?}"), written)
             };
-            let values: Vec<_> = known.iter().zip(before).map(value).collect();
+            let values: Vec<_> =
+                known.iter().zip(before).map(|(estimate, before)| value(*estimate, *before)).collect();
             let values = format!("[{}]", values.join(", "));
             match robot.places.span(&format!("joints.{key}")) {
                 Some(span) => self.edits.push((span, values)),
@@ -178,11 +180,12 @@ impl Edits<'_> {
         let span = spans.iter().find_map(|key| places.span(key));
         let earlier = span.clone().and_then(|span| self.file.text.get(span)).unwrap_or_default();
         let earlier = earlier.trim_matches(['"', '\'']);
-        let number = |(estimate, joint): (&Option<&Estimate>, &super::IdentifiedJoint)| match estimate {
+        let number = |estimate: Option<&Estimate>, joint: &str| match estimate {
             Some(estimate) => format!("{} ± {}", written(estimate), two_digits(estimate.error)),
-            None => format!("{} not known", joint.name),
+            None => format!("{joint} not known"),
         };
-        let numbers: Vec<_> = known.iter().zip(&found.joints).map(number).collect();
+        let numbers: Vec<_> =
+            known.iter().zip(&found.joints).map(|(estimate, joint)| number(*estimate, &joint.name)).collect();
         let mut source = format!("identified: {} (3 sigma) from {logs}", numbers.join(", "));
         if known.iter().any(Option::is_none) {
             source = match earlier.strip_prefix("assumed:") {
@@ -260,7 +263,7 @@ fn before(robot: &Robot, parameter: Parameter) -> &[f64] {
     }
 }
 
-/// A value with two digits more than its error has.
+/// A value, its last digit at most a tenth of its error.
 fn written(estimate: &Estimate) -> String {
     let digits = (estimate.value / estimate.error).log10().ceil().clamp(2.0, 12.0) + 2.0;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "4 to 14")]
@@ -288,9 +291,10 @@ fn friction(found: &Identified) -> String {
         };
         let values = of(&|estimate| if estimate.known { written(estimate) } else { "0.0".to_owned() });
         let errors = of(&|estimate| two_digits(estimate.error));
-        text.push_str(&format!(
+        let _ = write!(
+            text,
             "# [[imperfection]]\n# kind = \"friction\"\n# side = \"{side}\"\n# coulomb = [{values}]  # ± [{errors}], 3 sigma\n"
-        ));
+        );
     }
     text
 }

@@ -111,7 +111,7 @@ impl Search<'_> {
             .par_iter()
             .map(|piece| {
                 let log = &self.logs[piece.log];
-                let posture = self.posture(values, log, (piece.counted + piece.end) / 2);
+                let posture = self.posture(values, log, piece.counted.midpoint(piece.end));
                 let gain = posture.gain(&noise, log.period);
                 (posture.rate().unwrap_or(0.0), gain.unwrap_or_else(|| Dense::zeros(4 * n, 2 * n)))
             })

@@ -63,6 +63,7 @@ fn the_last_change_counts_and_robots_are_changed_too() {
     let other = changed(&[
         "robot=quanser-2dof",
         "imperfection.saturation.limit=9",
+        "guard.torque_limit=9",
         "robot.joints.stiffness=[200, 20]",
     ])
     .unwrap()

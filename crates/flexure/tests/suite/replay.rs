@@ -56,7 +56,7 @@ fn a_run_is_its_own_replay() {
         }
         // Where a window starts is a cubic through samples: as exact as the motion is one.
         for residual in [joint.predicted_q_l, joint.predicted_q_m, joint.predicted_deflection] {
-            assert!(rms(residual) < 2e-5, "{:?}", residual);
+            assert!(rms(residual) < 2e-5, "{residual:?}");
         }
     }
     // A window as long as the log: the robot alone under the torques of its loop.

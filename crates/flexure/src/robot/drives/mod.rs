@@ -23,7 +23,7 @@ pub struct DriveClass {
     pub entry: Entry,
     /// Stiffness K = this · τ [1/rad].
     pub stiffness: Typical,
-    /// Motor inertia M_m = this · τ [s²].
+    /// Motor inertia M_m = this · τ \[s²\].
     pub motor_inertia: Typical,
     /// Damping of the link D_l = this · τ \[s\].
     pub link_damping: Typical,
@@ -84,7 +84,7 @@ impl DriveClass {
         })
     }
 
-    /// A drive of this class with the largest torque `torque` > 0 [N m], or force [N] on a joint that slides: the drive that
+    /// A drive of this class with the largest torque `torque` > 0 [N m], or force \[N\] on a joint that slides: the drive that
     /// turns then has a pinion of 50 mm radius on it.
     ///
     /// ```

@@ -46,9 +46,10 @@ impl Drafted<'_> {
         let mut line = |key: &str, value: &str, comment: &str| {
             let _ = writeln!(toml, "{:<34} # {comment}", format!("{key} = {value}"));
         };
-        let mut wanted = |key: &'static str, value: Option<f64>, comment: &str| match value {
-            Some(value) => line(key, &format!("{value:?}"), &format!("{comment}, assumed")),
-            None => {
+        let mut wanted = |key: &'static str, value: Option<f64>, comment: &str| {
+            if let Some(value) = value {
+                line(key, &format!("{value:?}"), &format!("{comment}, assumed"));
+            } else {
                 missing.push(key);
                 line(key, "nan", &format!("SUPPLY: {comment}"));
             }

@@ -92,8 +92,8 @@ pub fn log<const N: usize>(guess: &Robot, truth: &Truth, seconds: f64, noise: f6
     let mut late = VecDeque::from([plant.robot.links.gravity_torque(&x.q_l)]);
     let (mut stepping, mut ledger) = (Stepping::new(0.05e-3), Ledger::default());
     let (mut before, mut speed) = (x.q_m, Vector::<f64, N>::ZERO);
-    for k in 0..(seconds / PERIOD).round() as usize {
-        let t = k as f64 * PERIOD;
+    let times = (0_u32..).map(|k| f64::from(k) * PERIOD);
+    for t in times.take_while(|t| *t < seconds - 0.5 * PERIOD) {
         let (wanted, soon) = (posture(t), posture(t + 1e-4));
         let weight = plant.robot.links.gravity_torque(&wanted);
         let mut u = Vector::ZERO;

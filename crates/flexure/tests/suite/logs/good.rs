@@ -109,7 +109,7 @@ fn every_way_to_write_a_log_is_the_same_log() {
     };
     let semicolons = written("\u{feff}\"stamp\";a;b;m_1;m_2;\"tau 1\";\"tau 2\";note", |k| {
         let ([a, b], [c, d], [e, f]) = of_motor(k);
-        format!("{};{a};{b};{c};{d};{e};{f};x", 1_732_300_000_000_000_000_i64 + 1_000_000 * k as i64)
+        format!("{};{a};{b};{c};{d};{e};{f};x", 1_732_300_000_000_000_000 + 1_000_000 * k as u64)
     });
     let scale = TAU / 4096.0;
     let inline = format!(
