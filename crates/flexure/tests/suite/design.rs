@@ -2,7 +2,8 @@
 
 use flexure::Scenario;
 use flexure::design::{Design, SpecFile, Specified, design};
-use flexure::files::Reading;
+use flexure::files::{Problem, Reading};
+use flexure::imperfections::Imperfection;
 use flexure::progress::unwatched;
 use flexure::prove::question::{Question, prove};
 use flexure::scenario::scenario_from_text;
@@ -89,7 +90,7 @@ fn a_spec_replaces_parts_of_the_scenario() {
     assert_eq!(specified.scenarios.len(), 2);
     let scenario = &specified.scenarios[0];
     assert!((scenario.control_period - 5e-4).abs() < 1e-15);
-    let kinds: Vec<_> = scenario.imperfections.iter().map(|imperfection| imperfection.kind()).collect();
+    let kinds: Vec<_> = scenario.imperfections.iter().map(Imperfection::kind).collect();
     assert_eq!(kinds, ["delay", "torque-gain"]);
     let own = Scenario::load("pendulum-tanh").expect("built in");
     assert_eq!(scenario.initial, own.initial);
@@ -111,7 +112,7 @@ fn specs_that_cannot_be_meant_are_refused() {
         ("rate = ", "syntax"),
     ] {
         let problems = SpecFile::from_text("spec.toml", spec).expect_err(spec);
-        let codes: Vec<_> = problems.iter().map(|problem| problem.code_word()).collect();
+        let codes: Vec<_> = problems.iter().map(Problem::code_word).collect();
         assert!(codes.contains(&code), "{spec}: {codes:?}");
     }
     let file = SpecFile::from_text("spec.toml", "[[imperfection]]\nkind = \"encodre\"").expect("a spec");
