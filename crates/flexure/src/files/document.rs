@@ -145,7 +145,7 @@ impl Form {
     fn refuse_stranger(&self, root: &DeTable<'_>, log: &Log) -> bool {
         let required = self.required.join(", ");
         let (key, other, instead) = self.other;
-        if root.is_empty() {
+        if root.is_empty() && !self.required.is_empty() {
             let message = format!("missing keys {required}: the file is empty");
             log.error(
                 0..0,

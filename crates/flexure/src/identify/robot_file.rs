@@ -86,6 +86,8 @@ impl RobotFile {
         if let Some(at) = text.find(FRICTION) {
             text.truncate(at);
         }
+        text.truncate(text.trim_end().len());
+        text.push('\n');
         text.push_str(&friction(found));
         readable(&text, path, outside)?;
         Ok(text)

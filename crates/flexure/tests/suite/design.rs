@@ -91,7 +91,7 @@ fn a_spec_replaces_parts_of_the_scenario() {
     let scenario = &specified.scenarios[0];
     assert!((scenario.control_period - 5e-4).abs() < 1e-15);
     let kinds: Vec<_> = scenario.imperfections.iter().map(Imperfection::kind).collect();
-    assert_eq!(kinds, ["delay", "torque-gain"]);
+    assert_eq!(kinds, ["torque-gain", "delay"]);
     let own = Scenario::load("pendulum-tanh").expect("built in");
     assert_eq!(scenario.initial, own.initial);
 }
