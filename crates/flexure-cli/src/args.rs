@@ -82,7 +82,7 @@ pub enum Command {
     /// Prove how fast the closed loop contracts, and where; write a certificate that others can check.
     Certify(Certify),
     #[command(
-        after_help = "Examples:\n  flexure import panda.urdf --lock panda_finger_joint1=0 > panda.toml\n  flexure import panda.urdf --lock panda_finger_joint1=0 --assume harmonic-drive --scenario --out draft"
+        after_help = "Examples:\n  flexure import panda.urdf --lock panda_finger_joint1=0 > arm.toml\n  flexure import panda.urdf --lock panda_finger_joint1=0 --assume harmonic-drive --scenario"
     )]
     /// Draft a robot file from a URDF, and a scenario for it; what is still to be supplied is marked.
     Import(Import),
