@@ -71,7 +71,9 @@ fn beside(scenario: &str, name: &str) -> PathBuf {
 fn show(found: &Design, joints: &[String]) -> Result<(), Failure> {
     let width = print::columns();
     print::line(&gains_table(joints, found, width))?;
-    print::line(&trades_table(&found.gains, width))?;
+    if !found.broken_off {
+        print::line(&trades_table(&found.gains, width))?;
+    }
     print::line(&constraints_table(&found.constraints, width))?;
     if let Some(margins) = &found.evidence.margins {
         print::line(&margins_table(std::slice::from_ref(margins), width))?;

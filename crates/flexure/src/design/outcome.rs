@@ -11,7 +11,7 @@ use crate::design::least::Least;
 use crate::design::search::{Found, Search, Watch};
 use crate::design::spec::{Rate, SpecFile};
 use crate::design::specified::Specified;
-use crate::design::trade::{Trade, trades};
+use crate::design::trade::{Trade, trades, untraded};
 use crate::files::bounds;
 use crate::files::number::short;
 use crate::files::{Problem, Problems, read_text};
@@ -54,7 +54,7 @@ pub struct Design {
 pub struct Evidence {
     /// The run under each reference; none of a loop that is unstable as sampled.
     pub runs: Vec<Summary>,
-    /// The sampled loop under the first reference.
+    /// The sampled loop under the first reference; none where the search was broken off.
     pub sampled: Option<Sampled>,
     /// The contraction rate of the ideal loop that is proved [1/s]; none if none is.
     pub rate_certified: Option<f64>,
@@ -143,9 +143,11 @@ pub fn design(
         instead = Some(Feasible { rate: found.best.keeps().then(|| (-found.best.cost).exp()) });
     }
     watch.tell(INSTEAD);
-    let sampled = probe(&tuned)?;
+    // What was broken off comes back at once.
+    let sampled = if broken_off { None } else { probe(&tuned)? };
     let verdict = proof.as_ref().map(|proof| Standing::of(&tuned, proof, sampled.as_ref()).words());
-    let gains = trades(&bench, &outlooks, &best, &watch)?;
+    let gains =
+        if broken_off { untraded(&best.controller) } else { trades(&bench, &outlooks, &best, &watch)? };
     watch.tell(TRADED);
     let margins = if feasible && !broken_off {
         let found = margins(&tuned, &|fraction| progress(TRADED + (1.0 - TRADED) * fraction))?;

@@ -35,6 +35,12 @@ pub struct Effect {
 /// How much more of a gain is tried.
 pub(super) const MORE: f64 = 1.25;
 
+/// The gains of `controller`, of which nobody has seen what they trade.
+pub(super) fn untraded(controller: &Controller) -> Vec<Trade> {
+    let gains = controller.gains().into_iter();
+    gains.map(|(gain, values)| Trade { gain, values: values.to_vec(), effect: None }).collect()
+}
+
 /// What each gain that was on `trial` trades.
 ///
 /// # Errors
