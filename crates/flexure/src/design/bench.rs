@@ -106,7 +106,7 @@ impl Bench {
     /// would else cost less than `best`.
     ///
     /// # Errors
-    /// As [`Scenario::open`].
+    /// As [`Scenario::open`], and [`Problems::interrupted`] if `watch` breaks it off.
     pub fn try_out(
         &self,
         outlooks: &Outlooks<'_>,
@@ -115,6 +115,7 @@ impl Bench {
         best: f64,
         watch: &Watch<'_>,
     ) -> Result<Trial, Problems> {
+        watch.check()?;
         let radius = outlooks.nominal(&controller);
         let mut constraints =
             vec![Constraint::radius("small errors shrink in the sampled loop".to_owned(), radius)];
@@ -131,6 +132,7 @@ impl Bench {
         let error = runs.iter().map(|run| penalised_error(&run.summary)).fold(0.0, f64::max);
         let kept = cost(error);
         if broken(&constraints, true) == 0.0 && kept < best {
+            watch.check()?;
             constraints.extend(self.borne(outlooks, &controller));
         }
         let (excess, frail) = (broken(&constraints, true), broken(&constraints, false));

@@ -49,6 +49,12 @@ impl<'a> Watch<'a> {
         let _ = self.go_on();
     }
 
+    /// # Errors
+    /// [`Problems::interrupted`] if it is time to end.
+    pub fn check(&self) -> Result<(), Problems> {
+        if self.go_on().is_break() { Err(Problems::interrupted()) } else { Ok(()) }
+    }
+
     /// Whether to go on.
     pub fn go_on(&self) -> ControlFlow<()> {
         (self.progress)(f64::from_bits(self.at.load(Ordering::Relaxed)))

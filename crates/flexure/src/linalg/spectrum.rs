@@ -1,12 +1,14 @@
-//! Eigenvalues of matrices that are not symmetric: balancing, Hessenberg form, QR iterations with Wilkinson's shift in
-//! complex numbers; an eigenvector by inverse iteration. Golub & Van Loan, *Matrix Computations*, 4th ed., chapter 7.
+//! Eigenvalues of matrices that are not symmetric: balancing, Hessenberg form, Francis' QR iterations with two shifts at once, all in
+//! real numbers; an eigenvector by inverse iteration in complex ones. Golub & Van Loan, *Matrix Computations*, 4th ed., chapter 7.
+
+use std::ops::Range;
 
 use super::{Complex, Dense};
 
-/// Iterations for each eigenvalue after which the matrix is given up: three are usual.
+/// Iterations for each eigenvalue, or pair of them, after which the matrix is given up: three are usual.
 const ITERATIONS: usize = 60;
 
-/// An iteration of so many takes another shift, which breaks cycles.
+/// An iteration of so many balances the block again and takes another shift, which breaks cycles.
 const EXCEPTIONAL: usize = 10;
 
 /// An eigenvalue λ of a matrix A with its eigenvectors: A r = λ r, lᵀ A = λ lᵀ, lᵀ r = 1.
@@ -60,27 +62,50 @@ pub fn spectrum(a: &Dense<f64>) -> Option<Vec<Complex>> {
     if !a.rows().flatten().all(|x| x.is_finite()) {
         return None;
     }
-    let mut h = hessenberg(balanced(a));
-    let mut end = n;
-    let mut iterations = 0;
-    while end > 1 {
-        let start = active(&h, end);
-        if start + 1 == end {
-            (end, iterations) = (end - 1, 0);
-            continue;
+    let rest = connected(a);
+    let apart = (0..n).filter(|i| !rest.contains(i));
+    let mut values: Vec<Complex> = apart.map(|i| Complex::real(a[(i, i)])).collect();
+    let mut h = hessenberg(balanced(&Dense::from_fn(rest.len(), rest.len(), |i, j| a[(rest[i], rest[j])])));
+    let norm = h.rows().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
+    // Every iteration has errors of this size.
+    let rounding = f64::EPSILON * norm;
+    let (mut end, mut iterations) = (rest.len(), 0);
+    while end > 0 {
+        let start = active(&h, end, rounding);
+        match end - start {
+            1 => values.push(Complex::real(h[(start, start)])),
+            2 => values.extend(Corner::of(&h, end).eigenvalues()),
+            _ if iterations == ITERATIONS => return None,
+            _ => {
+                iterations += 1;
+                let corner = if iterations % EXCEPTIONAL == 0 {
+                    rebalance(&mut h, start..end);
+                    Corner::exceptional(&h, end)
+                } else {
+                    Corner::of(&h, end)
+                };
+                step(&mut h, start, end, &corner.shifts());
+                continue;
+            }
         }
-        if iterations == ITERATIONS {
-            return None;
-        }
-        iterations += 1;
-        let shift = if iterations % EXCEPTIONAL == 0 {
-            h[(end - 1, end - 1)] + Complex::real(h[(end - 1, end - 2)].abs())
-        } else {
-            wilkinson(&h, end)
-        };
-        step(&mut h, start, end, shift);
+        (end, iterations) = (start, 0);
     }
-    Some((0..n).map(|i| h[(i, i)]).collect())
+    Some(values)
+}
+
+/// What is left of the rows and columns of `a` without those that show their eigenvalue on the diagonal, as nothing else is in their row
+/// or in their column: what nobody reads, and what is read once and forgotten.
+fn connected(a: &Dense<f64>) -> Vec<usize> {
+    let mut rest: Vec<usize> = (0..a.columns()).collect();
+    loop {
+        let alone = |i: usize, entry: &dyn Fn(usize) -> f64| rest.iter().all(|&j| j == i || entry(j) == 0.0);
+        let is_apart = |i: usize| alone(i, &|j| a[(i, j)]) || alone(i, &|j| a[(j, i)]);
+        let fewer: Vec<usize> = rest.iter().copied().filter(|&i| !is_apart(i)).collect();
+        if fewer.len() == rest.len() {
+            return rest;
+        }
+        rest = fewer;
+    }
 }
 
 /// Scales rows and columns by powers of two until they are of like size.
@@ -113,9 +138,21 @@ fn balanced(a: &Dense<f64>) -> Dense<f64> {
     a
 }
 
+/// Balances a block on the diagonal by itself: what lies outside of it does not change its eigenvalues. Delays leave nearly equal
+/// eigenvalues that are far smaller than the entries beside them, and before this no shift comes near enough to one of them.
+fn rebalance(h: &mut Dense<f64>, block: Range<usize>) {
+    let (from, count) = (block.start, block.len());
+    let balanced = balanced(&Dense::from_fn(count, count, |i, j| h[(from + i, from + j)]));
+    for (i, row) in block.clone().zip(balanced.rows()) {
+        let n = h.columns();
+        h.entries_mut()[i * n..][block.clone()].copy_from_slice(row);
+    }
+}
+
 /// The same eigenvalues with nothing below the first subdiagonal, by Householder's reflections.
-fn hessenberg(mut a: Dense<f64>) -> Dense<Complex> {
+fn hessenberg(mut a: Dense<f64>) -> Dense<f64> {
     let n = a.columns();
+    let mut along = vec![0.0; n];
     for k in 0..n.saturating_sub(2) {
         let mut v: Vec<f64> = (k + 1..n).map(|i| a[(i, k)]).collect();
         let scale = v.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
@@ -128,74 +165,187 @@ fn hessenberg(mut a: Dense<f64>) -> Dense<Complex> {
         let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
         v[0] += length.copysign(v[0]);
         let square: f64 = v.iter().map(|x| x * x).sum();
-        for j in 0..n {
-            let along: f64 = v.iter().zip(k + 1..).map(|(x, i)| x * a[(i, j)]).sum();
-            for (x, i) in v.iter().zip(k + 1..) {
-                a[(i, j)] -= 2.0 * along / square * x;
+        // Row by row, as the entries lie.
+        along.fill(0.0);
+        for (x, row) in v.iter().zip(a.rows().skip(k + 1)) {
+            for (sum, entry) in along.iter_mut().zip(row) {
+                *sum += x * entry;
             }
         }
-        for i in 0..n {
-            let along: f64 = v.iter().zip(k + 1..).map(|(x, j)| x * a[(i, j)]).sum();
-            for (x, j) in v.iter().zip(k + 1..) {
-                a[(i, j)] -= 2.0 * along / square * x;
+        for (x, row) in v.iter().zip(a.entries_mut().chunks_exact_mut(n).skip(k + 1)) {
+            let factor = 2.0 / square * x;
+            for (entry, sum) in row.iter_mut().zip(&along) {
+                *entry -= factor * sum;
+            }
+        }
+        for row in a.entries_mut().chunks_exact_mut(n) {
+            let row = &mut row[k + 1..];
+            let factor = 2.0 / square * dot(&v, row);
+            for (entry, x) in row.iter_mut().zip(&v) {
+                *entry -= factor * x;
             }
         }
     }
-    Dense::from_fn(n, n, |i, j| if i > j + 1 { Complex::ZERO } else { Complex::real(a[(i, j)]) })
+    Dense::from_fn(n, n, |i, j| if i > j + 1 { 0.0 } else { a[(i, j)] })
 }
 
-/// Where the last block begins that does not fall apart, of the leading `end` rows.
-fn active(h: &Dense<Complex>, end: usize) -> usize {
-    (1..end)
-        .rev()
-        .find(|&i| {
-            let size = h[(i - 1, i - 1)].abs() + h[(i, i)].abs();
-            h[(i, i - 1)].abs() <= f64::EPSILON * size.max(f64::MIN_POSITIVE)
-        })
-        .unwrap_or(0)
-}
-
-/// The eigenvalue of the last 2 × 2 block that is nearer to its last entry.
-fn wilkinson(h: &Dense<Complex>, end: usize) -> Complex {
-    let [a, b, c, d] =
-        [(end - 2, end - 2), (end - 2, end - 1), (end - 1, end - 2), (end - 1, end - 1)].map(|at| h[at]);
-    let half = (a - d).scaled(0.5);
-    let root = (half * half + b * c).sqrt();
-    let middle = (a + d).scaled(0.5);
-    let (one, other) = (middle + root, middle - root);
-    if (one - d).abs() < (other - d).abs() { one } else { other }
-}
-
-/// H − μ = Q R becomes R Q + μ, on the rows from `start` to `end`.
-fn step(h: &mut Dense<Complex>, start: usize, end: usize, shift: Complex) {
-    for i in start..end {
-        h[(i, i)] = h[(i, i)] - shift;
-    }
-    let mut turns = Vec::with_capacity(end - start);
-    for k in start..end - 1 {
-        let (a, b) = (h[(k, k)], h[(k + 1, k)]);
-        let length = a.abs().hypot(b.abs());
-        let (c, s) = if length == 0.0 {
-            (Complex::real(1.0), Complex::ZERO)
-        } else {
-            (a.scaled(1.0 / length), b.scaled(1.0 / length))
-        };
-        for j in k..end {
-            let (x, y) = (h[(k, j)], h[(k + 1, j)]);
-            h[(k, j)] = c.conjugate() * x + s.conjugate() * y;
-            h[(k + 1, j)] = c * y - s * x;
-        }
-        turns.push((c, s));
-    }
-    for (k, (c, s)) in (start..).zip(turns) {
-        for i in start..end.min(k + 2) {
-            let (x, y) = (h[(i, k)], h[(i, k + 1)]);
-            h[(i, k)] = x * c + y * s;
-            h[(i, k + 1)] = y * c.conjugate() - x * s.conjugate();
+/// The inner product, in four sums side by side.
+fn dot(x: &[f64], y: &[f64]) -> f64 {
+    let ((xs, x_left), (ys, y_left)) = (x.as_chunks::<4>(), y.as_chunks::<4>());
+    let mut sums = [0.0; 4];
+    for (x, y) in xs.iter().zip(ys) {
+        for k in 0..4 {
+            sums[k] += x[k] * y[k];
         }
     }
-    for i in start..end {
-        h[(i, i)] = h[(i, i)] + shift;
+    let left: f64 = x_left.iter().zip(y_left).map(|(x, y)| x * y).sum();
+    sums.iter().sum::<f64>() + left
+}
+
+/// Where the last block begins that does not fall apart, of the leading `end` rows: what is `least` in size counts as nothing.
+fn active(h: &Dense<f64>, end: usize, least: f64) -> usize {
+    (1..end).rev().find(|&i| h[(i, i - 1)].abs() <= least).unwrap_or(0)
+}
+
+/// The last 2 × 2 block [[a, b], [c, d]] of some rows.
+struct Corner {
+    a: f64,
+    b: f64,
+    c: f64,
+    d: f64,
+}
+
+/// Shifts σ and τ, which are both real or conjugate to each other.
+struct Shifts {
+    /// σ + τ.
+    sum: f64,
+    /// σ τ.
+    product: f64,
+}
+
+impl Corner {
+    /// Of the leading `end` rows.
+    fn of(h: &Dense<f64>, end: usize) -> Self {
+        let (i, j) = (end - 2, end - 1);
+        Self { a: h[(i, i)], b: h[(i, j)], c: h[(j, i)], d: h[(j, j)] }
+    }
+
+    /// One in its place that has nothing to do with it but its size, as in LAPACK's `dlahqr`: breaks cycles.
+    fn exceptional(h: &Dense<f64>, end: usize) -> Self {
+        let size = h[(end - 1, end - 2)].abs() + h[(end - 2, end - 3)].abs();
+        let a = h[(end - 1, end - 1)] + 0.75 * size;
+        Self { a, b: -0.4375 * size, c: size, d: a }
+    }
+
+    fn eigenvalues(&self) -> [Complex; 2] {
+        let Self { a, b, c, d } = *self;
+        let (middle, half) = (0.5 * (a + d), 0.5 * (a - d));
+        let square = half * half + b * c;
+        if square < 0.0 {
+            let im = (-square).sqrt();
+            return [Complex { re: middle, im }, Complex { re: middle, im: -im }];
+        }
+        // The one that is larger in size, and the other from what it is beside d: no difference of near numbers.
+        let root = half + square.sqrt().copysign(half);
+        let one = d + root;
+        let other = if root == 0.0 { d } else { d - b * c / root };
+        [Complex::real(one), Complex::real(other)]
+    }
+
+    /// Its eigenvalues; if they are real, twice the one nearer to its last entry.
+    fn shifts(&self) -> Shifts {
+        let [one, other] = self.eigenvalues();
+        if one.im != 0.0 {
+            return Shifts { sum: one.re + other.re, product: one.re * one.re + one.im * one.im };
+        }
+        let near = if (one.re - self.d).abs() < (other.re - self.d).abs() { one.re } else { other.re };
+        Shifts { sum: 2.0 * near, product: near * near }
+    }
+}
+
+/// (H − σ) (H − τ) = Q R makes Qᵀ H Q of H, on the rows from `start` to `end`, of which there are at least three: Q begins as its first
+/// column does, and the rest of it follows from what keeps the form.
+fn step(h: &mut Dense<f64>, start: usize, end: usize, shifts: &Shifts) {
+    // From the last row where that may begin: on its way through small entries above, the shift would be lost in rounding.
+    let begins = |k: usize| {
+        let x = shifts.first_column(h, k);
+        let size = h[(k - 1, k - 1)].abs() + h[(k, k)].abs() + h[(k + 1, k + 1)].abs();
+        h[(k, k - 1)].abs() * (x[1].abs() + x[2].abs()) <= f64::EPSILON * x[0].abs() * size
+    };
+    let begin = (start + 1..end - 2).rev().find(|&k| begins(k)).unwrap_or(start);
+    let mut x = shifts.first_column(h, begin);
+    for k in begin..end - 1 {
+        let count = 3.min(end - k);
+        if let Some(reflection) = Reflection::of(x) {
+            reflection.rows(h, k, count, k.saturating_sub(1).max(start)..end);
+            reflection.columns(h, k, count, start..end.min(k + 4));
+        }
+        if k > start {
+            for i in k + 1..k + count {
+                h[(i, k - 1)] = 0.0;
+            }
+        }
+        x = [1, 2, 3].map(|i| if k + i < end { h[(k + i, k)] } else { 0.0 });
+    }
+}
+
+impl Shifts {
+    /// The first column of (H − σ) (H − τ) of H from row `k` on.
+    fn first_column(&self, h: &Dense<f64>, k: usize) -> [f64; 3] {
+        let (a, b, c, d) = (h[(k, k)], h[(k, k + 1)], h[(k + 1, k)], h[(k + 1, k + 1)]);
+        [a * (a - self.sum) + self.product + b * c, c * (a + d - self.sum), c * h[(k + 2, k + 1)]]
+    }
+}
+
+/// Householder's reflection 1 − v wᵀ of three numbers.
+struct Reflection {
+    v: [f64; 3],
+    w: [f64; 3],
+}
+
+impl Reflection {
+    /// The one that leaves of `x` the first alone; none for zeros.
+    fn of(x: [f64; 3]) -> Option<Self> {
+        let scale = x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        if scale == 0.0 {
+            return None;
+        }
+        let mut v = x.map(|x| x / scale);
+        let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+        v[0] += length.copysign(v[0]);
+        let factor = 2.0 / (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+        Some(Self { v, w: v.map(|v| factor * v) })
+    }
+
+    /// Reflects `count` rows from row `k` on.
+    fn rows(&self, h: &mut Dense<f64>, k: usize, count: usize, columns: Range<usize>) {
+        let n = h.columns();
+        let mut rows = h.entries_mut()[k * n..(k + count) * n].chunks_exact_mut(n);
+        let mut next = || rows.next().map_or(&mut [][..], |row| &mut row[columns.clone()]);
+        let ([x, y, z], [v, w]) = ([next(), next(), next()], [self.v, self.w]);
+        if z.is_empty() {
+            for (x, y) in x.iter_mut().zip(y) {
+                let along = w[0] * *x + w[1] * *y;
+                (*x, *y) = (*x - v[0] * along, *y - v[1] * along);
+            }
+            return;
+        }
+        for ((x, y), z) in x.iter_mut().zip(y).zip(z) {
+            let along = w[0] * *x + w[1] * *y + w[2] * *z;
+            (*x, *y, *z) = (*x - v[0] * along, *y - v[1] * along, *z - v[2] * along);
+        }
+    }
+
+    /// Reflects `count` columns from column `k` on.
+    fn columns(&self, h: &mut Dense<f64>, k: usize, count: usize, rows: Range<usize>) {
+        let n = h.columns();
+        for row in h.entries_mut()[rows.start * n..rows.end * n].chunks_exact_mut(n) {
+            let row = &mut row[k..k + count];
+            let along: f64 = row.iter().zip(&self.w).map(|(x, w)| x * w).sum();
+            for (x, v) in row.iter_mut().zip(&self.v) {
+                *x -= v * along;
+            }
+        }
     }
 }
 
@@ -292,6 +442,77 @@ mod tests {
             assert!((sum(|x| x) - Complex::real(trace(&a))).abs() < tolerance);
             assert!((sum(|x| x * x) - Complex::real(trace(&(&a * &a)))).abs() < tolerance);
         }
+    }
+
+    /// What delays, held readings and oscillators make: nilpotent blocks, turns that no shift moves, equal pairs.
+    #[test]
+    fn shifts_end_where_they_are_all_alike() {
+        for n in [2, 3, 5, 8, 31] {
+            let late = Dense::from_fn(n, n, |i, j| f64::from(u8::from(i == j + 1)));
+            assert!(spectrum(&late).unwrap().iter().all(|x| x.abs() < 1e-300), "{n} instants of delay");
+            // The roots of 1: a delay whose end is its beginning.
+            let turn = Dense::from_fn(n, n, |i, j| f64::from(u8::from(i == (j + 1) % n)));
+            let roots = spectrum(&turn).unwrap();
+            for k in 0..n {
+                let angle = std::f64::consts::TAU * k as f64 / n as f64;
+                let root = Complex { re: angle.cos(), im: angle.sin() };
+                assert!(roots.iter().any(|x| (*x - root).abs() < 1e-13), "{root:?} of {n}");
+            }
+            // Equal oscillators that do not know of each other, turned so that nobody sees it.
+            let q = random(n, 10 + n as u64);
+            let mix =
+                Dense::from_fn(
+                    2 * n,
+                    2 * n,
+                    |i, j| if i == j { 1.0 } else { 0.1 / n as f64 * q[(i / 2, j / 2)] },
+                );
+            let equal = Dense::from_fn(2 * n, 2 * n, |i, j| match (i / 2 == j / 2, i % 2, j % 2) {
+                (false, ..) => 0.0,
+                (true, 0, 1) => -1.0,
+                (true, 1, 0) => 1.0,
+                _ => 0.5,
+            });
+            let found = spectrum(&similar(&equal, &mix)).unwrap();
+            assert!(found.iter().all(|x| (x.re - 0.5).abs() < 1e-10 && (x.im.abs() - 1.0).abs() < 1e-10));
+        }
+    }
+
+    /// What is late by some instants grows and shrinks like what it follows, however the numbers are mixed: half of the eigenvalues are 0,
+    /// with few eigenvectors, and rounding moves them a lot.
+    #[test]
+    fn delays_leave_the_radius_alone() {
+        let (own, chains, late) = (6, 5, 5);
+        let n = own + chains * late;
+        for seed in 0..200 {
+            let (lead, follows, mix) = (random(own, seed), random(n, seed + 1000), random(n, seed + 2000));
+            let a = Dense::from_fn(n, n, |i, j| match (i < own, j < own) {
+                (true, true) => lead[(i, j)],
+                (true, false) => 0.0,
+                (false, _) if (i - own) % late == 0 => {
+                    if j < own {
+                        follows[(i, j)]
+                    } else {
+                        0.0
+                    }
+                }
+                _ => f64::from(u8::from(i == j + 1)),
+            });
+            let mix = Dense::from_fn(n, n, |i, j| f64::from(u8::from(i == j)) + 0.1 * mix[(i, j)]);
+            let (all, alone) = (spectral_radius(&similar(&a, &mix)), spectral_radius(&lead));
+            assert!((all - alone).abs() < 1e-9 * alone, "{seed}: {all} {alone}");
+        }
+    }
+
+    /// T A T⁻¹.
+    fn similar(a: &Dense<f64>, t: &Dense<f64>) -> Dense<f64> {
+        let n = a.columns();
+        let (ta, complex) = (t * a, Dense::from_fn(n, n, |i, j| Complex::real(t[(j, i)])));
+        // Rows x of the result with x T = a row of T A.
+        let rows: Vec<Vec<Complex>> = ta
+            .rows()
+            .map(|row| super::solve(complex.clone(), row.iter().map(|&x| Complex::real(x)).collect()))
+            .collect();
+        Dense::from_fn(n, n, |i, j| rows[i][j].re)
     }
 
     #[test]
