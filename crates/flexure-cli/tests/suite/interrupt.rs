@@ -110,6 +110,22 @@ fn a_proof_has_its_rates_and_no_certificate() {
     assert_eq!(place.names("out"), [""; 0]);
 }
 
+/// A search for gains that is broken off has the best so far, and writes it if it keeps what was looked at.
+#[test]
+fn a_search_for_gains_keeps_the_best_so_far() {
+    let place = Place::new();
+    let scenario = "robot = \"two-link-plausible\"\nduration = 2.0\ncontrol_period = 0.001\ninitial = \"at rest\"\n\
+                    [reference]\nkind = \"sine\"\namplitude = 0.05\nfrequency = 3.0\n\
+                    [reference.smooth_start]\nduration = 0.5\n[controller]\nkind = \"vcbc\"\n\
+                    [disturbance_observer]\nbandwidth = 20.0\n\
+                    [[imperfection]]\nkind = \"delay\"\ncomputation = 0.001\n";
+    place.write("arm.toml", scenario);
+    let args = ["tune", "arm.toml", "--budget", "100000"];
+    let json = partial(&place, &args, |json| json["runs"].as_u64() > Some(0));
+    assert_eq!(json["gains"].as_array().map(Vec::len), Some(6), "{json}");
+    assert_eq!(json["feasible"] == true, place.path().join("arm-tuned.toml").exists(), "{json}");
+}
+
 /// What waits for a writer that never comes ends all the same, says one thing, and writes nothing.
 #[test]
 fn a_command_that_waits_is_ended() {

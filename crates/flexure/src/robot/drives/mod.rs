@@ -1,8 +1,10 @@
 //! What drives of a kind are like: numbers that a URDF does not hold, from the torque that a joint gives.
 //!
 //! Gears, motors and springs of one family are scaled copies of each other, so that what they are like goes with their torque: a
-//! family has a deflection at its largest torque, a time in which that torque brings its motor to speed, and so on. The numbers are
-//! typical, not those of a robot: what is made of them is marked as assumed, with its source.
+//! family has a deflection at its largest torque, a time in which that torque brings its motor to speed, and so on. That is rough:
+//! stiffness keeps to it within a factor of two, motor inertia grows faster than the torque (five times as much for each N m from
+//! 5 to 700 N m in the FHA series). The numbers are typical, not those of a robot: what is made of them is marked as assumed, with
+//! its source, and `flexure identify` finds the robot's own.
 
 mod belt;
 mod cycloidal;
@@ -21,6 +23,8 @@ pub const DRIVES: &[DriveClass] =
 pub struct DriveClass {
     /// The name on the command line, and what it stands for.
     pub entry: Entry,
+    /// Smallest and largest torque that such drives are made for [N m]: what is outside is likely no torque limit.
+    pub torques: [f64; 2],
     /// Stiffness K = this · τ [1/rad].
     pub stiffness: Typical,
     /// Motor inertia M_m = this · τ \[s²\].
@@ -95,10 +99,7 @@ impl DriveClass {
     /// ```
     pub fn drive(&self, kind: JointKind, torque: f64) -> TypicalDrive {
         // Forces are torques by the radius, positions angles times the radius.
-        let radius = match kind {
-            JointKind::Revolute => 1.0,
-            JointKind::Prismatic => PINION,
-        };
+        let radius = radius(kind);
         let of_motion = |typical: Typical| rounded(typical.value * torque / radius);
         let of_torque = |typical: Typical| rounded(typical.value * torque);
         TypicalDrive {
@@ -110,6 +111,22 @@ impl DriveClass {
             torque_rate: of_torque(self.torque_rate),
             gear_ratio: rounded(self.gear_ratio.value / radius),
         }
+    }
+}
+
+impl DriveClass {
+    /// Whether such drives are made for a joint with the largest torque `torque` [N m], or force \[N\] where it slides.
+    pub fn is_made_for(&self, kind: JointKind, torque: f64) -> bool {
+        let [least, most] = self.torques;
+        (least..=most).contains(&(torque * radius(kind)))
+    }
+}
+
+/// By which a drive that turns moves a joint, in m; 1 for joints that turn themselves.
+fn radius(kind: JointKind) -> f64 {
+    match kind {
+        JointKind::Revolute => 1.0,
+        JointKind::Prismatic => PINION,
     }
 }
 

@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use crate::files::document::Log;
+use crate::files::number::short;
 use crate::files::site::Site;
 use crate::files::source::{self, Source};
 use crate::files::suggest::{key, text};
@@ -97,7 +98,7 @@ fn draft<'a>(
     let stem = Path::new(path).file_stem().map_or("robot".into(), |stem| stem.to_string_lossy());
     let is_name = |name: &&str| !name.trim().is_empty() && !name.contains(char::is_control);
     let name = urdf.name.filter(is_name).map_or_else(|| stem.into_owned(), str::to_owned);
-    let decimals = urdf.site.log.decimals();
+    let (decimals, site) = (urdf.site.log.decimals(), urdf.site.clone());
     let Assembled { mut joints, links, .. } = urdf.assemble(&locks, decimals)?;
 
     let (mut toml, mut missing) = (String::new(), Vec::new());
@@ -117,8 +118,52 @@ fn draft<'a>(
         }
         joint.drive.torque_limit = known.or(torque);
     }
+    if let Some(class) = class {
+        for (message, help) in doubts(class, &joints) {
+            site.warn("limits", message, help);
+        }
+    }
     sources(&mut toml, path, class, &noted);
     Some(Import { toml, urdf: String::new(), name, joints, class, missing, warnings: Vec::new() })
+}
+
+/// Torque limits that are written where nobody knows them [N m].
+const PLACEHOLDERS: [f64; 7] = [1.0, 10.0, 100.0, 300.0, 500.0, 1000.0, 10_000.0];
+
+/// Joints with the same one of these make it likely that it is none.
+const SUSPICIOUS: usize = 3;
+
+/// Why the numbers of `class` may be far off for `joints`, which follow from their torque limits: message and help.
+fn doubts(class: &DriveClass, joints: &[MovingJoint]) -> Vec<(String, &'static str)> {
+    const HELP: &str = "what is assumed follows from the torque limit: write the drive's own into the URDF's effort, then import again";
+    let torque = |joint: &MovingJoint| joint.drive.torque_limit.unwrap_or_default();
+    let said = |joint: &&MovingJoint| format!("{} ({})", joint.name, short(torque(joint), 4));
+    let odd: Vec<_> = joints.iter().filter(|joint| !class.is_made_for(joint.kind, torque(joint))).collect();
+    let mut doubts = Vec::new();
+    if !odd.is_empty() {
+        let [least, most] = class.torques;
+        let named: Vec<_> = odd.iter().map(said).collect();
+        doubts.push((
+            format!(
+                "{} drives are made for {least} to {most} N m; these torque limits are outside: {}",
+                class.entry.name,
+                named.join(", ")
+            ),
+            HELP,
+        ));
+    }
+    let same = |x: f64| joints.iter().filter(|joint| torque(joint).to_bits() == x.to_bits()).count();
+    let placeholder = PLACEHOLDERS.iter().find(|&&x| same(x) >= SUSPICIOUS && same(x) == joints.len());
+    if let Some(x) = placeholder {
+        doubts.push((
+            format!(
+                "all {} joints have a torque limit of {x}: it may stand for one that nobody knew",
+                joints.len()
+            ),
+            HELP,
+        ));
+    }
+    doubts
 }
 
 /// What `[sources]` has to say.

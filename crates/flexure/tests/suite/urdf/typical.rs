@@ -107,6 +107,30 @@ fn what_the_urdf_says_stays() {
     assert!(assumed.iter().any(|key| key.ends_with("torque_limit")), "{assumed:?}");
 }
 
+/// Everything that is assumed follows from torque limits: what can be none is said once, for all joints.
+#[test]
+fn torque_limits_that_can_be_none_are_said() {
+    let warnings = |urdf: &str, class: &str| {
+        let options =
+            ImportOptions { assume: Some(DriveClass::named(class).unwrap()), ..ImportOptions::default() };
+        let draft = import_text("arm.urdf", urdf, &options).unwrap();
+        draft.warnings.iter().map(|problem| problem.to_string()).collect::<Vec<_>>()
+    };
+    let panda = include_str!("../../../../../robots/panda.urdf");
+    assert!(warnings(panda, "harmonic-drive").is_empty(), "{:?}", warnings(panda, "harmonic-drive"));
+    // Wrists of 12 N m, and a hand that slides: 100 N on a pinion of 50 mm are 5 N m.
+    let [heavy] = warnings(panda, "cycloidal").try_into().unwrap();
+    assert!(heavy.contains("100 to 12000 N m") && heavy.contains("panda_joint7 (12)"), "{heavy}");
+    let unknown = ["87.0", "12.0", "100"].iter().fold(panda.to_owned(), |urdf, effort| {
+        urdf.replace(&format!("effort=\"{effort}\""), "effort=\"300\"")
+    });
+    let said = warnings(&unknown, "harmonic-drive");
+    assert!(said.iter().any(|said| said.contains("torque limit of 300")), "{said:?}");
+    let [huge] =
+        warnings(&ARM.replace("effort=\"20\"", "effort=\"1e5\""), "harmonic-drive").try_into().unwrap();
+    assert!(huge.contains("outside") && huge.contains("turn ("), "{huge}");
+}
+
 #[test]
 fn names_that_are_none_are_refused() {
     let problem = DriveClass::named("harmonic-drives").unwrap_err();
