@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use flexure::files::number::significant;
 use flexure::files::{Outside, prepare, read_text, write_atomic};
 use flexure::identify::{Identified, RobotFile, Settings, identify as identified};
-use flexure::logs::{Columns, read_log};
+use flexure::logs::read_log;
 use flexure::report::identified_table;
 use serde::Serialize;
 
-use super::print;
+use super::{log, print};
 use crate::args::Identify;
 use crate::failure::{Failure, say};
 use crate::progress::Progress;
@@ -25,14 +25,7 @@ struct Outcome<'a> {
 pub fn identify(options: &Identify, outside: Outside, json: bool) -> Result<(), Failure> {
     let file = RobotFile::load(&options.robot, outside)?;
     say(&file.robot.warnings);
-    let columns = match &options.columns {
-        None => Columns::default(),
-        Some(said) => {
-            let (columns, warnings) = Columns::read(said, &file.robot)?;
-            say(&warnings);
-            columns
-        }
-    };
+    let columns = log::columns(options.columns.as_deref(), &file.robot)?;
     let mut logs = Vec::new();
     for path in &options.logs {
         let (log, warnings) = read_log(path, &columns, &file.robot)?;

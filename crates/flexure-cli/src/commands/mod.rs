@@ -9,6 +9,7 @@ mod excite;
 mod identify;
 mod import;
 mod list;
+mod log;
 mod man;
 mod margins;
 mod model;

@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use flexure::files::number::{duration, short};
 use flexure::files::{Reading, prepare};
-use flexure::logs::{Columns, read_log};
+use flexure::logs::read_log;
 use flexure::replay::{Replay as Found, replay as laid};
 use flexure::report::{replay_table, write_replay};
 use flexure::scenario::load_scenario_with;
 use serde::Serialize;
 
-use super::print;
+use super::{log, print};
 use crate::args::Replay;
 use crate::failure::{Failure, say};
 use crate::progress::Progress;
@@ -25,14 +25,7 @@ struct Outcome<'a> {
 pub fn replay(options: &Replay, reading: Reading<'_>, json: bool) -> Result<(), Failure> {
     let scenario = load_scenario_with(&options.scenario, reading)?;
     say(&scenario.warnings);
-    let columns = match &options.columns {
-        None => Columns::default(),
-        Some(said) => {
-            let (columns, warnings) = Columns::read(said, &scenario.robot)?;
-            say(&warnings);
-            columns
-        }
-    };
+    let columns = log::columns(options.columns.as_deref(), &scenario.robot)?;
     let (log, warnings) = read_log(&options.log, &columns, &scenario.robot)?;
     say(&warnings);
     prepare(&options.output.out)?;

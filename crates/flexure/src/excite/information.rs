@@ -131,19 +131,6 @@ mod tests {
         motor_damping: 1.0,
     };
 
-    /// With a parameter changed: ln K, ln M_m, D_l, D_m.
-    fn changed(parameter: usize, step: f64) -> Joint {
-        let mut joint = JOINT;
-        match parameter {
-            0 => joint.stiffness *= step.exp(),
-            1 => joint.motor_inertia *= step.exp(),
-            2 => joint.link_damping += step,
-            3 => joint.motor_damping += step,
-            _ => {}
-        }
-        joint
-    }
-
     fn lines(period: f64) -> Vec<Logged> {
         let phasor = |size: f64, angle: f64| Complex { re: size * angle.cos(), im: size * angle.sin() };
         let line = |k: usize| Logged {
@@ -172,7 +159,7 @@ mod tests {
         };
         let slope = |parameter: usize, side: usize, sample: usize| {
             let at = |step: f64| {
-                position(&changed(parameter, step), if parameter == 4 { step } else { 0.0 }, side, sample)
+                position(&JOINT.moved(parameter, step), if parameter == 4 { step } else { 0.0 }, side, sample)
             };
             (at(STEP) - at(-STEP)) / (2.0 * STEP)
         };

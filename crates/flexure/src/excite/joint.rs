@@ -69,6 +69,21 @@ impl Joint {
 }
 
 #[cfg(test)]
+impl Joint {
+    /// With a parameter moved by `step`: ln K, ln M_m, D_l, D_m; others are not its own.
+    pub(super) fn moved(mut self, parameter: usize, step: f64) -> Self {
+        match parameter {
+            0 => self.stiffness *= step.exp(),
+            1 => self.motor_inertia *= step.exp(),
+            2 => self.link_damping += step,
+            3 => self.motor_damping += step,
+            _ => {}
+        }
+        self
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::{Joint, LINEAR};
 
@@ -79,17 +94,6 @@ mod tests {
         link_damping: 0.5,
         motor_damping: 1.0,
     };
-
-    fn moved(parameter: usize, step: f64) -> Joint {
-        let mut joint = JOINT;
-        match parameter {
-            0 => joint.stiffness *= step.exp(),
-            1 => joint.motor_inertia *= step.exp(),
-            2 => joint.link_damping += step,
-            _ => joint.motor_damping += step,
-        }
-        joint
-    }
 
     /// Both equations of motion hold, and derivatives are limits of differences.
     #[test]
@@ -108,7 +112,7 @@ mod tests {
             let duals = JOINT.response(omega);
             for parameter in 0..LINEAR {
                 const STEP: f64 = 1e-5;
-                let ends = [STEP, -STEP].map(|step| moved(parameter, step).gains(omega));
+                let ends = [STEP, -STEP].map(|step| JOINT.moved(parameter, step).gains(omega));
                 for side in 0..2 {
                     let slope = (ends[0][side] - ends[1][side]).scaled(0.5 / STEP);
                     let exact = duals[side].map(|part| part.gradient[parameter]);
