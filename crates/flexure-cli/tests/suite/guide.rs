@@ -72,9 +72,8 @@ fn shows(shown: &str, printed: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// `cargo test --release -p flexure-cli --test suite guide -- --ignored`.
+/// A minute, as two searches for gains are among them.
 #[test]
-#[ignore = "searches for gains: minutes, unless optimised"]
 fn the_page_shows_what_its_commands_print() {
     if is_out_of_reach() {
         return;
