@@ -137,8 +137,8 @@ pub struct DirectSummary {
     pub at: Option<String>,
 }
 
-/// What holds of every robot within the tolerances: along the reference, from every start with W ≤ level, until its end √(2 W) is at
-/// most √(2 settles) more than what decays at the rate.
+/// What holds of every robot within the tolerances: along the reference, from every start with W ≤ level, until its end,
+/// √W(t) ≤ √settles + e^(−rate t) max(√W(0) − √settles, 0).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WithinSummary {
     /// `proved` or `undecided`.

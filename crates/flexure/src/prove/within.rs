@@ -2,11 +2,10 @@
 //!
 //! The statement: along the scenario's reference, until its end, from every start with W ≤ c,
 //!
-//! √(2 W(t)) ≤ e^(−μ t) √(2 W(0)) + η/μ,
+//! √(2 W(t)) ≤ ν + e^(−μ t) max(√(2 W(0)) − ν, 0),
 //!
 //! for every robot whose springs, motors and dampers are within their tolerances, even where they change meanwhile. W is made with
-//! the numbers of the file. [`Deviation`] has the inequality Ẇ ≤ −2 μ W + η √(2 W) for the states with W ≤ c, and c is such that no
-//! motion leaves them: η ≤ μ √(2 c).
+//! the numbers of the file. [`Deviation`] has μ and ν for the states with W ≤ c, and c is such that no motion leaves them: ν² ≤ 2 c.
 
 use flexure_core::scalar::{Interval, Scalar};
 use rayon::prelude::*;
@@ -17,7 +16,7 @@ use crate::progress::Progress;
 use crate::prove::along::enclosed;
 use crate::prove::engine::certificate::{BlockName, Certificate};
 use crate::prove::engine::envelope::closed_loop::TrackingLoop;
-use crate::prove::engine::envelope::deviation::{Deviation, Spread};
+use crate::prove::engine::envelope::deviation::{Bound, Deviation, Spread};
 use crate::prove::engine::number::Number;
 use crate::robot::Robot;
 use crate::scenario::Scenario;
@@ -111,13 +110,13 @@ pub fn within(
         let watched = |fraction: f64| progress((tried as f64 + fraction) / LEVELS as f64);
         let Some((found, spent)) = search.at(level, &watched) else { return Ok(None) };
         slabs += spent;
-        let Some(Bound { rate, offset }) = found else {
+        let Some(Bound { rate, length }) = found else {
             return open(
                 format!("where W ≤ {level:.3e} J some robot within the tolerances may move away from the reference"),
                 slabs,
             );
         };
-        let needed = (Interval::point(offset) / Interval::point(rate)).square() * Interval::point(0.5);
+        let needed = Interval::point(length).square() * Interval::point(0.5);
         if needed.hi() <= level {
             let [link, motor, _] = system.metrics();
             let error = |metric: &Interval| (Interval::point(2.0) * needed / *metric).sqrt().hi();
@@ -144,14 +143,6 @@ fn rates(certificate: &Certificate) -> [Interval; 4] {
         let block = certificate.blocks.iter().find(|block| block.block == name);
         block.map_or(Interval::ZERO, |block| Interval::point(block.convergence.bounds().lo()))
     })
-}
-
-/// Ẇ ≤ −2 μ W + η √(2 W).
-struct Bound {
-    /// μ > 0.
-    rate: f64,
-    /// η.
-    offset: f64,
 }
 
 /// What stays the same from level to level.
@@ -200,15 +191,15 @@ impl Search<'_> {
             let kept = slabs.into_iter().enumerate().filter(|(i, _)| !chosen.contains(i)).map(|(_, slab)| slab);
             slabs = kept.chain(halves).collect();
         }
-        let rate = slabs.iter().map(|slab| slab.rate(&self.rates)).fold(f64::INFINITY, f64::min);
-        let offset = slabs.iter().map(Deviation::offset).fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a });
-        let bound = (rate > 0.0 && offset.is_finite()).then_some(Bound { rate, offset });
-        Some((bound, spent))
+        let slowest = |a: Option<Bound>, b: Option<Bound>| {
+            let (a, b) = (a?, b?);
+            Some(Bound { rate: a.rate.min(b.rate), length: a.length.max(b.length) })
+        };
+        Some((slabs.iter().map(|slab| slab.bound(&self.rates)).reduce(slowest).flatten(), spent))
     }
 
     /// √(2 W) that the errors of a slab come to.
     fn needs(&self, slab: &Deviation) -> f64 {
-        let (rate, offset) = (slab.rate(&self.rates), slab.offset());
-        if rate > 0.0 && offset.is_finite() { offset / rate } else { f64::INFINITY }
+        slab.bound(&self.rates).map_or(f64::INFINITY, |bound| bound.length)
     }
 }

@@ -187,13 +187,12 @@ fn tolerated(within: &WithinSummary) -> Vec<String> {
     };
     vec![
         format!(
-            "tolerances   every robot within them, along the reference, from W ≤ {} J: √(2W) ≤ e^(−{} t) √(2W(0)) + {} √J",
+            "tolerances   every robot within them, along the reference, from W ≤ {} J: √W comes down at {} 1/s",
             engineering(level),
-            significant(rate, 6),
-            engineering((2.0 * settles).sqrt().next_up())
+            significant(rate, 6)
         ),
         format!(
-            "tolerances   so W comes to {} J, where |q̃_i| ≤ {} rad; that its errors vanish is not said",
+            "tolerances   to that of W = {} J, where |q̃_i| ≤ {} rad, not to 0",
             engineering(settles),
             list(error)
         ),

@@ -14,14 +14,21 @@
 //! q̈_m that of the model. w is affine in the absolute values of ζ, q̇_l, q̇_m, q̈_m, and those are at most what they are on the
 //! reference plus a multiple of the errors. With r_b = √(2 W_b) for the four blocks b of W, Σ r_b² = 2 W, this makes
 //!
-//! Ẇ ≤ −Σ β_b r_b² + Σ_b r_b (η_b + Σ_c Γ_bc r_c).
+//! Ẇ ≤ −rᵀ A r + ηᵀ r,      A = diag(β) − (Γ + Γᵀ)/2.
+//!
+//! With ρ = √(2 W) = |r|, μ the smallest eigenvalue of A and ν² = ηᵀ (A − λ)⁻¹ η / (4 λ) for some λ between 0 and μ it follows that
+//! ηᵀ r ≤ rᵀ (A − λ) r + λ ν² for all r, so ηᵀ u ≤ ν uᵀ A u for all |u| = 1, and so, where ρ ≥ ν,
+//!
+//! ρ̇ ≤ −μ (ρ − ν):
+//!
+//! √(2 W) comes down to ν at the rate μ, and stays there.
 //!
 //! Nothing of the coupling cancels here: q_md = q_l + K⁻¹ u_l is made with the model's K, and its derivatives with the model's
 //! accelerations.
 
 use flexure_core::scalar::{Interval, Jet, Over, Scalar};
 
-use crate::linalg::{Dense, Symmetric, weakest};
+use crate::linalg::{Dense, Symmetric, cholesky, solved, weakest};
 use crate::prove::engine::envelope::closed_loop::{Place, Slope, TrackingLoop};
 use crate::prove::engine::envelope::slab::{View, Way, differences};
 use crate::prove::engine::envelope::tube::ErrorTube;
@@ -48,6 +55,18 @@ pub struct Spread {
 /// An upper bound that is affine in the r_b: its value where all are 0, and its slopes.
 #[derive(Clone, Copy, Debug)]
 struct Affine([Interval; 1 + BLOCKS]);
+
+/// ρ̇ ≤ −μ (ρ − ν) where ρ = √(2 W) ≥ ν.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bound {
+    /// μ > 0 [1/s].
+    pub rate: f64,
+    /// ν in √J.
+    pub length: f64,
+}
+
+/// λ is taken from so many parts of μ.
+const SHARES: u32 = 32;
 
 /// What the difference does to W over a slab of time and the tube {W ≤ c}.
 #[derive(Clone, Debug)]
@@ -165,28 +184,52 @@ impl Deviation {
         })
     }
 
-    /// Length of η.
-    pub fn offset(&self) -> f64 {
-        let sum = self.steady.iter().fold(Interval::ZERO, |sum, &x| sum + Interval::point(x).square());
-        sum.sqrt().hi()
+    /// A, `rates` the β_b [1/s].
+    fn decay(&self, rates: &[Interval; BLOCKS]) -> Symmetric<Interval> {
+        let half = Interval::point(0.5);
+        Symmetric::from_fn(BLOCKS, |i, j| {
+            let coupling = (Interval::point(self.slopes[i][j]) + Interval::point(self.slopes[j][i])) * half;
+            if i == j { rates[i] - coupling } else { -coupling }
+        })
     }
 
-    /// The largest μ found with Σ β_b r_b² − Σ r_b Γ_bc r_c ≥ μ Σ r_b² for all r, `rates` the β_b [1/s]; −∞ if none.
-    pub fn rate(&self, rates: &[Interval; BLOCKS]) -> f64 {
-        let half = Interval::point(0.5);
-        let entry = |i: usize, j: usize| {
-            let coupling =
-                (Interval::point(self.slopes[i][j]) + Interval::point(self.slopes[j][i])) * half;
-            if i == j { rates[i] - coupling } else { -coupling }
+    /// μ [1/s] and ν in √J, `rates` the β_b [1/s]; none where μ is not above 0 or nothing is bounded.
+    pub fn bound(&self, rates: &[Interval; BLOCKS]) -> Option<Bound> {
+        let decay = self.decay(rates);
+        let lows = decay.map(Interval::lo);
+        let (about, _) = weakest(&lows, &Symmetric::diagonal(&[1.0; BLOCKS]))?;
+        let lowered = |rate: f64| {
+            let rate = Interval::point(rate);
+            Symmetric::from_fn(BLOCKS, |i, j| decay.at(i, j) - if i == j { rate } else { Interval::ZERO })
         };
-        let matrix = Symmetric::from_fn(BLOCKS, entry);
-        let unit = |x: f64| Symmetric::from_fn(BLOCKS, |i, j| if i == j { x } else { 0.0 });
-        let Some((about, _)) = weakest(&matrix.map(Interval::lo), &unit(1.0)) else { return f64::NEG_INFINITY };
-        let size = about.abs().max(f64::MIN_POSITIVE);
-        let holds = |rate: f64| {
-            matrix.minus(&unit(1.0).map(Interval::point), Interval::point(rate)).smallest_pivot() > 0.0
-        };
-        [1e-12, 1e-9, 1e-6, 1e-3].into_iter().map(|less| about - less * size).find(|&rate| holds(rate)).unwrap_or(f64::NEG_INFINITY)
+        let less = [1e-12, 1e-9, 1e-6, 1e-3].map(|less| about * (1.0 - less));
+        let rate = less.into_iter().find(|&rate| rate > 0.0 && lowered(rate).smallest_pivot() > 0.0)?;
+        let length = (1..SHARES).map(|k| rate * f64::from(k) / f64::from(SHARES));
+        let length = length.map(|lambda| self.length(&lowered(lambda), lambda)).fold(f64::INFINITY, f64::min);
+        length.is_finite().then_some(Bound { rate, length })
+    }
+
+    /// ν from above for the λ [1/s] that `lowered` is A less of; infinite if it is not found.
+    fn length(&self, lowered: &Symmetric<Interval>, lambda: f64) -> f64 {
+        // ηᵀ (A − λ)⁻¹ η: in floats, a little more, and then by intervals that this is enough.
+        let Some(lower) = cholesky(&lowered.map(Interval::lo)) else { return f64::INFINITY };
+        let solved = solved(&lower, &self.steady);
+        let product: f64 = self.steady.iter().zip(&solved).map(|(a, b)| a * b).sum();
+        if product == 0.0 && self.steady.iter().all(|&x| x == 0.0) {
+            return 0.0;
+        }
+        let enough = product * (1.0 + 1e-6);
+        let bordered = Symmetric::from_fn(BLOCKS + 1, |i, j| match (i, j) {
+            (BLOCKS, BLOCKS) => Interval::point(enough),
+            (BLOCKS, j) => Interval::point(self.steady[j]),
+            _ => lowered.at(i, j),
+        });
+        // Its last pivot is what `enough` is more.
+        if bordered.smallest_pivot() > 0.0 {
+            (Interval::point(enough) / (Interval::point(4.0) * Interval::point(lambda))).sqrt().hi()
+        } else {
+            f64::INFINITY
+        }
     }
 }
 
