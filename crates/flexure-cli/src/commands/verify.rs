@@ -102,7 +102,9 @@ fn verified(file: &Path, report: CheckReport, against: Option<Against>, json: bo
     if let Some(against) = against.filter(|against| against.same) {
         print::line(&format!("it is about {}", shown(&against.scenario)))?;
         if against.tolerances {
-            print::line("it says nothing of the tolerances in the robot file: its claims are about the numbers themselves")?;
+            print::line(
+                "it says nothing of the tolerances in the robot file: its claims are about the numbers themselves",
+            )?;
         }
     }
     ended

@@ -62,7 +62,9 @@ fn an_identified_arm_is_certified_with_its_error_bars() {
         .replace("[0.4, 0.2]", "[0.3, 0.3]")
         .replace("[1.0, 0.5]", "[1.4, 0.4]");
     place.write("guess.toml", guess);
-    place.run(&["excite", "arm.toml", "--duration", "6", "--control-period", "0.001", "--budget", "20"]).done();
+    place
+        .run(&["excite", "arm.toml", "--duration", "6", "--control-period", "0.001", "--budget", "20"])
+        .done();
     place.run(&["run", "arm-excite.toml", "--out", "."]).done();
     place.run(&["identify", "guess.toml", "--log", "arm-excite.csv", "--out", "found.toml"]).done();
     let found = flexure::Robot::load(place.path().join("found.toml").to_str().unwrap()).unwrap();
@@ -72,7 +74,10 @@ fn an_identified_arm_is_certified_with_its_error_bars() {
         (&found.motor_inertia, &tolerances.motor_inertia, [0.5, 0.2]),
     ] {
         for ((x, tolerance), truth) in values.iter().zip(tolerances).zip(truth) {
-            assert!((x - truth).abs() <= *tolerance && *tolerance < 0.01 * truth, "{x} ± {tolerance}: {truth}");
+            assert!(
+                (x - truth).abs() <= *tolerance && *tolerance < 0.01 * truth,
+                "{x} ± {tolerance}: {truth}"
+            );
         }
     }
     // Every reader takes the file.
@@ -89,7 +94,10 @@ fn an_identified_arm_is_certified_with_its_error_bars() {
     assert!(errors.len() == 4 && errors[0].as_f64().unwrap() < 0.003, "{within}");
     // Limits are kept by all of them.
     let limits = certified["along"]["limits"].as_array().unwrap();
-    assert!(limits.len() == 2 && limits.iter().all(|limit| limit["verdict"]["proved"].is_number()), "{limits:?}");
+    assert!(
+        limits.len() == 2 && limits.iter().all(|limit| limit["verdict"]["proved"].is_number()),
+        "{limits:?}"
+    );
     let assumptions = certified["assumptions"].to_string();
     assert!(
         assumptions.contains("its tolerances are no part of the certificate")
@@ -117,10 +125,13 @@ fn an_identified_arm_is_certified_with_its_error_bars() {
     assert_eq!(refused.code, Some(1), "{refused:?}");
     refused.said(&["is not about arm-sine.toml", "robot.stiffness"]);
     // With other tolerances it is another file.
-    place.write("found.toml", place.read("found.toml").replace("[tolerances]", "[tolerances] # wider").replace(
-        "motor_damping = [0.",
-        "motor_damping = [0.1",
-    ));
+    place.write(
+        "found.toml",
+        place
+            .read("found.toml")
+            .replace("[tolerances]", "[tolerances] # wider")
+            .replace("motor_damping = [0.", "motor_damping = [0.1"),
+    );
     let other = place.run(&["verify", file, "--against", "arm-sine.toml"]);
     assert_eq!(other.code, Some(1), "{other:?}");
 }

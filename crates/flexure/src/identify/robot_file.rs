@@ -193,7 +193,9 @@ impl Edits<'_> {
         let values = format!("[{}]", values.join(", "));
         match robot.places.span(&format!("tolerances.{key}")) {
             Some(span) => self.edits.push((span, values)),
-            None if robot.places.has("tolerances") => self.insert("tolerances", &format!("{key} = {values}"))?,
+            None if robot.places.has("tolerances") => {
+                self.insert("tolerances", &format!("{key} = {values}"))?
+            }
             None => self.append("tolerances", &format!("{key} = {values}")),
         }
         Ok(())
@@ -313,7 +315,10 @@ fn tolerance(estimate: &Estimate) -> String {
     let least = estimate.error + (written - estimate.value).abs();
     let step = 10_f64.powf(least.log10().floor() - 1.0);
     let enough = (0..3).map(|k| two_digits(least + f64::from(k) * 0.5 * step));
-    enough.into_iter().find(|text| text.parse().is_ok_and(|x: f64| x >= least)).unwrap_or_else(|| format!("{least:?}"))
+    enough
+        .into_iter()
+        .find(|text| text.parse().is_ok_and(|x: f64| x >= least))
+        .unwrap_or_else(|| format!("{least:?}"))
 }
 
 fn two_digits(x: f64) -> String {

@@ -68,7 +68,8 @@ impl Proof {
     /// What to say where nothing was shown of the robots within the tolerances.
     fn tolerances(&self, scenario: &Scenario) -> Option<(Problem, bool)> {
         let Some(Err(open)) = &self.within else { return None };
-        let message = format!("{}: the robots within its tolerances are not decided: {}", scenario.name, open.at);
+        let message =
+            format!("{}: the robots within its tolerances are not decided: {}", scenario.name, open.at);
         let help = "the certificate is about the numbers of the file. Identify them more closely, take gains that ask less of the \
                     model, a slower reference, or a smooth start";
         Some((scenario.robot.places.problem("tolerances", "undecided", message, help), false))

@@ -215,11 +215,14 @@ fn tolerances(robot: &robot::Robot) -> Vec<String> {
         let without = robot.joints.iter().zip(values).filter(|(_, tolerance)| **tolerance == 0.0);
         let without: Vec<&str> = without.map(|(joint, _)| &*joint.name).collect();
         if !without.is_empty() {
-            let joints = if without.len() == values.len() { "all joints".to_owned() } else { without.join(", ") };
+            let joints =
+                if without.len() == values.len() { "all joints".to_owned() } else { without.join(", ") };
             notes.push(format!("{key} of {joints} is taken as it stands: it has no tolerance"));
         }
     }
-    notes.push("the links' masses, lengths and inertias are taken as they stand: they have no tolerances".to_owned());
+    notes.push(
+        "the links' masses, lengths and inertias are taken as they stand: they have no tolerances".to_owned(),
+    );
     notes
 }
 
@@ -328,9 +331,7 @@ pub fn prove_watched(
         _ => None,
     };
     let along = match level {
-        Some(level) if !is_broken_off() => {
-            along(scenario, &level, budget, &between(middle, 1.0))?
-        }
+        Some(level) if !is_broken_off() => along(scenario, &level, budget, &between(middle, 1.0))?,
         _ => None,
     };
     Ok(Proof {

@@ -4,8 +4,9 @@
 //!
 //! √(2 W(t)) ≤ ν + e^(−μ t) max(√(2 W(0)) − ν, 0),
 //!
-//! for every robot whose springs, motors and dampers are within their tolerances, even where they change meanwhile. W is made with
-//! the numbers of the file. [`Deviation`] has μ and ν for the states with W ≤ c, and c is such that no motion leaves them: ν² ≤ 2 c.
+//! for every robot whose springs, motors and dampers are within their tolerances, springs and dampers even where they change
+//! meanwhile. W is made with the numbers of the file. [`Deviation`] has μ and ν for the states with W ≤ c, and c is such that no
+//! motion leaves them: ν² ≤ 2 c.
 
 use flexure_core::scalar::{Interval, Scalar};
 use rayon::prelude::*;
@@ -112,7 +113,9 @@ pub fn within(
         slabs += spent;
         let Some(Bound { rate, length }) = found else {
             return open(
-                format!("where W ≤ {level:.3e} J some robot within the tolerances may move away from the reference"),
+                format!(
+                    "where W ≤ {level:.3e} J some robot within the tolerances may move away from the reference"
+                ),
                 slabs,
             );
         };
@@ -160,7 +163,8 @@ impl Search<'_> {
         let goes_on = || progress(0.0).is_continue();
         let slab = |time: Interval| Deviation::watched(self.system, &self.spread, level, time, &goes_on);
         let first = self.budget.clamp(1, FIRST);
-        let cut = |i: usize| if i == first { self.duration } else { self.duration * (i as f64 / first as f64) };
+        let cut =
+            |i: usize| if i == first { self.duration } else { self.duration * (i as f64 / first as f64) };
         let times = (0..first).into_par_iter();
         let times = times.map(|i| slab(Interval::new(cut(i), cut(i + 1)).unwrap_or(Interval::ENTIRE)));
         let mut slabs: Vec<Deviation> = times.collect::<Option<_>>()?;
@@ -168,7 +172,8 @@ impl Search<'_> {
         let mut before = f64::INFINITY;
         loop {
             // How much each slab needs, the most first.
-            let mut order: Vec<(usize, f64)> = slabs.iter().map(|slab| self.needs(slab)).enumerate().collect();
+            let mut order: Vec<(usize, f64)> =
+                slabs.iter().map(|slab| self.needs(slab)).enumerate().collect();
             order.sort_by(|a, b| b.1.total_cmp(&a.1));
             let worst = order[0].1;
             let gains = worst < before * (1.0 - GAIN) || !worst.is_finite();
@@ -188,7 +193,8 @@ impl Search<'_> {
                 .map(slab)
                 .collect::<Option<_>>()?;
             spent += halves.len();
-            let kept = slabs.into_iter().enumerate().filter(|(i, _)| !chosen.contains(i)).map(|(_, slab)| slab);
+            let kept =
+                slabs.into_iter().enumerate().filter(|(i, _)| !chosen.contains(i)).map(|(_, slab)| slab);
             slabs = kept.chain(halves).collect();
         }
         let slowest = |a: Option<Bound>, b: Option<Bound>| {

@@ -155,7 +155,8 @@ fn what_differences_add_is_bounded_and_tight() {
                     };
                     let added = (storage(h) - storage(-h)) / (2.0 * h);
                     let lengths = lengths(&arm, &x, t);
-                    let slope = |b: usize| -> f64 { (0..4).map(|c| deviation.slopes[b][c] * lengths[c]).sum() };
+                    let slope =
+                        |b: usize| -> f64 { (0..4).map(|c| deviation.slopes[b][c] * lengths[c]).sum() };
                     let bound: f64 = (0..4).map(|b| lengths[b] * (deviation.steady[b] + slope(b))).sum();
                     assert!(added <= bound * (1.0 + 1e-6), "kind {kind} at {t} s: {added} beyond {bound}");
                     tightest = tightest.max(added / bound);
@@ -172,8 +173,8 @@ fn what_differences_add_is_bounded_and_tight() {
 fn the_rate_goes_down_with_the_tolerances() {
     assert!(proof(&scenario()).within.is_none());
     let nominal = certified(&scenario());
-    let [none, some, more] = [1e-9, 0.3, 1.0]
-        .map(|share| within(&tolerant(scenario(), IDENTIFIED.map(|part| share * part))));
+    let [none, some, more] =
+        [1e-9, 0.3, 1.0].map(|share| within(&tolerant(scenario(), IDENTIFIED.map(|part| share * part))));
     println!("{nominal}: {none:?} {some:?} {more:?}");
     assert!(none.rate <= nominal && none.rate > nominal * (1.0 - 1e-6), "{none:?}");
     assert!(some.rate < none.rate && more.rate < some.rate, "{some:?} {more:?}");
@@ -208,7 +209,13 @@ fn robots_within_have_no_lower_rates() {
 }
 
 /// The motion of an arm that is off by `off`, from `x` at `t` on, by Runge and Kutta, `each` looking on.
-fn moved(arm: &Arm, off: &Numbers, mut x: Motion<f64, 2>, end: f64, mut each: impl FnMut(f64, &Motion<f64, 2>)) {
+fn moved(
+    arm: &Arm,
+    off: &Numbers,
+    mut x: Motion<f64, 2>,
+    end: f64,
+    mut each: impl FnMut(f64, &Motion<f64, 2>),
+) {
     let rate = |t: f64, x: &Motion<f64, 2>| {
         let command = arm.command(t, x);
         let zeta = x.deflection();
