@@ -108,7 +108,7 @@ fn error_bars_are_tolerances() {
     }
     let again = completed(&text, &better);
     let robot = read(&again);
-    assert_eq!(robot.tolerances.stiffness, [0.51, 0.04]);
+    assert_eq!(robot.tolerances.stiffness, [0.51, 0.041]);
     assert!(robot.tolerances.motor_inertia.iter().all(|&x| x < 0.05), "{:?}", robot.tolerances);
     assert_eq!(again.matches("[tolerances]").count(), 1, "{again}");
     // Of a file that was identified before there were tolerances: they go before the comment, which is written anew.
