@@ -194,7 +194,7 @@ impl Edits<'_> {
         match robot.places.span(&format!("tolerances.{key}")) {
             Some(span) => self.edits.push((span, values)),
             None if robot.places.has("tolerances") => {
-                self.insert("tolerances", &format!("{key} = {values}"))?
+                self.insert("tolerances", &format!("{key} = {values}"))?;
             }
             None => self.append("tolerances", &format!("{key} = {values}")),
         }
