@@ -204,7 +204,9 @@ impl Edits<'_> {
     /// Puts `line` at the end, behind a header of `table` if it is the first.
     fn append(&mut self, table: &str, line: &str) {
         // The comment at the end is written anew.
-        let end = self.file.text.find(FRICTION).unwrap_or(self.file.text.len());
+        let text = self.file.text.split(FRICTION).next().unwrap_or_default();
+        let end = text.trim_end().len();
+        let end = end + text[end..].find('\n').map_or(0, |newline| newline + 1);
         let header = format!("\n[{table}]\n");
         let first = !self.edits.iter().any(|(span, new)| span.start == end && new.starts_with(&header));
         let header = if first { header } else { String::new() };
