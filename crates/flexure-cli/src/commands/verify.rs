@@ -40,6 +40,8 @@ struct Against {
     scenario: String,
     same: bool,
     differences: Vec<Difference>,
+    /// Whether the scenario's robot has tolerances.
+    tolerances: bool,
 }
 
 pub fn verify(file: &Path, against: Option<&str>, reading: Reading<'_>, json: bool) -> Result<(), Failure> {
@@ -57,8 +59,11 @@ pub fn verify(file: &Path, against: Option<&str>, reading: Reading<'_>, json: bo
 }
 
 fn compared(certificate: &str, scenario: &str, reading: Reading<'_>) -> Result<Against, Failure> {
-    let differences = differences(certificate, &load_scenario_with(scenario, reading)?)?;
-    Ok(Against { scenario: scenario.to_owned(), same: differences.is_empty(), differences })
+    let name = scenario.to_owned();
+    let scenario = load_scenario_with(scenario, reading)?;
+    let differences = differences(certificate, &scenario)?;
+    let tolerances = !scenario.robot.tolerances.are_none();
+    Ok(Against { scenario: name, same: differences.is_empty(), differences, tolerances })
 }
 
 fn verified(file: &Path, report: CheckReport, against: Option<Against>, json: bool) -> Result<(), Failure> {
@@ -96,12 +101,17 @@ fn verified(file: &Path, report: CheckReport, against: Option<Against>, json: bo
     ))?;
     if let Some(against) = against.filter(|against| against.same) {
         print::line(&format!("it is about {}", shown(&against.scenario)))?;
+        if against.tolerances {
+            print::line(
+                "it says nothing of the tolerances in the robot file: its claims are about the numbers themselves",
+            )?;
+        }
     }
     ended
 }
 
 /// Whether the certificate is about the scenario.
-fn ending(file: &Path, Against { scenario, same, differences }: &Against) -> Result<(), Failure> {
+fn ending(file: &Path, Against { scenario, same, differences, .. }: &Against) -> Result<(), Failure> {
     if *same {
         return Ok(());
     }

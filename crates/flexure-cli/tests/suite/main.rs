@@ -10,6 +10,7 @@ mod divergence;
 mod eval_model;
 mod guide;
 mod hostile;
+mod identified;
 mod import_scenario;
 mod interrupt;
 mod logs;

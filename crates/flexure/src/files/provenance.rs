@@ -47,7 +47,9 @@ struct Key<'a> {
 impl<'a> Known<'a> {
     fn of(places: &'a Places) -> Self {
         let of = |name: fn(&str) -> String| {
-            let keys = places.keys().filter(|(path, _)| !path.starts_with("sources"));
+            // A tolerance is from where its number is: `stiffness` means that.
+            let is_named = |path: &str| !path.starts_with("sources") && !path.starts_with("tolerances");
+            let keys = places.keys().filter(|(path, _)| is_named(path));
             let key = |(path, text): (&str, &'a str)| {
                 let path = name(path);
                 Key { of_all: without_joint(&path), path, text }

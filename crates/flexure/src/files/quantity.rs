@@ -154,6 +154,12 @@ pub(crate) const DAMPING: Quantity = Quantity::non_negative(
     units::DAMPING,
 )
 .plausible(TINY, 1e7, "is it on the motor side, or per rev/min?");
+pub(crate) const STIFFNESS_TOLERANCE: Quantity =
+    Quantity::non_negative("largest difference of the joint stiffness, either way", units::STIFFNESS);
+pub(crate) const INERTIA_TOLERANCE: Quantity =
+    Quantity::non_negative("largest difference of the motor inertia, either way", units::INERTIA);
+pub(crate) const DAMPING_TOLERANCE: Quantity =
+    Quantity::non_negative("largest difference of the damping, either way", units::DAMPING);
 pub(crate) const GEAR_RATIO: Quantity = Quantity::nonzero(
     "gear ratio, motor turns per joint turn; negative if they turn in opposite senses",
     units::NONE,

@@ -66,8 +66,8 @@ impl RobotFile {
         readable(&self.text, path, outside).map(drop)
     }
 
-    /// The text of a file at `path` with the numbers of `found` that are known, `logs` as their source; everything else is as it
-    /// was.
+    /// The text of a file at `path` with the numbers of `found` that are known, their error bars as tolerances and `logs` as
+    /// their source; everything else is as it was.
     ///
     /// # Errors
     /// If `[joints]` is no table with a line of its own, or the text could not be read from there.
@@ -81,6 +81,9 @@ impl RobotFile {
         let mut edits = Edits { file: self, edits: Vec::new() };
         for parameter in KEPT {
             edits.parameter(found, parameter, &logs.join(", "))?;
+        }
+        for parameter in KEPT {
+            edits.tolerance(found, parameter)?;
         }
         let mut text = edits.made();
         if let Some(at) = text.find(FRICTION) {
@@ -110,11 +113,15 @@ fn readable(text: &str, path: &Path, outside: Outside) -> Result<Robot, Problems
 /// `text` with its gaps filled, and which parameters have some.
 fn filled(text: &str) -> (String, Vec<Parameter>) {
     let mut gaps = Vec::new();
+    let mut is_tolerance = false;
     let lines = text.split_inclusive('\n').map(|line| {
+        if line.trim_start().starts_with('[') {
+            is_tolerance = line.trim_start().starts_with("[tolerances]");
+        }
         let (code, comment) = line.split_at(line.find('#').unwrap_or(line.len()));
         let key = code.split('=').next().unwrap_or_default().trim();
         let parameter = KEPT.into_iter().find(|parameter| parameter.name() == key);
-        match parameter.filter(|_| code.contains(GAP)) {
+        match parameter.filter(|_| code.contains(GAP) && !is_tolerance) {
             None => line.to_owned(),
             Some(parameter) => {
                 gaps.push(parameter);
@@ -169,6 +176,43 @@ impl Edits<'_> {
         self.source(found, parameter, &known, logs)
     }
 
+    /// How far the numbers of a parameter that are known may be off: their error bars. Others keep what the file says of them.
+    fn tolerance(&mut self, found: &Identified, parameter: Parameter) -> Result<(), Problem> {
+        let key = parameter.name();
+        let robot = &self.file.robot;
+        let estimates = (0..found.joints.len()).map(|joint| found.estimate(joint, parameter));
+        if estimates.clone().all(|estimate| !estimate.known) {
+            return Ok(());
+        }
+        let named = robot.tolerances.named();
+        let before = named.iter().find(|(name, _)| *name == key).map_or(&[][..], |(_, values)| values);
+        let value = |(estimate, before): (&Estimate, &f64)| {
+            if estimate.known { tolerance(estimate) } else { format!("{before:?}") }
+        };
+        let values: Vec<_> = estimates.zip(before).map(value).collect();
+        let values = format!("[{}]", values.join(", "));
+        match robot.places.span(&format!("tolerances.{key}")) {
+            Some(span) => self.edits.push((span, values)),
+            None if robot.places.has("tolerances") => {
+                self.insert("tolerances", &format!("{key} = {values}"))?;
+            }
+            None => self.append("tolerances", &format!("{key} = {values}")),
+        }
+        Ok(())
+    }
+
+    /// Puts `line` at the end, behind a header of `table` if it is the first.
+    fn append(&mut self, table: &str, line: &str) {
+        // The comment at the end is written anew.
+        let text = self.file.text.split(FRICTION).next().unwrap_or_default();
+        let end = text.trim_end().len();
+        let end = end + text[end..].find('\n').map_or(0, |newline| newline + 1);
+        let header = format!("\n[{table}]\n");
+        let first = !self.edits.iter().any(|(span, new)| span.start == end && new.starts_with(&header));
+        let header = if first { header } else { String::new() };
+        self.edits.push((end..end, format!("{header}{line}\n")));
+    }
+
     /// Says in `[sources]` where the numbers are from.
     fn source(
         &mut self,
@@ -202,12 +246,7 @@ impl Edits<'_> {
         match span {
             Some(span) => self.edits.push((span, quoted)),
             None if places.has("sources") => self.insert("sources", &format!("{key} = {quoted}"))?,
-            None => {
-                let end = self.file.text.len();
-                let first = !self.edits.iter().any(|(span, _)| span.start == end);
-                let header = if first { "\n[sources]\n" } else { "" };
-                self.edits.push((end..end, format!("{header}{key} = {quoted}\n")));
-            }
+            None => self.append("sources", &format!("{key} = {quoted}")),
         }
         Ok(())
     }
@@ -270,6 +309,18 @@ fn written(estimate: &Estimate) -> String {
     let digits = (estimate.value / estimate.error).log10().ceil().clamp(2.0, 12.0) + 2.0;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "4 to 14")]
     rounded(estimate.value, digits as usize)
+}
+
+/// The error bar around what is [`written`], in two digits, rounded up.
+fn tolerance(estimate: &Estimate) -> String {
+    let written: f64 = written(estimate).parse().unwrap_or(f64::INFINITY);
+    let least = estimate.error + (written - estimate.value).abs();
+    let step = 10_f64.powf(least.log10().floor() - 1.0);
+    let enough = (0..3).map(|k| two_digits(least + f64::from(k) * 0.5 * step));
+    enough
+        .into_iter()
+        .find(|text| text.parse().is_ok_and(|x: f64| x >= least))
+        .unwrap_or_else(|| format!("{least:?}"))
 }
 
 fn two_digits(x: f64) -> String {

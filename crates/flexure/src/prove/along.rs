@@ -92,7 +92,7 @@ pub fn start_level(scenario: &Scenario) -> Result<f64, Problems> {
 }
 
 /// The scenario's closed loop over intervals, if bounds can be found for it.
-fn enclosed(scenario: &Scenario) -> Result<Box<dyn TrackingLoop>, Problems> {
+pub(crate) fn enclosed(scenario: &Scenario) -> Result<Box<dyn TrackingLoop>, Problems> {
     suitable(scenario)?;
     along_reference(scenario)
 }

@@ -44,7 +44,7 @@ impl Proof {
                     );
                     Some((problem("undecided", message, "raise --budget, or lower --speed"), false))
                 }
-                _ => self.limits(scenario),
+                _ => self.limits(scenario).or_else(|| self.tolerances(scenario)),
             },
             Verdict::Refuted(witness) => {
                 let message = format!(
@@ -63,6 +63,16 @@ impl Proof {
                 Some((problem("undecided", message, "name a smaller region, or ask for less"), false))
             }
         }
+    }
+
+    /// What to say where nothing was shown of the robots within the tolerances.
+    fn tolerances(&self, scenario: &Scenario) -> Option<(Problem, bool)> {
+        let Some(Err(open)) = &self.within else { return None };
+        let message =
+            format!("{}: the robots within its tolerances are not decided: {}", scenario.name, open.at);
+        let help = "the certificate is about the numbers of the file. Identify them more closely, take gains that ask less of the \
+                    model, a slower reference, or a smooth start";
+        Some((scenario.robot.places.problem("tolerances", "undecided", message, help), false))
     }
 
     /// What to say of the robot's limits where the tube may exceed them; one that it does exceed comes first.

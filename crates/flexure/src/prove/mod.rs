@@ -14,3 +14,4 @@ pub mod standing;
 pub mod subject;
 pub mod summary;
 pub mod verified;
+pub mod within;

@@ -21,6 +21,7 @@ use crate::prove::paper::paper_rate;
 use crate::prove::sampling::{Sampled, sample};
 use crate::prove::subject::subject;
 use crate::prove::verified::certify;
+use crate::prove::within::{Open, Within, within};
 use crate::scenario::{self, Scenario};
 use crate::{laws, robot};
 
@@ -78,6 +79,9 @@ fn slabs(joints: usize) -> usize {
     8000 / joints.pow(3)
 }
 
+/// What holds of all robots within the tolerances is looked for at several levels, with this part of the slabs each.
+const SHARE: usize = 4;
+
 /// Largest error where none is named and φ has no rate everywhere \[rad\].
 const ASSUMED_ERROR: f64 = 1.0;
 
@@ -94,7 +98,9 @@ pub struct Proof {
     pub confirmation: Option<Confirmation>,
     /// An upper bound of W at the scenario's start, in J; none where W is not defined or jumps.
     pub start: Option<f64>,
-    /// Bounds along the reference inside the tube, if a disturbance was named.
+    /// What holds of every robot within the tolerances of the robot file, if it has some, or why nothing was shown.
+    pub within: Option<Result<Within, Open>>,
+    /// Bounds along the reference inside the tube, if a disturbance or tolerances were named.
     pub along: Option<Along>,
     /// Options that were not given, and numbers that no source vouches for.
     pub assumptions: Vec<String>,
@@ -184,6 +190,7 @@ fn beyond_the_model(scenario: &Scenario) -> Vec<String> {
         );
     }
     let robot = &scenario.robot;
+    notes.extend(tolerances(robot));
     for (i, joint) in robot.joints.iter().enumerate() {
         if joint.kind == robot::JointKind::Prismatic {
             let (lower, upper) = (robot.limits.lower[i], robot.limits.upper[i]);
@@ -191,6 +198,31 @@ fn beyond_the_model(scenario: &Scenario) -> Vec<String> {
                 .push(format!("{} slides between {lower} and {upper} m: nothing is said beyond", joint.name));
         }
     }
+    notes
+}
+
+/// What is to be said of a robot with tolerances.
+fn tolerances(robot: &robot::Robot) -> Vec<String> {
+    if robot.tolerances.are_none() {
+        return Vec::new();
+    }
+    let mut notes = vec![
+        "rates, region, structures and tube are those of the numbers of the robot file: its tolerances are no part of the \
+         certificate"
+            .to_owned(),
+    ];
+    for (key, values) in robot.tolerances.named() {
+        let without = robot.joints.iter().zip(values).filter(|(_, tolerance)| **tolerance == 0.0);
+        let without: Vec<&str> = without.map(|(joint, _)| &*joint.name).collect();
+        if !without.is_empty() {
+            let joints =
+                if without.len() == values.len() { "all joints".to_owned() } else { without.join(", ") };
+            notes.push(format!("{key} of {joints} is taken as it stands: it has no tolerance"));
+        }
+    }
+    notes.push(
+        "the links' masses, lengths and inertias are taken as they stand: they have no tolerances".to_owned(),
+    );
     notes
 }
 
@@ -272,7 +304,18 @@ pub fn prove_watched(
         (verdict, _) => verdict,
     };
     let _ = watched(RATES);
-    let level = verdict.proved().and_then(|certificate| level_of_the_run(certificate, start));
+    let has_tolerances = !scenario.robot.tolerances.are_none();
+    let budget = slabs(scenario.robot.joint_count());
+    let within = match verdict.proved().filter(|_| has_tolerances) {
+        None => None,
+        Some(certificate) => within(scenario, certificate, start, budget / SHARE, &|_| watched(RATES))?,
+    };
+    // Where the robot need not be that of the file, the level is that of all robots that it may be.
+    let level = match &within {
+        _ if !has_tolerances => verdict.proved().and_then(|certificate| level_of_the_run(certificate, start)),
+        Some(Ok(within)) => Some(Number::above(within.level)),
+        _ => None,
+    };
     // Whichever is asked for alone takes all the time.
     let middle = match (question.direct, &level) {
         (None, _) => RATES,
@@ -288,14 +331,13 @@ pub fn prove_watched(
         _ => None,
     };
     let along = match level {
-        Some(level) if !is_broken_off() => {
-            along(scenario, &level, slabs(scenario.robot.joint_count()), &between(middle, 1.0))?
-        }
+        Some(level) if !is_broken_off() => along(scenario, &level, budget, &between(middle, 1.0))?,
         _ => None,
     };
     Ok(Proof {
         confirmation,
         start,
+        within,
         along,
         paper_rate: paper_rate(&scenario.robot, gains, &problem, sampled.largest_inertia),
         verdict,

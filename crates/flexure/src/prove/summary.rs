@@ -13,6 +13,7 @@ use crate::prove::engine::witness::WitnessState;
 use crate::prove::question::{Proof, inside};
 use crate::prove::sampling;
 use crate::prove::standing::Standing;
+use crate::prove::within::{Open, Within};
 use crate::sampled::Sampled;
 use crate::scenario::Scenario;
 
@@ -52,7 +53,9 @@ pub struct ProofSummary {
     pub tightness: Option<f64>,
     /// Where the scenario starts; none where W is not defined or jumps.
     pub start: Option<StartSummary>,
-    /// Bounds along the reference inside the tube; none without a disturbance.
+    /// What holds of every robot within the tolerances of the robot file; none if it has none.
+    pub within: Option<WithinSummary>,
+    /// Bounds along the reference inside the tube; none without a disturbance or tolerances.
     pub along: Option<Along>,
     /// What the direct engine says of the contraction rate; none if it was not asked.
     pub direct: Option<DirectSummary>,
@@ -131,6 +134,24 @@ pub struct DirectSummary {
     /// Boxes looked at; none if it found a state that speaks against it.
     pub boxes: Option<usize>,
     /// The state or box that it could not decide, in words.
+    pub at: Option<String>,
+}
+
+/// What holds of every robot within the tolerances: along the reference, from every start with W ≤ level, until its end,
+/// √W(t) ≤ √settles + e^(−rate t) max(√W(0) − √settles, 0).
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WithinSummary {
+    /// `proved` or `undecided`.
+    pub verdict: &'static str,
+    /// Rate at which √W decays to what it settles at [1/s].
+    pub rate: Option<f64>,
+    /// Level of W in J that the run never leaves.
+    pub level: Option<f64>,
+    /// Level of W in J that it comes to.
+    pub settles: Option<f64>,
+    /// Bounds of |q̃_i| in rad there, links then motors.
+    pub error: Option<Vec<f64>>,
+    /// Why nothing was shown.
     pub at: Option<String>,
 }
 
@@ -240,6 +261,7 @@ impl ProofSummary {
                 .start
                 .zip(certificate)
                 .map(|(level, certificate)| StartSummary { level, inside: inside(certificate, level) }),
+            within: proof.within.as_ref().map(within),
             along: proof.along.clone(),
             direct: proof.confirmation.as_ref().map(direct),
             tube: certificate.and_then(|c| c.tube.as_ref()).map(|tube| TubeSummary {
@@ -252,6 +274,27 @@ impl ProofSummary {
             assumptions: proof.assumptions.clone(),
             wall_seconds: proof.wall_seconds,
         }
+    }
+}
+
+fn within(found: &Result<Within, Open>) -> WithinSummary {
+    match found {
+        Ok(found) => WithinSummary {
+            verdict: "proved",
+            rate: Some(found.rate),
+            level: Some(found.level),
+            settles: Some(found.settles),
+            error: Some(found.error.clone()),
+            at: None,
+        },
+        Err(open) => WithinSummary {
+            verdict: "undecided",
+            rate: None,
+            level: None,
+            settles: None,
+            error: None,
+            at: Some(open.at.clone()),
+        },
     }
 }
 

@@ -6,7 +6,7 @@ use crate::files::number::{NONE, engineering, short, significant};
 use crate::prove::along::{Along, Limit};
 use crate::prove::engine::certificate::{LoopSide, Norm, StructureName};
 use crate::prove::engine::verdict::Verdict;
-use crate::prove::summary::{BlockSummary, ProofSummary, WitnessSummary};
+use crate::prove::summary::{BlockSummary, ProofSummary, WithinSummary, WitnessSummary};
 use crate::report::columns::laid_out;
 use crate::report::table::{headed, right};
 use crate::units::{self, Unit};
@@ -164,6 +164,9 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
             list(&tube.error)
         ));
     }
+    if let Some(within) = &summary.within {
+        lines.extend(tolerated(within));
+    }
     if let Some(along) = &summary.along {
         lines.extend(bounds(along));
     }
@@ -173,6 +176,27 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
     }
     lines.extend(summary.assumptions.iter().map(|note| format!("assumed      {note}")));
     lines
+}
+
+/// What holds of the robots within the tolerances.
+fn tolerated(within: &WithinSummary) -> Vec<String> {
+    let (Some(rate), Some(level), Some(settles), Some(error)) =
+        (within.rate, within.level, within.settles, &within.error)
+    else {
+        return vec![format!("tolerances   not decided: {}", within.at.as_deref().unwrap_or(NONE))];
+    };
+    vec![
+        format!(
+            "tolerances   every robot within them, along the reference, from W ≤ {} J: √W comes down at {} 1/s",
+            engineering(level),
+            significant(rate, 6)
+        ),
+        format!(
+            "tolerances   to that of W = {} J, where |q̃_i| ≤ {} rad, not to 0",
+            engineering(settles),
+            list(error)
+        ),
+    ]
 }
 
 /// What is bounded along the reference.

@@ -14,6 +14,7 @@ use crate::files::table::Table;
 use crate::files::{Assumption, Outside, Places, Problem, Problems, provenance, quantity};
 use crate::robot::joints::{self, Drives, Limits};
 use crate::robot::links::{self, Assembled, Links, MovingJoint};
+use crate::robot::tolerances::{self, Tolerances};
 
 /// A flexible-joint robot as data: links, and per moving joint (in the order of the links) motor and spring.
 ///
@@ -49,6 +50,8 @@ pub struct Robot {
     pub gear_ratio: Option<Vec<f64>>,
     /// What the joints must not exceed.
     pub limits: Limits,
+    /// How far the robot that is meant may be from the numbers of its springs, motors and dampers.
+    pub tolerances: Tolerances,
     /// Numbers that no source vouches for.
     pub assumed: Vec<Assumption>,
     /// What is suspicious in the file.
@@ -93,7 +96,7 @@ const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 const FORM: Form = Form {
     what: "robot file",
     required: &["name", "links", "joints"],
-    optional: &["gravity", "sources"],
+    optional: &["gravity", "sources", "tolerances"],
     other: ("controller", "scenario file", "give the robot that robot = \"...\" in it names"),
 };
 
@@ -117,8 +120,11 @@ fn robot(root: &Table<'_>, places: &Places, base: &Base) -> Option<Robot> {
     let drives = root
         .required("joints", "a table with stiffness, motor_inertia, link_damping, motor_damping")
         .and_then(|field| joints::read(&field, &per_joint, links.as_ref().map(|links| &*links.joints)));
+    let tolerances =
+        root.optional("tolerances", |field| tolerances::read(field, &per_joint, drives.as_ref()));
     let assumed = provenance::assumptions(root, places);
     let (links, drives, mut assumed) = (links?, drives?, assumed?);
+    let tolerances = tolerances?.unwrap_or_else(|| Tolerances::none(links.joints.len()));
     assumed.extend(of_the_links(&links, &drives, places));
     Some(Robot {
         name: name?.to_owned(),
@@ -132,6 +138,7 @@ fn robot(root: &Table<'_>, places: &Places, base: &Base) -> Option<Robot> {
         motor_damping: drives.motor_damping,
         gear_ratio: drives.gear_ratio,
         limits: drives.limits,
+        tolerances,
         assumed,
         warnings: Vec::new(),
         places: places.clone(),

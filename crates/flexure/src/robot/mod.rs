@@ -9,6 +9,7 @@ mod load;
 mod overview;
 pub(crate) mod sized;
 pub(crate) mod slices;
+pub(crate) mod tolerances;
 pub(crate) mod urdf;
 
 pub use arm::{Arm, PortHamiltonian};
@@ -22,4 +23,5 @@ pub use overview::{JointRow, overview};
 pub use sized::{MAX_JOINTS, supported};
 pub(crate) use sized::{padded, vector};
 pub use slices::Mismatch;
+pub use tolerances::Tolerances;
 pub use urdf::{Import, ImportOptions, import, import_text};

@@ -50,3 +50,4 @@ mod samples;
 mod suites;
 mod urdf;
 mod verify;
+mod within;

@@ -1,9 +1,9 @@
 //! Bounds along a reference.
 
-mod floats;
+pub mod floats;
 mod limits;
 mod simulated;
-mod slabs;
+pub mod slabs;
 
 use flexure::core::control::Input;
 use flexure::core::linalg::Vector;

@@ -16,7 +16,7 @@ use flexure::scenario::{Scenario, load_scenario};
 use super::floats;
 use crate::common::Random;
 
-type Arm = Enclosed<
+pub type Arm = Enclosed<
     PlanarTwoLink<Interval>,
     AnyShaping<Interval, 2>,
     AnyShaping<Interval, 2>,
@@ -25,7 +25,7 @@ type Arm = Enclosed<
 >;
 
 /// The two-link arm, without the visitor, which would compile the law ten times.
-fn enclosed(scenario: &Scenario) -> Arm {
+pub fn enclosed(scenario: &Scenario) -> Arm {
     let data = &scenario.robot;
     let Links::PlanarTwoLink(flexure::robot::PlanarTwoLink { mass, length, com, inertia }) = data.enclosed
     else {

@@ -94,6 +94,32 @@ fn gaps_are_read_and_filled() {
     assert_eq!(read(&completed(&open, &found(&[]))).motor_inertia, [1234.57, 2469.14]);
 }
 
+/// Error bars come along, around what is written, and replace what an earlier log said; what is not known keeps what it had.
+#[test]
+fn error_bars_are_tolerances() {
+    let text = completed(ARM, &found(&[(1, Parameter::LinkDamping)]));
+    let robot = read(&text);
+    // 1234.57 is written for 1234.5678 ± 0.5, 2469.14 for 2469.1356.
+    assert_eq!(robot.tolerances.stiffness, [0.51, 0.51]);
+    assert_eq!(robot.tolerances.link_damping, [0.51, 0.0]);
+    let mut better = found(&[(0, Parameter::Stiffness)]);
+    for joint in &mut better.joints {
+        joint.parameters.iter_mut().for_each(|estimate| estimate.error = 0.04);
+    }
+    let again = completed(&text, &better);
+    let robot = read(&again);
+    assert_eq!(robot.tolerances.stiffness, [0.51, 0.041]);
+    assert!(robot.tolerances.motor_inertia.iter().all(|&x| x < 0.05), "{:?}", robot.tolerances);
+    assert_eq!(again.matches("[tolerances]").count(), 1, "{again}");
+    // Of a file that was identified before there were tolerances: they go before the comment, which is written anew.
+    let (before, after) = text.split_once("\n[tolerances]\n").unwrap();
+    let (_, friction) = after.split_once("\n\n").unwrap();
+    assert_eq!(completed(&format!("{before}\n{friction}"), &found(&[(1, Parameter::LinkDamping)])), text);
+    // None of a kind known: nothing is said of it.
+    let none = completed(ARM, &found(&[(0, Parameter::MotorDamping), (1, Parameter::MotorDamping)]));
+    assert!(!none.split_once("[tolerances]").unwrap().1.contains("motor_damping"), "{none}");
+}
+
 /// Tables of one joint each, as `flexure import` drafts them, and no table for all joints.
 #[test]
 fn tables_by_joint_are_filled_in_place() {

@@ -42,6 +42,17 @@ pub struct Answer {
     pub s_m: Vec<Slope>,
 }
 
+/// The numbers of springs, motors and dampers, one per joint.
+#[derive(Clone, Debug)]
+pub struct Drive {
+    /// K [N m/rad].
+    pub stiffness: Vec<Interval>,
+    /// M_m [kg m²].
+    pub motor_inertia: Vec<Interval>,
+    /// D_m [N m s/rad].
+    pub motor_damping: Vec<Interval>,
+}
+
 /// A robot under its law along a reference.
 pub trait TrackingLoop: Sync {
     /// Number of joints.
@@ -62,6 +73,8 @@ pub trait TrackingLoop: Sync {
     fn link_energy(&self, q_l: &[Interval], s_l: &[Interval]) -> Interval;
     /// The diagonals of Π_l, Π_m [N m/rad] and M_m [kg m²].
     fn metrics(&self) -> [Vec<Interval>; 3];
+    /// What the law takes springs, motors and dampers to be.
+    fn drive(&self) -> Drive;
 }
 
 /// A robot, its law with a constant Π_l, a reference and the times where its derivatives may jump.
@@ -138,6 +151,14 @@ where
     fn metrics(&self) -> [Vec<Interval>; 3] {
         let (Metric::Constant(link) | Metric::Hardening { base: link, .. }) = &self.law.link.metric;
         [self.list(link), self.list(&self.law.motor.metric), self.list(&self.robot.motor_inertia)]
+    }
+
+    fn drive(&self) -> Drive {
+        Drive {
+            stiffness: self.list(&self.robot.stiffness),
+            motor_inertia: self.list(&self.robot.motor_inertia),
+            motor_damping: self.list(&self.robot.motor_damping),
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 //! Time is cut into slabs ([`slab`]); those that decide a bound are cut again, until they are tight or the budget is spent.
 
 pub mod closed_loop;
+pub mod deviation;
 pub mod slab;
 pub mod tube;
 pub mod witness;

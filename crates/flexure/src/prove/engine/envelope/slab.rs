@@ -59,28 +59,8 @@ impl Slab {
     ) -> Option<Self> {
         let jets = system.reference(time);
         let tube = ErrorTube::new(system, level, &jets.iter().map(|jet| jet[0]).collect::<Vec<_>>());
-        let middle = Interval::point(time.midpoint());
-        let way = Way {
-            n: system.joints(),
-            smooth: Smooth::over(system, time),
-            middle: system.reference(middle),
-            all: jets,
-            offset: time - middle,
-            errors: tube.errors(),
-            tube: &tube,
-            goes_on,
-        };
-        // The law wants motor positions and velocities where it tells what they should be: what it tells does not depend
-        // on them, so that any will do.
-        let nothing = vec![Slope::ZERO; way.n];
-        let q_m = way.along(&|seed| {
-            let answer = seed.answer(system, &nothing, &nothing);
-            sums(&answer.q_md, seed.part(1))
-        })?;
-        let v_m = way.along(&|seed| {
-            let answer = seed.answer(system, &q_m.at(seed), &nothing);
-            sums(&differences(&nothing, &answer.s_m), seed.part(3))
-        })?;
+        let way = Way::new(system, &tube, jets, time, goes_on);
+        let (q_m, v_m) = way.motors(system)?;
         let all = way.along(&|seed| {
             let (q_m, v_m) = (q_m.at(seed), v_m.at(seed));
             let (q_l, v_l) = seed.links(system);
@@ -127,18 +107,20 @@ impl Smooth {
 
 /// Where numbers are looked at, and by what they are differentiated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum View {
+pub(super) enum View {
     /// On the reference at the middle of the slab, by time.
     Middle,
     /// On the reference over the slab, by time.
     Track,
     /// Over slab and tube, by this error.
     Tube(usize),
+    /// Over slab and tube, by nothing.
+    Everywhere,
 }
 
 /// Reference and errors in a view.
-struct Seeded {
-    q_ld: Vec<[Slope; 5]>,
+pub(super) struct Seeded {
+    pub(super) q_ld: Vec<[Slope; 5]>,
     errors: Vec<Slope>,
     view: View,
 }
@@ -151,20 +133,20 @@ impl Seeded {
     }
 
     /// q_l = q_ld + q̃_l and q̇_l = q̇_ld − φ_l(q̃_l) + s_l.
-    fn links(&self, system: &dyn TrackingLoop) -> (Vec<Slope>, Vec<Slope>) {
+    pub(super) fn links(&self, system: &dyn TrackingLoop) -> (Vec<Slope>, Vec<Slope>) {
         let order = |k: usize| self.q_ld.iter().map(|jet| jet[k]).collect::<Vec<_>>();
         let v_lr = differences(&order(1), &system.approach(self.part(0)));
         (sums(&order(0), self.part(0)), sums(&v_lr, self.part(2)))
     }
 
-    fn answer(&self, system: &dyn TrackingLoop, q_m: &[Slope], v_m: &[Slope]) -> Answer {
+    pub(super) fn answer(&self, system: &dyn TrackingLoop, q_m: &[Slope], v_m: &[Slope]) -> Answer {
         let (q_l, v_l) = self.links(system);
         system.command(&Place { q_l, q_m: q_m.to_vec(), v_l, v_m: v_m.to_vec() }, &self.q_ld)
     }
 }
 
 /// From the reference to everywhere in the slab's tube.
-struct Way<'a> {
+pub(super) struct Way<'a> {
     n: usize,
     smooth: Smooth,
     /// The reference at the middle.
@@ -181,21 +163,57 @@ struct Way<'a> {
 }
 
 /// Numbers in all views.
-struct Spread {
+pub(super) struct Spread {
     middle: Vec<Slope>,
-    track: Vec<Slope>,
+    pub(super) track: Vec<Slope>,
     /// Their ranges over slab and tube.
-    ranges: Vec<Interval>,
+    pub(super) ranges: Vec<Interval>,
     /// Their derivatives by the errors: a row per number.
-    gradients: Dense<Interval>,
+    pub(super) gradients: Dense<Interval>,
 }
 
-impl Way<'_> {
-    fn seeded(&self, view: View) -> Seeded {
+impl<'a> Way<'a> {
+    pub(super) fn new(
+        system: &dyn TrackingLoop,
+        tube: &'a ErrorTube,
+        jets: Vec<[Interval; 7]>,
+        time: Interval,
+        goes_on: &'a dyn Fn() -> bool,
+    ) -> Self {
+        let middle = Interval::point(time.midpoint());
+        Self {
+            n: system.joints(),
+            smooth: Smooth::over(system, time),
+            middle: system.reference(middle),
+            all: jets,
+            offset: time - middle,
+            errors: tube.errors(),
+            tube,
+            goes_on,
+        }
+    }
+
+    /// Positions and velocities of the motors.
+    pub(super) fn motors(&self, system: &dyn TrackingLoop) -> Option<(Spread, Spread)> {
+        // The law wants motor positions and velocities where it tells what they should be: what it tells does not depend
+        // on them, so that any will do.
+        let nothing = vec![Slope::ZERO; self.n];
+        let q_m = self.along(&|seed| {
+            let answer = seed.answer(system, &nothing, &nothing);
+            sums(&answer.q_md, seed.part(1))
+        })?;
+        let v_m = self.along(&|seed| {
+            let answer = seed.answer(system, &q_m.at(seed), &nothing);
+            sums(&differences(&nothing, &answer.s_m), seed.part(3))
+        })?;
+        Some((q_m, v_m))
+    }
+
+    pub(super) fn seeded(&self, view: View) -> Seeded {
         let jets = if view == View::Middle { &self.middle } else { &self.all };
         // Coefficient k at t + τ is Σ_j C(k + j, j) c_(k+j) τʲ.
         let in_time = |jet: &[Interval; 7], k: usize| match view {
-            View::Tube(_) => Slope::value(jet[k]),
+            View::Tube(_) | View::Everywhere => Slope::value(jet[k]),
             _ => Jet::new([
                 jet[k],
                 jet[k + 1] * Interval::point((k + 1) as f64),
@@ -204,7 +222,7 @@ impl Way<'_> {
         };
         let error = |(i, &error): (usize, &Interval)| match view {
             View::Tube(direction) if i == direction => Slope::variable(error),
-            View::Tube(_) => Slope::value(error),
+            View::Tube(_) | View::Everywhere => Slope::value(error),
             _ => Slope::ZERO,
         };
         Seeded {
@@ -215,7 +233,7 @@ impl Way<'_> {
     }
 
     /// The numbers that `f` makes, over the tube and the slab; none if nobody waits for them.
-    fn along(&self, f: &dyn Fn(&Seeded) -> Vec<Slope>) -> Option<Spread> {
+    pub(super) fn along(&self, f: &dyn Fn(&Seeded) -> Vec<Slope>) -> Option<Spread> {
         let middle = f(&self.seeded(View::Middle));
         let track: Vec<_> = f(&self.seeded(View::Track));
         let track: Vec<_> =
@@ -255,10 +273,11 @@ impl Way<'_> {
 
 impl Spread {
     /// The numbers in the view of `seed`.
-    fn at(&self, seed: &Seeded) -> Vec<Slope> {
+    pub(super) fn at(&self, seed: &Seeded) -> Vec<Slope> {
         match seed.view {
             View::Middle => self.middle.clone(),
             View::Track => self.track.clone(),
+            View::Everywhere => self.ranges.iter().map(|&x| Slope::value(x)).collect(),
             View::Tube(i) => {
                 let slopes = self.gradients.rows().map(|gradient| gradient[i]);
                 self.ranges
@@ -275,6 +294,6 @@ fn sums(a: &[Slope], b: &[Slope]) -> Vec<Slope> {
     a.iter().zip(b).map(|(&a, &b)| a + b).collect()
 }
 
-fn differences(a: &[Slope], b: &[Slope]) -> Vec<Slope> {
+pub(super) fn differences(a: &[Slope], b: &[Slope]) -> Vec<Slope> {
     a.iter().zip(b).map(|(&a, &b)| a - b).collect()
 }

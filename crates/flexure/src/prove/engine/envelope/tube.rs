@@ -41,13 +41,39 @@ impl ErrorTube {
     /// The values of g·x̃ over the tube, g the 4n derivatives `gradient` in the order of [`errors`](Self::errors): at
     /// most √(2 c gᵀ P⁻¹ g), the norm dual to W's.
     pub fn reach(&self, gradient: &[Interval]) -> Interval {
-        let sum = gradient.iter().zip(self.pull(gradient)).enumerate().fold(
-            Interval::ZERO,
-            |sum, (i, (&g, pull))| {
-                sum + if self.is_link_velocity(i) { g * pull } else { g.square() * self.diagonal(i) }
-            },
-        );
-        ball(self.twice_level * sum)
+        ball(self.twice_level * self.dual_square(gradient))
+    }
+
+    /// √(gᵀ P⁻¹ g), from above: |g·x̃| is at most that times √(2 W).
+    pub fn dual(&self, gradient: &[Interval]) -> Interval {
+        Interval::point(self.dual_square(gradient).sqrt().hi())
+    }
+
+    fn dual_square(&self, gradient: &[Interval]) -> Interval {
+        gradient.iter().zip(self.pull(gradient)).enumerate().fold(Interval::ZERO, |sum, (i, (&g, pull))| {
+            sum + if self.is_link_velocity(i) { g * pull } else { g.square() * self.diagonal(i) }
+        })
+    }
+
+    /// M_l⁻¹ over the tube's link positions [1/(kg m²)].
+    pub fn inverse_mass(&self) -> &Symmetric<Interval> {
+        &self.inverse_mass
+    }
+
+    /// A diagonal matrix above [`inverse_mass`](Self::inverse_mass): its sums of absolute values by rows, each entry weighed by
+    /// the roots of the two diagonal ones, as Gershgorin has it.
+    pub fn above_inverse_mass(&self) -> Vec<Interval> {
+        let n = self.inverse_mass.size();
+        // Any positive weights do.
+        let weight: Vec<f64> = (0..n).map(|i| self.inverse_mass.at(i, i).midpoint().sqrt()).collect();
+        let row = |i: usize| {
+            let entry = |j: usize| {
+                let size = Interval::point(self.inverse_mass.at(i, j).magnitude());
+                size * Interval::point(weight[i]) / Interval::point(weight[j])
+            };
+            Interval::point((0..n).fold(Interval::ZERO, |sum, j| sum + entry(j)).hi())
+        };
+        (0..n).map(row).collect()
     }
 
     /// P⁻¹ g: the direction of the error at which g·x̃ is largest.

@@ -1,0 +1,211 @@
+//! What is true of every robot within the tolerances of the robot file, under the law that knows the numbers of the file.
+//!
+//! The statement: along the scenario's reference, until its end, from every start with W ≤ c,
+//!
+//! √(2 W(t)) ≤ ν + e^(−μ t) max(√(2 W(0)) − ν, 0),
+//!
+//! for every robot whose springs, motors and dampers are within their tolerances, springs and dampers even where they change
+//! meanwhile. W is made with the numbers of the file. [`Deviation`] has μ and ν for the states with W ≤ c, and c is such that no
+//! motion leaves them: ν² ≤ 2 c.
+
+use flexure_core::scalar::{Interval, Scalar};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::files::Problems;
+use crate::progress::Progress;
+use crate::prove::along::enclosed;
+use crate::prove::engine::certificate::{BlockName, Certificate};
+use crate::prove::engine::envelope::closed_loop::TrackingLoop;
+use crate::prove::engine::envelope::deviation::{Bound, Deviation, Spread};
+use crate::prove::engine::number::Number;
+use crate::robot::Robot;
+use crate::scenario::Scenario;
+
+/// What holds of every robot within the tolerances.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Within {
+    /// μ [1/s]: errors come down at this rate.
+    pub rate: f64,
+    /// Level of W in J that a run from the scenario's start never leaves.
+    pub level: f64,
+    /// Level of W in J that it comes to: below every one above this, if the run is long enough.
+    pub settles: f64,
+    /// Bounds of |q̃_i| in rad at that level, links then motors.
+    pub error: Vec<f64>,
+    /// Slabs of time that were looked at, at all levels together.
+    pub slabs: usize,
+}
+
+/// Why nothing was shown.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Open {
+    /// In words with numbers.
+    pub at: String,
+    /// Slabs of time that were looked at.
+    pub slabs: usize,
+}
+
+/// Levels to try, one after the other.
+const LEVELS: usize = 24;
+
+/// How far above the level that is needed the next one is.
+const ROOM: f64 = 1.2;
+
+/// A level of W in J where a run begins that begins without errors: rounding is more.
+const LEAST: f64 = 1e-12;
+
+/// Slabs to begin with.
+const FIRST: usize = 32;
+
+/// Slabs that need this share of what the worst one needs are cut with it.
+const NEAR: f64 = 0.9;
+
+/// Cutting goes on while it makes the tube this much narrower.
+const GAIN: f64 = 0.01;
+
+/// The tolerances of `robot`, and `disturbance` on its motors.
+fn spread(robot: &Robot, disturbance: Option<&[Number]>) -> Spread {
+    let enclosed = |values: &[f64]| values.iter().map(|&x| robot.bounds(x)).collect();
+    let tolerances = &robot.tolerances;
+    Spread {
+        stiffness: enclosed(&tolerances.stiffness),
+        motor_inertia: enclosed(&tolerances.motor_inertia),
+        link_damping: enclosed(&tolerances.link_damping),
+        motor_damping: enclosed(&tolerances.motor_damping),
+        motor_torque: disturbance.map_or_else(
+            || vec![Interval::ZERO; robot.joint_count()],
+            |torques| torques.iter().map(Number::bounds).collect(),
+        ),
+    }
+}
+
+/// What holds of every robot within the tolerances of the scenario's, `certificate` being about the robot of the file and `start`
+/// W at the scenario's start, from above. Looks at `budget` slabs of time a level. None where `progress` breaks it off.
+///
+/// # Errors
+/// As [`along`](crate::prove::along::along).
+pub fn within(
+    scenario: &Scenario,
+    certificate: &Certificate,
+    start: Option<f64>,
+    budget: usize,
+    progress: Progress<'_>,
+) -> Result<Option<Result<Within, Open>>, Problems> {
+    let system = enclosed(scenario)?;
+    let disturbance = certificate.tube.as_ref().map(|tube| &*tube.disturbance);
+    let search = Search {
+        system: &*system,
+        spread: spread(&scenario.robot, disturbance),
+        rates: rates(certificate),
+        duration: scenario.bounds(scenario.duration).hi(),
+        budget,
+    };
+    let open = |at: String, slabs: usize| Ok(Some(Err(Open { at, slabs })));
+    let largest = certificate.region.level.as_ref().map_or(f64::INFINITY, |level| level.bounds().lo());
+    let Some(start) = start.filter(|&start| start <= largest) else {
+        return open("the start is not known to lie in the certificate's invariant set".to_owned(), 0);
+    };
+    let (mut level, mut slabs) = (start.next_up().max(LEAST), 0);
+    for tried in 0..LEVELS {
+        let watched = |fraction: f64| progress((tried as f64 + fraction) / LEVELS as f64);
+        let Some((found, spent)) = search.at(level, &watched) else { return Ok(None) };
+        slabs += spent;
+        let Some(Bound { rate, length }) = found else {
+            return open(
+                format!(
+                    "where W ≤ {level:.3e} J some robot within the tolerances may move away from the reference"
+                ),
+                slabs,
+            );
+        };
+        let needed = Interval::point(length).square() * Interval::point(0.5);
+        if needed.hi() <= level {
+            let [link, motor, _] = system.metrics();
+            let error = |metric: &Interval| (Interval::point(2.0) * needed / *metric).sqrt().hi();
+            let error = link.iter().chain(&motor).map(error).collect();
+            return Ok(Some(Ok(Within { rate, level, settles: needed.hi(), error, slabs })));
+        }
+        level = (ROOM * needed.hi()).max(level);
+        if level > largest {
+            return open(
+                format!(
+                    "the differences can push W to {:.3e} J, beyond the region's level of {largest:.3e} J",
+                    needed.hi()
+                ),
+                slabs,
+            );
+        }
+    }
+    open(format!("no level of W up to {level:.3e} J was found that holds the motion"), slabs)
+}
+
+/// Convergence rates of the blocks of W in the order of the errors [1/s].
+fn rates(certificate: &Certificate) -> [Interval; 4] {
+    [BlockName::PhiL, BlockName::PhiM, BlockName::SigmaL, BlockName::SigmaM].map(|name| {
+        let block = certificate.blocks.iter().find(|block| block.block == name);
+        block.map_or(Interval::ZERO, |block| Interval::point(block.convergence.bounds().lo()))
+    })
+}
+
+/// What stays the same from level to level.
+struct Search<'a> {
+    system: &'a dyn TrackingLoop,
+    spread: Spread,
+    rates: [Interval; 4],
+    duration: f64,
+    budget: usize,
+}
+
+impl Search<'_> {
+    /// The bound over {W ≤ `level`} and the whole run, none if there is none with a rate above 0; and slabs looked at.
+    fn at(&self, level: f64, progress: Progress<'_>) -> Option<(Option<Bound>, usize)> {
+        let goes_on = || progress(0.0).is_continue();
+        let slab = |time: Interval| Deviation::watched(self.system, &self.spread, level, time, &goes_on);
+        let first = self.budget.clamp(1, FIRST);
+        let cut =
+            |i: usize| if i == first { self.duration } else { self.duration * (i as f64 / first as f64) };
+        let times = (0..first).into_par_iter();
+        let times = times.map(|i| slab(Interval::new(cut(i), cut(i + 1)).unwrap_or(Interval::ENTIRE)));
+        let mut slabs: Vec<Deviation> = times.collect::<Option<_>>()?;
+        let mut spent = first;
+        let mut before = f64::INFINITY;
+        loop {
+            // How much each slab needs, the most first.
+            let mut order: Vec<(usize, f64)> =
+                slabs.iter().map(|slab| self.needs(slab)).enumerate().collect();
+            order.sort_by(|a, b| b.1.total_cmp(&a.1));
+            let worst = order[0].1;
+            let gains = worst < before * (1.0 - GAIN) || !worst.is_finite();
+            let near = order.iter().take_while(|(_, needs)| *needs >= NEAR * worst);
+            let most = self.budget.saturating_sub(spent) / 2;
+            let chosen: Vec<usize> = near.take(most).map(|(i, _)| *i).collect();
+            if chosen.is_empty() || !gains {
+                break;
+            }
+            before = worst;
+            let halves: Vec<Deviation> = chosen
+                .par_iter()
+                .flat_map(|&i| {
+                    let (left, right) = slabs[i].time.split();
+                    [left, right]
+                })
+                .map(slab)
+                .collect::<Option<_>>()?;
+            spent += halves.len();
+            let kept =
+                slabs.into_iter().enumerate().filter(|(i, _)| !chosen.contains(i)).map(|(_, slab)| slab);
+            slabs = kept.chain(halves).collect();
+        }
+        let slowest = |a: Option<Bound>, b: Option<Bound>| {
+            let (a, b) = (a?, b?);
+            Some(Bound { rate: a.rate.min(b.rate), length: a.length.max(b.length) })
+        };
+        Some((slabs.iter().map(|slab| slab.bound(&self.rates)).reduce(slowest).flatten(), spent))
+    }
+
+    /// √(2 W) that the errors of a slab come to.
+    fn needs(&self, slab: &Deviation) -> f64 {
+        slab.bound(&self.rates).map_or(f64::INFINITY, |bound| bound.length)
+    }
+}
