@@ -96,7 +96,10 @@ pub fn identify(
     };
     let found = search.run(start, progress)?;
     let (information, _) = search.with_prior(&found.total, &found.values);
-    let evidence = Evidence::new(&information, &found.total, &prior).ok_or_else(unsolvable)?;
+    let mut evidence = Evidence::new(&information, &found.total, &prior).ok_or_else(unsolvable)?;
+    if logs.iter().any(|log| log.q_l.is_none()) {
+        evidence.doubted(&found.values.apart(&found.doubting));
+    }
     Ok(judged(robot, &search, &found, &evidence, settings))
 }
 
