@@ -242,7 +242,11 @@ fn judged(
             name: names[i].clone(),
             parameters: Parameter::ALL
                 .iter()
-                .map(|&parameter| estimate(robot, values, evidence, settings, i, parameter))
+                .map(|&parameter| {
+                    let estimate = estimate(robot, values, evidence, settings, i, parameter);
+                    // Short of the end of the search error bars say nothing.
+                    Estimate { known: estimate.known && found.converged, ..estimate }
+                })
                 .collect(),
             noise_ratio: NoiseRatio { link, motor: root(m, of_motor) },
             torque_noise: found.torque_noise[i],
