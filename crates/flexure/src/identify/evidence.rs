@@ -60,6 +60,17 @@ impl Evidence {
     }
 }
 
+impl Evidence {
+    /// No unknown is known better than to the distance of two estimates of it, both of which would be right if the model were
+    /// (Hausman, *Econometrica* 46, 1978).
+    pub fn doubted(&mut self, apart: &[f64]) {
+        self.deviations
+            .iter_mut()
+            .zip(apart)
+            .for_each(|(deviation, apart)| *deviation = deviation.max(*apart));
+    }
+}
+
 /// Least and largest eigenvalue, and the vector of the largest.
 fn extremes(a: &mut Dense<f64>) -> (f64, f64, Vec<f64>) {
     let size = a.columns();

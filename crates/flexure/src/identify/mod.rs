@@ -96,7 +96,10 @@ pub fn identify(
     };
     let found = search.run(start, progress)?;
     let (information, _) = search.with_prior(&found.total, &found.values);
-    let evidence = Evidence::new(&information, &found.total, &prior).ok_or_else(unsolvable)?;
+    let mut evidence = Evidence::new(&information, &found.total, &prior).ok_or_else(unsolvable)?;
+    if logs.iter().any(|log| log.q_l.is_none()) {
+        evidence.doubted(&found.values.apart(&found.doubting));
+    }
     Ok(judged(robot, &search, &found, &evidence, settings))
 }
 
@@ -239,7 +242,11 @@ fn judged(
             name: names[i].clone(),
             parameters: Parameter::ALL
                 .iter()
-                .map(|&parameter| estimate(robot, values, evidence, settings, i, parameter))
+                .map(|&parameter| {
+                    let estimate = estimate(robot, values, evidence, settings, i, parameter);
+                    // Short of the end of the search error bars say nothing.
+                    Estimate { known: estimate.known && found.converged, ..estimate }
+                })
                 .collect(),
             noise_ratio: NoiseRatio { link, motor: root(m, of_motor) },
             torque_noise: found.torque_noise[i],

@@ -66,7 +66,7 @@ pub struct Estimate {
     pub error: f64,
     /// What the robot file says; null for friction and for what it leaves open.
     pub before: Option<f64>,
-    /// Whether the log knows it: if not, the number stays as it was.
+    /// Whether the log knows it, and the search came to its end: if not, the number stays as it was.
     pub known: bool,
 }
 

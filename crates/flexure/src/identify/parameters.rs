@@ -86,17 +86,32 @@ impl Values {
         self.joints.len() * Parameter::COUNT + self.offsets.len()
     }
 
+    /// How far `other` is from these: logarithms of parameters, offsets in s.
+    pub(crate) fn apart(&self, other: &Self) -> Vec<f64> {
+        let parameters = self.joints.iter().flatten().zip(other.joints.iter().flatten());
+        let offsets = self.offsets.iter().zip(&other.offsets);
+        parameters.map(|(x, y)| (y / x).ln().abs()).chain(offsets.map(|(x, y)| (y - x).abs())).collect()
+    }
+
     /// A parameter of all joints.
     pub(crate) fn of(&self, parameter: Parameter) -> Vec<f64> {
         self.joints.iter().map(|joint| joint[parameter.place()]).collect()
     }
 
-    /// These moved by `step`: logarithms of parameters, then offsets in s.
+    /// These moved by `step`: parts of the parameters, then offsets in s.
+    ///
+    /// Torques are linear in inertia, damping and friction, and deflections in compliance: what the log knows of sums only, of
+    /// dampings of both sides, say, or of the compliance of two joints about one axis, stays the same along a step however
+    /// long. In logarithms such valleys are curved.
     pub(crate) fn moved(&self, step: &[f64]) -> Self {
-        let (logarithms, offsets) = step.split_at(self.joints.len() * Parameter::COUNT);
+        let (parts, offsets) = step.split_at(self.joints.len() * Parameter::COUNT);
         let mut moved = self.clone();
-        for (value, step) in moved.joints.iter_mut().flatten().zip(logarithms) {
-            *value *= step.exp();
+        for (i, (value, step)) in moved.joints.iter_mut().flatten().zip(parts).enumerate() {
+            if i % Parameter::COUNT == Parameter::Stiffness.place() {
+                *value /= 1.0 - step;
+            } else {
+                *value *= 1.0 + step;
+            }
         }
         for (value, step) in moved.offsets.iter_mut().zip(offsets) {
             *value += step;

@@ -31,6 +31,8 @@ pub(crate) struct Search<'a> {
 /// What was found.
 pub(crate) struct Found {
     pub values: Values,
+    /// What was found with the gain of the first rounds, which believes the model less.
+    pub doubting: Values,
     pub weighing: Weighing,
     /// Per joint the torque noise that makes the innovations likeliest [N m].
     pub torque_noise: Vec<f64>,
@@ -42,14 +44,13 @@ pub(crate) struct Found {
 /// Torque noise that is tried, as parts of the torque: these powers of a quarter, with encoders of both sides and with those of the
 /// motors alone. Where nothing disturbs, less would be likelier still; but then what a model never has, the instants at which
 /// friction turns among it, would be believed to a part in ten thousand.
-const LEVELS: [RangeInclusive<i32>; 2] = [1..=3, 4..=5];
+const LEVELS: [RangeInclusive<i32>; 2] = [1..=3, 3..=4];
 
 /// Rounds of noise and values, and Gauss–Newton steps in each at most.
 const ROUNDS: usize = 4;
 const STEPS: usize = 12;
 
-/// Largest change of a logarithm in a step, and of an offset in sampling periods.
-const LONGEST: f64 = 0.7;
+/// Largest change of an offset in a step, in sampling periods.
 const LONGEST_OFFSET: f64 = 2.0;
 
 /// A round ends where a step promises less than this of the logarithm of the likelihood: a fifth of an error bar. Beyond that,
@@ -68,6 +69,7 @@ impl Search<'_> {
         let n = values.joints.len();
         let mut levels = vec![self.first(); n];
         let mut converged = false;
+        let mut doubting = values.clone();
         let mut weighing = self.weighed(&values, &levels);
         for round in 0..ROUNDS {
             let last = round + 1 == ROUNDS;
@@ -76,9 +78,12 @@ impl Search<'_> {
                 if progress(fraction).is_break() { Err(Problems::interrupted()) } else { Ok(()) }
             };
             let enough = if last { ENOUGH } else { ROUGH };
-            (values, converged) = self.climb(values, &weighing, enough, &told)?;
+            (values, converged) = self.climb(values, &mut weighing, enough, &told)?;
             if last {
                 break;
+            }
+            if round <= 1 {
+                doubting.clone_from(&values);
             }
             // The first gain is that of the numbers in the file; it is put right before others are tried.
             if round > 0 {
@@ -88,7 +93,7 @@ impl Search<'_> {
         }
         let total = self.total(&values, &weighing, true);
         let torque_noise = (0..n).map(|i| self.torque_noise(i, levels[i])).collect();
-        Ok(Found { values, weighing, torque_noise, total, converged })
+        Ok(Found { values, doubting, weighing, torque_noise, total, converged })
     }
 
     fn total(&self, values: &Values, weighing: &Weighing, informed: bool) -> Total {
@@ -145,10 +150,10 @@ impl Search<'_> {
         Weighing { weights: weights(&innovations), ..weighing }
     }
 
-    /// Level of the first rounds: corrections that are large, and memory that is short; less where links are not seen, whose motion
-    /// is a guess as good as the numbers are.
+    /// Level of the first rounds: corrections that are large, and memory that is short, which is what leads through the valleys
+    /// of guesses; less where links are not seen: predictions with the numbers of the file would not stay finite.
     fn first(&self) -> i32 {
-        if self.logs[0].q_l.is_some() { 1 } else { 5 }
+        if self.logs[0].q_l.is_some() { 1 } else { 3 }
     }
 
     /// Per joint the level of torque noise whose gain makes the innovations likeliest. Where links are not seen all joints have
@@ -174,34 +179,36 @@ impl Search<'_> {
         }
     }
 
-    /// Gauss–Newton with the damping of Marquardt; whether it came to an end.
+    /// Gauss–Newton with the damping of Marquardt under the gains of `weighing`, whose weights follow the innovations; whether it
+    /// came to an end.
     fn climb(
         &self,
         mut values: Values,
-        weighing: &Weighing,
+        weighing: &mut Weighing,
         enough: f64,
         told: &dyn Fn(usize) -> Result<(), Problems>,
     ) -> Result<(Values, bool), Problems> {
-        let mut here = self.total(&values, weighing, true);
+        let mut innovations = self.total(&values, weighing, false);
         let mut damping = 1e-4;
         for step in 0..STEPS {
             told(step)?;
-            let (information, score) = self.with_prior(&here, &values);
-            let cost = self.cost(&here, &values);
+            weighing.weights = weights(&innovations);
+            let cost = self.cost(&innovations, &values);
+            let (information, score) = self.with_prior(&self.total(&values, weighing, true), &values);
             let mut moved = None;
             while damping < 1e6 {
-                let Some(step) = damped(&information, &score, damping) else {
+                let Some((step, gain)) = damped(&information, &score, damping, &self.bounds(&values)) else {
                     damping *= 10.0;
                     continue;
                 };
-                let gain: f64 = step.iter().zip(&score).map(|(step, score)| 0.5 * step * score).sum();
                 if gain < enough {
                     return Ok((values, true));
                 }
-                let there = values.moved(&self.limited(&step, &values));
-                let total = self.total(&there, weighing, true);
+                let there = values.moved(&step);
+                let total = self.total(&there, weighing, false);
                 if self.cost(&total, &there) < cost {
-                    moved = Some((there, total));
+                    let longer = self.longer(&step, &values, weighing, (there, total));
+                    moved = Some(longer);
                     damping = (0.1 * damping).max(1e-9);
                     break;
                 }
@@ -211,28 +218,49 @@ impl Search<'_> {
                 damping *= 10.0;
             }
             let Some((there, total)) = moved else { return Ok((values, false)) };
-            (values, here) = (there, total);
+            (values, innovations) = (there, total);
         }
+        weighing.weights = weights(&innovations);
         Ok((values, false))
     }
 
-    /// `step` with every part inside its bound.
-    fn limited(&self, step: &[f64], values: &Values) -> Vec<f64> {
-        let logarithms = values.joints.len() * Parameter::COUNT;
-        step.iter()
-            .enumerate()
-            .map(|(i, &step)| {
-                let most = match i.checked_sub(logarithms) {
-                    None => LONGEST,
-                    Some(log) => LONGEST_OFFSET * self.logs[log].period,
-                };
-                step.clamp(-most, most)
-            })
-            .collect()
+    /// Twice as far along `step` as long as that is better: past the instants at which friction turns, the likelihood is flatter
+    /// than its curvature at one place says.
+    fn longer(
+        &self,
+        step: &[f64],
+        values: &Values,
+        weighing: &Weighing,
+        first: (Values, Total),
+    ) -> (Values, Total) {
+        let bounds = self.bounds(values);
+        let (mut best, mut times) = (first, 2.0);
+        loop {
+            let longer: Vec<_> =
+                step.iter().zip(&bounds).map(|(x, [low, high])| (times * x).clamp(*low, *high)).collect();
+            let there = values.moved(&longer);
+            let total = self.total(&there, weighing, false);
+            if times > 100.0 || self.cost(&total, &there) >= self.cost(&best.1, &best.0) {
+                return best;
+            }
+            best = (there, total);
+            times *= 2.0;
+        }
     }
 
+    /// Between which bounds each part of a step is.
+    fn bounds(&self, values: &Values) -> Vec<[f64; 2]> {
+        let of = |parameter| if parameter == Parameter::Stiffness { [-1.0, 0.5] } else { [-0.5, 1.0] };
+        let parts = values.joints.iter().flat_map(|_| Parameter::ALL.map(of));
+        let offsets = self.logs.iter().map(|log| LONGEST_OFFSET * log.period).map(|most| [-most, most]);
+        parts.chain(offsets).collect()
+    }
+
+    /// Minus the logarithm of the likelihood, each joint's innovations normal with the covariance that they have.
     fn cost(&self, total: &Total, values: &Values) -> f64 {
-        let cost = total.cost + self.prior.distance(values).iter().map(|x| 0.5 * x * x).sum::<f64>();
+        let surprise = |i: usize| 0.5 * total.samples as f64 * determinant(total.covariance(i)).ln();
+        let cost = (0..values.joints.len()).map(surprise).sum::<f64>()
+            + self.prior.distance(values).iter().map(|x| 0.5 * x * x).sum::<f64>();
         if cost.is_finite() { cost } else { f64::INFINITY }
     }
 
@@ -272,14 +300,45 @@ fn weights(total: &Total) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// (information + damping · its diagonal)⁻¹ score; none where that is not definite.
-fn damped(information: &Symmetric<f64>, score: &[f64], damping: f64) -> Option<Vec<f64>> {
+/// (information + damping · its diagonal)⁻¹ score with every part inside its bounds: those that would leave them stay there, and
+/// the others make the best of it. With it what it promises of the logarithm of the likelihood. None where that is not definite.
+fn damped(
+    information: &Symmetric<f64>,
+    score: &[f64],
+    damping: f64,
+    bounds: &[[f64; 2]],
+) -> Option<(Vec<f64>, f64)> {
     let scale: Vec<f64> = (0..score.len()).map(|i| information.at(i, i).sqrt().recip()).collect();
-    let scaled = Symmetric::from_fn(score.len(), |i, j| {
-        information.at(i, j) * scale[i] * scale[j] + if i == j { damping } else { 0.0 }
-    });
-    let right: Vec<f64> = score.iter().zip(&scale).map(|(score, scale)| score * scale).collect();
-    let step = solved(&cholesky(&scaled)?, &right);
-    let step: Vec<f64> = step.iter().zip(&scale).map(|(step, scale)| step * scale).collect();
-    step.iter().all(|x| x.is_finite()).then_some(step)
+    let mut step = vec![0.0; score.len()];
+    let mut free: Vec<usize> = (0..score.len()).collect();
+    loop {
+        let scaled = Symmetric::from_fn(free.len(), |a, b| {
+            let (i, j) = (free[a], free[b]);
+            information.at(i, j) * scale[i] * scale[j] + if i == j { damping } else { 0.0 }
+        });
+        free.iter().for_each(|&i| step[i] = 0.0);
+        let pulled = times(information, &step);
+        let right: Vec<f64> = free.iter().map(|&i| (score[i] - pulled[i]) * scale[i]).collect();
+        let solution = solved(&cholesky(&scaled)?, &right);
+        free.iter().zip(solution).for_each(|(&i, x)| step[i] = x * scale[i]);
+        let before = free.len();
+        free.retain(|&i| {
+            let inside = step[i].clamp(bounds[i][0], bounds[i][1]);
+            let is_free = inside == step[i];
+            step[i] = inside;
+            is_free
+        });
+        if free.len() == before {
+            break;
+        }
+    }
+    let curved = times(information, &step);
+    let gain: f64 =
+        step.iter().zip(score.iter().zip(curved)).map(|(x, (score, pull))| x * (score - 0.5 * pull)).sum();
+    (gain > 0.0 && gain.is_finite()).then_some((step, gain))
+}
+
+/// `a` `x`.
+fn times(a: &Symmetric<f64>, x: &[f64]) -> Vec<f64> {
+    (0..x.len()).map(|i| x.iter().enumerate().map(|(j, x)| a.at(i, j) * x).sum()).collect()
 }

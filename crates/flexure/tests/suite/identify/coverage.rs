@@ -9,11 +9,14 @@ use super::arm;
 use super::simulated::{DELAY, Draw, log};
 
 /// How many numbers that count as known lie within their errors, and how many there are.
-fn covered<const N: usize>(robot: &Robot, seeds: u64, seconds: f64, noise: f64) -> (usize, usize) {
+fn covered<const N: usize>(robot: &Robot, seeds: u64, seconds: f64, of_links: bool) -> (usize, usize) {
     let of = |seed: u64| {
         let mut draw = Draw::new(seed);
         let truth = draw.truth(robot);
-        let log = log::<N>(robot, &truth, seconds, noise, &mut draw);
+        let mut log = log::<N>(robot, &truth, seconds, 0.0, &mut draw);
+        if !of_links {
+            log.q_l = None;
+        }
         let found = identify(robot, &[log], &Settings::default(), &unwatched)
             .unwrap_or_else(|problems| panic!("seed {seed}: {problems}"));
         let offset = &found.offsets[0];
@@ -34,8 +37,13 @@ fn covered<const N: usize>(robot: &Robot, seeds: u64, seconds: f64, noise: f64) 
 fn three_standard_deviations_hold_97_percent() {
     let seeds = std::env::var("IDENTIFY_SEEDS").ok().and_then(|text| text.parse().ok()).unwrap_or(200);
     for (name, (inside, all)) in [
-        ("two joints, 12 s", covered::<4>(&arm(), seeds, 12.0, 0.0)),
-        ("seven joints, 20 s", covered::<8>(&Robot::load("panda").unwrap(), seeds, 20.0, 0.0)),
+        ("two joints, 12 s", covered::<4>(&arm(), seeds, 12.0, true)),
+        ("two joints, 12 s, motor encoders", covered::<4>(&arm(), seeds, 12.0, false)),
+        ("seven joints, 20 s", covered::<8>(&Robot::load("panda").unwrap(), seeds, 20.0, true)),
+        (
+            "seven joints, 20 s, motor encoders",
+            covered::<8>(&Robot::load("panda").unwrap(), seeds, 20.0, false),
+        ),
     ] {
         let share = inside as f64 / all as f64;
         println!("{name}: {inside} of {all}, {:.2} %", 100.0 * share);

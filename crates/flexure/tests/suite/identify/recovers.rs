@@ -1,5 +1,6 @@
 //! The numbers of simulated arms come back.
 
+use flexure::Robot;
 use flexure::identify::{Identified, Parameter, Settings, identify};
 use flexure::logs::Log;
 use flexure::progress::unwatched;
@@ -51,6 +52,26 @@ fn with_motor_encoders_alone() {
             [Parameter::Stiffness, Parameter::MotorInertia].map(|parameter| found.estimate(i, parameter));
         assert!((stiffness.value / joint[0] - 1.0).abs() < 0.03, "{stiffness:?} for {}", joint[0]);
         assert!((inertia.value / joint[1] - 1.0).abs() < 0.03, "{inertia:?} for {}", joint[1]);
+    }
+}
+
+/// Stiffness of every joint, through valleys in which joints about nearly the same axis trade theirs:
+/// `cargo test --release -p flexure --test suite -- --ignored seven_joints_with_motor --nocapture`.
+#[test]
+#[ignore = "half a minute of processor time in release, minutes without"]
+fn seven_joints_with_motor_encoders_alone() {
+    let robot = Robot::load("panda").unwrap();
+    let mut draw = Draw::new(3);
+    let truth = draw.truth(&robot);
+    let log = Log { q_l: None, ..log::<8>(&robot, &truth, 20.0, 0.0, &mut draw) };
+    let found = identify(&robot, &[log], &Settings::default(), &unwatched)
+        .unwrap_or_else(|problems| panic!("{problems}"));
+    for (i, joint) in truth.iter().enumerate() {
+        let stiffness = found.estimate(i, Parameter::Stiffness);
+        let off = (stiffness.value - joint[0]).abs();
+        println!("joint {}: {stiffness:?} for {}", i + 1, joint[0]);
+        assert!(off < 0.03 * joint[0], "{stiffness:?} for {}", joint[0]);
+        assert!(off < 4.0 / 3.0 * stiffness.error, "{stiffness:?} for {}", joint[0]);
     }
 }
 
