@@ -316,7 +316,9 @@ fn damped(
             let (i, j) = (free[a], free[b]);
             information.at(i, j) * scale[i] * scale[j] + if i == j { damping } else { 0.0 }
         });
-        free.iter().for_each(|&i| step[i] = 0.0);
+        for &i in &free {
+            step[i] = 0.0;
+        }
         let pulled = times(information, &step);
         let right: Vec<f64> = free.iter().map(|&i| (score[i] - pulled[i]) * scale[i]).collect();
         let solution = solved(&cholesky(&scaled)?, &right);
@@ -324,7 +326,7 @@ fn damped(
         let before = free.len();
         free.retain(|&i| {
             let inside = step[i].clamp(bounds[i][0], bounds[i][1]);
-            let is_free = inside == step[i];
+            let is_free = (bounds[i][0]..=bounds[i][1]).contains(&step[i]);
             step[i] = inside;
             is_free
         });
