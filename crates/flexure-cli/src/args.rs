@@ -113,14 +113,14 @@ pub enum Command {
     )]
     /// Measure how much delay, gain error, stiffness error and noise a loop bears, by bisection in simulation.
     Margins(Margins),
-    #[command(after_help = "Example:\n  flexure excite two-link-plausible --budget 5 --out excite.toml")]
+    #[command(after_help = "Example:\n  flexure excite planar-2r --budget 5 --out excite.toml")]
     /// Design the motion that tells most about a robot's joints, inside all limits: a scenario file.
     Excite(Excite),
     #[command(after_help = "Example:\n  flexure replay two-link-tanh --log out/two-link-tanh.csv")]
     /// Lay a log of the robot over the simulation: closed loop, prediction from window to window, residuals.
     Replay(Replay),
     #[command(
-        after_help = "Example:\n  flexure identify two-link-plausible --log out/excite.csv --out identified.toml"
+        after_help = "Example:\n  flexure identify planar-2r --log out/excite.csv --out identified.toml"
     )]
     /// Find stiffness, motor inertia, damping and friction of the joints from logs, with error bars.
     Identify(Identify),

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use flexure::files::{create_folder, read_text, write_together};
+use flexure::feasible;
+use flexure::files::{Outside, Problem, create_folder, read_text, write_together};
 use flexure::robot::{self, ImportOptions, MAX_JOINTS};
-use flexure::scenario;
+use flexure::scenario::{self, load_scenario_with};
 use serde::Serialize;
 
 use super::print;
@@ -61,6 +62,9 @@ pub fn import(options: &Import, json: bool) -> Result<(), Failure> {
         create_folder(&places.folder)?;
         write_together(&texts, options.force)?;
     }
+    if let (Some(places), Some(_), true) = (&places, &scenario, draft.missing.is_empty()) {
+        say(&doubts(&places.folder.join(&places.scenario)));
+    }
     let plain = |path: &Path| path.strip_prefix(".").unwrap_or(path).to_owned();
     let files: Vec<_> = texts.iter().map(|(path, _)| plain(path)).collect();
     if json {
@@ -71,6 +75,16 @@ pub fn import(options: &Import, json: bool) -> Result<(), Failure> {
         return print::text(&draft.toml);
     }
     files.iter().try_for_each(|file| print::line(&format!("wrote {}", file.display())))
+}
+
+/// What is to be said of the scenario that was written at `path` before anybody runs it.
+fn doubts(path: &Path) -> Vec<Problem> {
+    let slowed = load_scenario_with(&path.to_string_lossy(), Outside::Allowed)
+        .and_then(|scenario| feasible::slowed(&scenario));
+    match slowed {
+        Ok(problem) => problem.into_iter().collect(),
+        Err(problems) => problems.iter().map(|problem| problem.clone().warning()).collect(),
+    }
 }
 
 /// Where drafts go.

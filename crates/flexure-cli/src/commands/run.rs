@@ -50,6 +50,7 @@ pub fn run(scenario: &str, reading: Reading<'_>, out: &Path, json: bool) -> Resu
     let scenario = load_scenario_with(scenario, reading)?;
     say(&scenario.warnings);
     say(&preload(&scenario)?);
+    say(&feasible::slowed(&scenario)?);
     let beyond = feasible::exceeded(&scenario, &feasible::usage(&scenario)?);
     prepare(out)?;
     let experiment = {

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use flexure::design::{Design, SpecFile, Specified, check_out, design};
+use flexure::feasible;
 use flexure::files::number::short;
 use flexure::files::{Reading, prepare, write_atomic};
 use flexure::report::{constraints_table, gains_table, margins_table, trades_table};
@@ -27,6 +28,9 @@ pub fn tune(options: &Tune, reading: Reading<'_>, json: bool) -> Result<(), Fail
     let specified = Specified::load(&options.scenario, reading, &spec)?;
     let scenario = &specified.scenarios[0];
     say(specified.scenarios.iter().flat_map(|scenario| &scenario.warnings));
+    for scenario in &specified.scenarios {
+        say(&feasible::slowed(scenario)?);
+    }
     let out = options.out.clone().unwrap_or_else(|| beside(&options.scenario, &scenario.name));
     check_out(&out, &[Some(Path::new(&options.scenario)), options.spec.as_deref()])?;
     specified.belongs(&out, reading.outside)?;
@@ -87,7 +91,8 @@ fn show(found: &Design, joints: &[String]) -> Result<(), Failure> {
     }
     if let Some(frail) = found.frail() {
         print::line(&format!(
-            "the loop is frail: it does not bear {frail}; that is wished for, a SPEC can ask for it"
+            "the loop is frail: with {frail} small errors grow or it does not follow; that it bears this is wished for, a SPEC can ask for it. \
+             (Margins are of runs: errors that grow slowly need not show in them.)"
         ))?;
     }
     print::line(&format!("{} loops were run in the search", found.runs))

@@ -41,7 +41,10 @@ fn followed(name: &str) -> Value {
     place.run(&["import", &file, "--assume", "harmonic-drive", "--scenario"]).done();
     place.run(&["tune", &scenario, "--out", &tuned]).done();
     println!("{name}: tuned within {:.0} s", start.elapsed().as_secs_f64());
-    place.run(&["run", &tuned, "--json"]).done().json()
+    let run = place.run(&["run", &tuned, "--json"]).done();
+    // Whoever hardly moves follows easily.
+    assert!(!run.stderr.contains("of its own speed"), "{}", run.stderr);
+    run.json()
 }
 
 /// With encoders, filter, friction, a delay of one period and torque limits: within 5 mrad, no instant at a limit. Minutes each, unless

@@ -41,7 +41,8 @@ fn questions_that_cannot_be_meant_are_refused() {
     place
         .write("swing.toml", SHORT)
         .write("spec.toml", "rate = 3.0\n")
-        .write("bad.toml", "rate = \"quick\"\n");
+        .write("bad.toml", "rate = \"quick\"\n")
+        .write("both.toml", "delay = 0.0\n[[imperfection]]\nkind = \"delay\"\ncomputation = 0.005\n");
     place.write("pd.toml", SHORT.replace("vcbc", "pd"));
     place.write("ideal.toml", SHORT.replace("[reference]", "hold = \"continuous\"\n[reference]"));
     let refused = |args: &[&str], fragments: &[&str]| place.run(args).refused(fragments);
@@ -49,11 +50,15 @@ fn questions_that_cannot_be_meant_are_refused() {
     refused(&["tune", "swing.toml", "--budget", "0"], &["budget is 0"]);
     refused(&["tune", "swing.toml", "--spec", "none.toml"], &["none.toml"]);
     refused(&["tune", "swing.toml", "--spec", "bad.toml"], &["bad.toml", "quick", "max"]);
+    refused(&["tune", "swing.toml", "--spec", "both.toml"], &["both say how late", "leave one"]);
     refused(&["tune", "pd.toml", "--spec", "spec.toml"], &["rate is asked for", "leave rate out"]);
     refused(&["tune", "ideal.toml"], &["hold is \"continuous\""]);
     refused(&["tune", "swing.toml", "--out", "swing.toml"], &["is there already"]);
     refused(&["tune", "swing.toml", "--out", "spec.toml"], &["is there already"]);
     refused(&["tune", "swing.toml", "--out", "."], &["is there already"]);
     refused(&["tune", "panda"], &["robot"]);
-    assert_eq!(place.names("."), ["bad.toml", "ideal.toml", "pd.toml", "spec.toml", "swing.toml"]);
+    assert_eq!(
+        place.names("."),
+        ["bad.toml", "both.toml", "ideal.toml", "pd.toml", "spec.toml", "swing.toml"]
+    );
 }

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::design::constraint::Constraint;
+use crate::design::constraint::{Constraint, NOMINAL};
 use crate::design::search::Watch;
 use crate::design::spec::Spec;
 use crate::feasible;
@@ -117,8 +117,7 @@ impl Bench {
     ) -> Result<Trial, Problems> {
         watch.check()?;
         let radius = outlooks.nominal(&controller);
-        let mut constraints =
-            vec![Constraint::radius("small errors shrink in the sampled loop".to_owned(), radius)];
+        let mut constraints = vec![Constraint::radius(NOMINAL.to_owned(), radius)];
         if !constraints[0].is_kept() {
             let cost = UNSTABLE + bounded(radius - 1.0);
             return Ok(Trial { controller, cost, constraints, runs: Vec::new() });

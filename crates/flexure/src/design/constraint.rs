@@ -44,6 +44,10 @@ pub enum Kind {
 /// Spectral radius up to which a loop counts as stable: computed to about 1e-12.
 const STABLE: f64 = 1.0 - 1e-9;
 
+/// What the loop as it is is held to, and how a loop with something to bear is named.
+pub(super) const NOMINAL: &str = "small errors shrink in the sampled loop";
+pub(super) const FOLLOWS: &str = "follows with ";
+
 /// By how much a spectral radius above 1 counts more than another limit that is exceeded by the same part.
 const STEEP: f64 = 10.0;
 
@@ -109,7 +113,7 @@ impl Constraint {
     /// That a loop with something to bear does not follow, with the first reason.
     pub(super) fn lost(what: &str, reason: &str) -> Self {
         Self {
-            what: format!("follows with {what}"),
+            what: format!("{FOLLOWS}{what}"),
             joint: None,
             value: 0.0,
             limit: 1.0,

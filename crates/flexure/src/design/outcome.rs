@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::design::bench::Bench;
-use crate::design::constraint::{Constraint, Kind};
+use crate::design::constraint::{Constraint, FOLLOWS, Kind, NOMINAL};
 use crate::design::family::{Family, Pace};
 use crate::design::least::Least;
 use crate::design::search::{Found, Search, Watch};
@@ -258,8 +258,11 @@ impl Design {
     /// What is wished for and not borne, in words: the loop is frail there.
     pub fn frail(&self) -> Option<String> {
         let frail = self.constraints.iter().filter(|constraint| !constraint.asked && !constraint.is_kept());
-        let words: Vec<&str> = frail.map(|constraint| constraint.what.as_str()).collect();
-        (!words.is_empty()).then(|| words.join("; "))
+        let mut words: Vec<&str> =
+            frail.map(|constraint| constraint.what.trim_start_matches(FOLLOWS)).collect();
+        words.sort_unstable();
+        words.dedup();
+        (!words.is_empty()).then(|| words.join(", "))
     }
 
     /// The constraint that is broken most of those that are asked; none if all are kept.
@@ -281,9 +284,11 @@ impl Design {
         };
         let way = match binding.kind {
             Kind::Radius => {
-                "a shorter control_period, less delay, a faster velocity filter or an observer; or a SPEC that asks for less margin and \
-                 uncertainty"
-                    .to_owned()
+                let spec = if what == NOMINAL { "" } else { "; or a SPEC that asks for less margin and uncertainty" };
+                format!(
+                    "less delay ([[imperfection]] delay, a time of its own: a shorter control_period alone leaves it), with that a shorter \
+                     control_period, a faster velocity filter or an observer{spec}"
+                )
             }
             Kind::Run(Measure::AtLimit) => {
                 "drives with larger torque limits, a slower reference ([reference.time_scaling] margin), or accept.at_limit above 0".to_owned()

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use toml_edit::DocumentMut;
+use toml_edit::{DocumentMut, Item};
 
 use crate::files::bounds;
 use crate::files::document::{self, Form, Places};
@@ -121,11 +121,25 @@ impl SpecFile {
         })?;
         // What one parser of the format took, the other takes: both are the same.
         let document = source.text.parse().unwrap_or_default();
-        Ok(Self { spec, document, name: source.name.to_string(), places: found })
+        let read = Self { spec, document, name: source.name.to_string(), places: found };
+        if read.spec.delay.is_some() && read.has_delay() {
+            let message =
+                "delay and an [[imperfection]] of the kind \"delay\" both say how late torques come"
+                    .to_owned();
+            return Err(read.problem("delay", "contradiction", message, "leave one of them out").into());
+        }
+        Ok(read)
     }
 }
 
 impl SpecFile {
+    /// Whether one of its imperfections is a delay.
+    fn has_delay(&self) -> bool {
+        let imperfections = self.document.get("imperfection").and_then(Item::as_array_of_tables);
+        let is_delay = |entry: &toml_edit::Table| entry.get("kind").and_then(Item::as_str) == Some("delay");
+        imperfections.is_some_and(|entries| entries.iter().any(is_delay))
+    }
+
     /// A problem at `key` of the file.
     pub(super) fn problem(
         &self,

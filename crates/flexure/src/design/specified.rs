@@ -95,7 +95,7 @@ impl Specified {
         let read = scenario::document::read(&Source::new(&path.display().to_string(), &text), &base, &[]);
         read.map(drop).map_err(|problems| {
             let message = format!(
-                "{} could not be read where it is to be written: {}",
+                "{} may not be written there: what the scenario names would not be found from that folder: {}",
                 path.display(),
                 problems.iter().next().map_or_else(String::new, ToString::to_string)
             );

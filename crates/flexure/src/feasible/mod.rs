@@ -18,6 +18,7 @@ use serde::Serialize;
 use crate::feasible::bounds::bounds;
 use crate::feasible::peaks::{PacedReference, peaks};
 use crate::feasible::track::with_track;
+use crate::files::number::short;
 use crate::files::{Problem, Problems};
 use crate::references::Speed;
 use crate::scenario::Scenario;
@@ -75,6 +76,29 @@ pub fn exceeded(scenario: &Scenario, usage: &[Usage]) -> Vec<Problem> {
             scenario.places.problem("reference", "limits", message, help)
         })
         .collect()
+}
+
+/// Part of its own speed below which a reference is hardly a motion.
+const SLOW: f64 = 0.2;
+
+/// What to say of a reference that a time scaling makes so slow that a loop which follows it has shown little.
+///
+/// # Errors
+/// As [`speed`].
+pub fn slowed(scenario: &Scenario) -> Result<Option<Problem>, Problems> {
+    let speed = speed(scenario)?;
+    if speed >= SLOW {
+        return Ok(None);
+    }
+    let usage = usage(&pinned(scenario)?)?;
+    let tightest = usage.iter().max_by(|a, b| a.share.total_cmp(&b.share));
+    let what = tightest.map_or_else(String::new, |usage| format!(": {}", described(scenario, usage)));
+    let message = format!(
+        "the reference is run along at {} of its own speed, to keep the limits; a loop that follows so little motion has shown little{what}",
+        short(speed, 3)
+    );
+    let help = "choose a posture (reference.offset) that takes less torque to hold, or correct that limit in the robot file";
+    Ok(Some(scenario.places.problem("reference", "slow", message, help).warning()))
 }
 
 /// The scenario with the speed of its reference found and written down, so that many runs need not search for it.

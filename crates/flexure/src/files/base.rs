@@ -123,7 +123,8 @@ fn outside(path: &str, folder: &Path) -> Problem {
     };
     let message =
         format!("{} is outside of {folder}, where the file that names it is", suggest::quoted(path));
-    let help = "move it there, or allow such files with --allow-outside, in a program with Outside::Allowed";
+    let help =
+        "keep both in one folder, or allow such files with --allow-outside (in Rust: Outside::Allowed)";
     Problem::new("outside", message, help)
 }
 

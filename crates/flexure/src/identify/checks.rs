@@ -147,7 +147,13 @@ pub(crate) fn explained(robot: &Robot, log: &Log, started: &Started) -> Result<(
         let joint = &robot.joints[i].name;
         let torque = rms(&log.u_m, log.joints, i);
         let [stiffness, inertia, ..] = started.joints[i];
-        if *link > UNEXPLAINED || *motor > UNEXPLAINED || stiffness <= 0.0 || inertia <= 0.0 {
+        if *link <= UNEXPLAINED && *motor <= UNEXPLAINED && (stiffness <= 0.0 || inertia <= 0.0) {
+            let what = if stiffness <= 0.0 { "stiffness" } else { "motor inertia" };
+            let message = format!("{}: no positive {what} of {joint} explains how it moves", log.name);
+            let help = "the motion is too slow or too small to show it (`flexure excite` designs one that does), or a column has \
+                        another sign";
+            problems.push(Problem::new("log-mismatch", message, help));
+        } else if *link > UNEXPLAINED || *motor > UNEXPLAINED {
             let message = format!(
                 "{}: {joint} does not move as the robot does: its equations leave {:.0} % of the spring torque and {:.0} % \
                  of the motor torque ({} N m rms) unexplained, whatever its numbers are",

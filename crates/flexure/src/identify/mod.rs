@@ -61,6 +61,10 @@ const SIGMAS: f64 = 3.0;
 /// Dampings and frictions are known if their error is below this part of them: they are told from zero.
 const TOLD_FROM_ZERO: f64 = 1.0;
 
+/// Largest error (three standard deviations) of the time at which torques act for anything to count as known \[s\]: a log that does not
+/// tell that within a few samples has no motion in it that a spring or a motor would show.
+const TIMED: f64 = 0.005;
+
 /// Length of the pieces that a log is predicted in, and what each begins with to forget where it began \[s\].
 const PIECE: f64 = 4.0;
 const RUN_IN: f64 = 0.4;
@@ -233,6 +237,8 @@ fn judged(
     let validation =
         layer::total(search.layer, search.logs, kept.iter().copied(), values, &found.weighing, false);
     let names: Vec<String> = robot.joints.iter().map(|joint| joint.name.clone()).collect();
+    let offset_error = |k: usize| SIGMAS * evidence.deviations[names.len() * Parameter::COUNT + k];
+    let is_timed = (0..search.logs.len()).all(|k| offset_error(k) <= TIMED);
     let joints = (0..names.len()).map(|i| {
         let root = |x: f64, noise: f64| x.sqrt() / noise;
         let [l, _, m] = found.total.covariance(i);
@@ -245,7 +251,7 @@ fn judged(
                 .map(|&parameter| {
                     let estimate = estimate(robot, values, evidence, settings, i, parameter);
                     // Short of the end of the search error bars say nothing.
-                    Estimate { known: estimate.known && found.converged, ..estimate }
+                    Estimate { known: estimate.known && found.converged && is_timed, ..estimate }
                 })
                 .collect(),
             noise_ratio: NoiseRatio { link, motor: root(m, of_motor) },
@@ -260,11 +266,10 @@ fn judged(
         }
     });
     let joints = joints.collect();
-    let parameters = names.len() * Parameter::COUNT;
     let offsets = search.logs.iter().enumerate().map(|(k, log)| Offset {
         log: log.name.clone(),
         value: values.offsets[k],
-        error: SIGMAS * evidence.deviations[parameters + k],
+        error: offset_error(k),
     });
     let (direction, deviation) = &evidence.weakest;
     Identified {

@@ -1,7 +1,6 @@
 //! References and the limits of robots: closed forms, and what a simulated run does.
 
-use flexure::feasible::speed;
-use flexure::feasible::{exceeded, usage};
+use flexure::feasible::{exceeded, slowed, speed, usage};
 use flexure::files::{Problems, SCENARIOS};
 use flexure::references::{PointToPoint, Profile, Reference, Sines, SmoothStart, Speed, TimeScaling};
 use flexure::robot::load_robot;
@@ -184,4 +183,19 @@ fn every_shipped_scenario_stays_inside_its_limits() {
         limited += usize::from(!usage.is_empty());
     }
     assert!(limited >= 2, "panda and planar-2r have limits");
+}
+
+/// What hardly moves follows easily: it is said, with the limit that leaves so little, and nothing of a motion.
+#[test]
+fn a_reference_that_hardly_moves_is_said() {
+    let mut scenario = load_scenario("panda-tanh-smooth").unwrap();
+    for (speed, said) in [(1.0, false), (0.5, false), (0.1, true), (1e-3, true)] {
+        scenario.time_scaling = Some(TimeScaling { speed: Speed::Given(speed), rise: None });
+        let problem = slowed(&scenario).unwrap();
+        assert_eq!(problem.is_some(), said, "{speed}");
+        let words = problem.map(|problem| problem.to_string()).unwrap_or_default();
+        assert!(!said || words.contains("of its own speed") && words.contains("panda_joint"), "{words}");
+    }
+    scenario.time_scaling = None;
+    assert!(slowed(&scenario).unwrap().is_none());
 }
