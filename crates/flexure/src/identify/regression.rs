@@ -15,7 +15,8 @@ pub(crate) struct Started {
     pub joints: Vec<[f64; Parameter::COUNT]>,
     /// \[s\].
     pub offset: f64,
-    /// Per joint the part of the torques of links and of motors that is not explained (rms over rms).
+    /// Per joint what is not explained of the torques of links and of motors, as a part of the larger, and of that of motors (rms over
+    /// rms).
     pub unexplained: Vec<[f64; 2]>,
 }
 
@@ -76,7 +77,8 @@ pub(crate) fn start(arm: &dyn Arm, log: &Log, q_l: &[f64], q_m: &[f64]) -> Start
     for (rows, (i, scale)) in joints.iter().zip(scales.iter().enumerate()) {
         let (found, [link, motor]) = together(rows, &input(i, halves));
         started.joints.push(found);
-        let torque = rms(&rows.link[3], 1, 0).max(f64::MIN_POSITIVE);
+        // A light link takes less torque than its motor needs for itself, and encoders leave as much of it unexplained.
+        let torque = rms(&rows.link[3], 1, 0).max(*scale);
         started.unexplained.push([link / torque, motor / scale]);
     }
     started

@@ -114,7 +114,7 @@ fn torque_limits_that_can_be_none_are_said() {
         let options =
             ImportOptions { assume: Some(DriveClass::named(class).unwrap()), ..ImportOptions::default() };
         let draft = import_text("arm.urdf", urdf, &options).unwrap();
-        draft.warnings.iter().map(|problem| problem.to_string()).collect::<Vec<_>>()
+        draft.warnings.iter().map(ToString::to_string).collect::<Vec<_>>()
     };
     let panda = include_str!("../../../../../robots/panda.urdf");
     assert!(warnings(panda, "harmonic-drive").is_empty(), "{:?}", warnings(panda, "harmonic-drive"));
