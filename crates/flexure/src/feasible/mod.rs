@@ -86,11 +86,12 @@ const SLOW: f64 = 0.2;
 /// # Errors
 /// As [`speed`].
 pub fn slowed(scenario: &Scenario) -> Result<Option<Problem>, Problems> {
+    let scenario = &pinned(scenario)?;
     let speed = speed(scenario)?;
     if speed >= SLOW {
         return Ok(None);
     }
-    let usage = usage(&pinned(scenario)?)?;
+    let usage = usage(scenario)?;
     let tightest = usage.iter().max_by(|a, b| a.share.total_cmp(&b.share));
     let what = tightest.map_or_else(String::new, |usage| format!(": {}", described(scenario, usage)));
     let message = format!(

@@ -19,6 +19,7 @@ mod dense;
 mod eigen;
 mod exponential;
 mod factor;
+mod francis;
 mod leading;
 mod spectrum;
 mod symmetric;

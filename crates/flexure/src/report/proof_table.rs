@@ -187,7 +187,7 @@ fn tolerated(within: &WithinSummary) -> Vec<String> {
     };
     vec![
         format!(
-            "tolerances   every robot within them, along the reference, from W ≤ {} J: √W comes down at {} 1/s",
+            "tolerances   every robot within them, in the ideal loop along the reference, from W ≤ {} J: √W comes down at {} 1/s",
             engineering(level),
             significant(rate, 6)
         ),

@@ -9,7 +9,7 @@
 //! exactly, where Δq̈ is by how much the robot's accelerations differ from the model's at the same state and torque,
 //!
 //! M_l Δq̈_l = (K' − K) ζ − (D_l' − D_l) q̇_l,
-//! M_m' Δq̈_m = (M_m/M_m' − 1)-part: −(M_m' − M_m) q̈_m − (D_m' − D_m) q̇_m − (K' − K) ζ,
+//! M_m' Δq̈_m = −(M_m' − M_m) q̈_m − (D_m' − D_m) q̇_m − (K' − K) ζ,
 //!
 //! q̈_m that of the model. w is affine in the absolute values of ζ, q̇_l, q̇_m, q̈_m, and those are at most what they are on the
 //! reference plus a multiple of the errors. With r_b = √(2 W_b) for the four blocks b of W, Σ r_b² = 2 W, this makes
