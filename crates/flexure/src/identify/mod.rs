@@ -4,6 +4,7 @@
 //! First a start without local minima (`regression.rs`), then maximum likelihood of the innovations of a predictor of constant
 //! gain (`search.rs`, `predictor.rs`), whose derivatives are exact (`step.rs`). docs/identification.md is the guide.
 
+mod bounded;
 mod checks;
 mod evidence;
 mod gain;
@@ -15,6 +16,7 @@ mod prior;
 mod regression;
 mod robot_file;
 mod rubbing;
+mod scan;
 mod search;
 mod smooth;
 mod step;
@@ -101,8 +103,8 @@ pub fn identify(
     let found = search.run(start, progress)?;
     let (information, _) = search.with_prior(&found.total, &found.values);
     let mut evidence = Evidence::new(&information, &found.total, &prior).ok_or_else(unsolvable)?;
-    if logs.iter().any(|log| log.q_l.is_none()) {
-        evidence.doubted(&found.values.apart(&found.doubting));
+    if let Some(doubting) = &found.doubting {
+        evidence.doubted(&found.values.apart(doubting));
     }
     Ok(judged(robot, &search, &found, &evidence, settings))
 }
@@ -160,8 +162,11 @@ fn started(robot: &Robot, logs: &[Log], written: &Values) -> Result<Values, Prob
     let mut values = written.clone();
     let arm = robot.arm()?;
     for (k, log) in logs.iter().enumerate() {
-        let (Some(q_l), Some(q_m)) = (&log.q_l, &log.q_m) else { continue };
-        let started = regression::start(&*arm, log, q_l, q_m);
+        let started = match (&log.q_l, &log.q_m) {
+            (Some(q_l), Some(q_m)) => regression::both_sides::start(&*arm, log, q_l, q_m),
+            (None, Some(q_m)) => regression::motors::start(&*arm, log, q_m, &written.of(Parameter::Stiffness)),
+            (_, None) => continue,
+        };
         checks::explained(robot, log, &started)?;
         values.offsets[k] = started.offset;
         if k == 0 {

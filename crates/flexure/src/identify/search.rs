@@ -1,18 +1,20 @@
 //! Maximum likelihood of the innovations: Gauss–Newton steps with the prior as one more measurement, then the noise that makes
-//! the innovations likeliest, and again.
+//! the innovations likeliest, and again; at the end a look beyond the minimum, and where it finds less, on from there.
 
 use std::ops::RangeInclusive;
 
 use rayon::prelude::*;
 
+use super::bounded::{bounds, damped};
 use super::gain::{Noise, Posture};
 use super::layer::{Layer, Total, total};
 use super::parameters::{Parameter, Values};
 use super::predictor::{Piece, Weighing};
 use super::prior::Prior;
+use super::scan::scanned;
 use super::step::Pace;
 use crate::files::Problems;
-use crate::linalg::{Dense, Symmetric, cholesky, solved};
+use crate::linalg::{Dense, Symmetric};
 use crate::logs::Log;
 use crate::progress::Progress;
 
@@ -31,8 +33,8 @@ pub(crate) struct Search<'a> {
 /// What was found.
 pub(crate) struct Found {
     pub values: Values,
-    /// What was found with the gain of the first rounds, which believes the model less.
-    pub doubting: Values,
+    /// What is found from there with a gain that believes the model less; none where links are seen.
+    pub doubting: Option<Values>,
     pub weighing: Weighing,
     /// Per joint the torque noise that makes the innovations likeliest [N m].
     pub torque_noise: Vec<f64>,
@@ -46,12 +48,10 @@ pub(crate) struct Found {
 /// friction turns among it, would be believed to a part in ten thousand.
 const LEVELS: [RangeInclusive<i32>; 2] = [1..=3, 3..=4];
 
-/// Rounds of noise and values, and Gauss–Newton steps in each at most.
-const ROUNDS: usize = 4;
+/// Rounds of noise and values before the last, looks beyond the minimum after it, and Gauss–Newton steps in each, at most.
+const ROUNDS: usize = 3;
+const LOOKS: usize = 4;
 const STEPS: usize = 12;
-
-/// Largest change of an offset in a step, in sampling periods.
-const LONGEST_OFFSET: f64 = 2.0;
 
 /// A round ends where a step promises less than this of the logarithm of the likelihood: a fifth of an error bar. Beyond that,
 /// instants at which friction turns make the likelihood rough.
@@ -68,32 +68,50 @@ impl Search<'_> {
     pub fn run(&self, mut values: Values, progress: Progress<'_>) -> Result<Found, Problems> {
         let n = values.joints.len();
         let mut levels = vec![self.first(); n];
-        let mut converged = false;
-        let mut doubting = values.clone();
         let mut weighing = self.weighed(&values, &levels);
+        let told = |round: usize, step: usize| {
+            let fraction = (round as f64 + step as f64 / STEPS as f64) / (ROUNDS + LOOKS + 1) as f64;
+            if progress(fraction).is_break() { Err(Problems::interrupted()) } else { Ok(()) }
+        };
         for round in 0..ROUNDS {
-            let last = round + 1 == ROUNDS;
-            let told = |step: usize| {
-                let fraction = (round as f64 + step as f64 / STEPS as f64) / ROUNDS as f64;
-                if progress(fraction).is_break() { Err(Problems::interrupted()) } else { Ok(()) }
-            };
-            let enough = if last { ENOUGH } else { ROUGH };
-            (values, converged) = self.climb(values, &mut weighing, enough, &told)?;
-            if last {
-                break;
-            }
-            if round <= 1 {
-                doubting.clone_from(&values);
-            }
+            (values, _) = self.climb(values, &mut weighing, ROUGH, &|step| told(round, step))?;
             // The first gain is that of the numbers in the file; it is put right before others are tried.
             if round > 0 {
                 levels = self.levels(&values, &levels);
             }
             weighing = self.weighed(&values, &levels);
         }
+        let mut converged = false;
+        for look in 0..LOOKS {
+            (values, converged) =
+                self.climb(values, &mut weighing, ENOUGH, &|step| told(ROUNDS + look, step))?;
+            let cost = |there: &Values| self.cost(&self.total(there, &weighing, false), there);
+            let (there, better) = scanned(&values, cost);
+            if better < ROUGH {
+                break;
+            }
+            (values, converged) = (there, false);
+        }
         let total = self.total(&values, &weighing, true);
+        let doubting = if self.of_links() {
+            None
+        } else {
+            let mut doubting = self.weighed(&values, &vec![*LEVELS[1].start(); n]);
+            let told = |step| told(ROUNDS + LOOKS, step);
+            Some(self.climb(values.clone(), &mut doubting, ENOUGH, &told)?.0)
+        };
         let torque_noise = (0..n).map(|i| self.torque_noise(i, levels[i])).collect();
         Ok(Found { values, doubting, weighing, torque_noise, total, converged })
+    }
+
+    /// Sampling periods of the logs \[s\].
+    fn periods(&self) -> impl Iterator<Item = f64> {
+        self.logs.iter().map(|log| log.period)
+    }
+
+    /// Whether links have encoders.
+    fn of_links(&self) -> bool {
+        self.logs[0].q_l.is_some()
     }
 
     fn total(&self, values: &Values, weighing: &Weighing, informed: bool) -> Total {
@@ -151,9 +169,10 @@ impl Search<'_> {
     }
 
     /// Level of the first rounds: corrections that are large, and memory that is short, which is what leads through the valleys
-    /// of guesses; less where links are not seen: predictions with the numbers of the file would not stay finite.
+    /// of guesses; small ones where links are not seen: with numbers that are guesses, predictions that are corrected much by the
+    /// motors alone are wild.
     fn first(&self) -> i32 {
-        if self.logs[0].q_l.is_some() { 1 } else { 3 }
+        if self.of_links() { 1 } else { *LEVELS[1].end() }
     }
 
     /// Per joint the level of torque noise whose gain makes the innovations likeliest. Where links are not seen all joints have
@@ -161,7 +180,7 @@ impl Search<'_> {
     fn levels(&self, values: &Values, from: &[i32]) -> Vec<i32> {
         let n = from.len();
         let [of_both, of_motors] = LEVELS;
-        let tried = if self.logs[0].q_l.is_some() { of_both } else { of_motors };
+        let tried = if self.of_links() { of_both } else { of_motors };
         let surprises: Vec<(i32, Vec<f64>)> = tried
             .map(|level| {
                 let innovations = self.total(values, &self.weighing(values, &vec![level; n]), false);
@@ -172,7 +191,7 @@ impl Search<'_> {
             let finite = surprises.iter().map(|(level, all)| (of(all), *level)).filter(|x| x.0.is_finite());
             finite.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(otherwise, |(_, level)| level)
         };
-        if self.logs[0].q_l.is_some() {
+        if self.of_links() {
             (0..n).map(|i| best(&|all| all[i], from[i])).collect()
         } else {
             vec![best(&|all| all.iter().sum(), from[0]); n]
@@ -195,25 +214,27 @@ impl Search<'_> {
             weighing.weights = weights(&innovations);
             let cost = self.cost(&innovations, &values);
             let (information, score) = self.with_prior(&self.total(&values, weighing, true), &values);
+            // What a step promises that is held back by nothing but its bounds.
+            let mut promised = None;
             let mut moved = None;
             while damping < 1e6 {
-                let Some((step, gain)) = damped(&information, &score, damping, &self.bounds(&values)) else {
+                let Some((step, gain)) = damped(&information, &score, damping, &bounds(&values, self.periods())) else {
                     damping *= 10.0;
                     continue;
                 };
-                if gain < enough {
+                let promised = *promised.get_or_insert(gain);
+                if promised < enough {
                     return Ok((values, true));
                 }
                 let there = values.moved(&step);
                 let total = self.total(&there, weighing, false);
                 if self.cost(&total, &there) < cost {
-                    let longer = self.longer(&step, &values, weighing, (there, total));
-                    moved = Some(longer);
+                    moved = Some(self.longer(&step, &values, weighing, (there, total)));
                     damping = (0.1 * damping).max(1e-9);
                     break;
                 }
-                if gain < ROUGH {
-                    return Ok((values, true));
+                if gain < ENOUGH || promised < ROUGH {
+                    return Ok((values, promised < ROUGH));
                 }
                 damping *= 10.0;
             }
@@ -233,7 +254,7 @@ impl Search<'_> {
         weighing: &Weighing,
         first: (Values, Total),
     ) -> (Values, Total) {
-        let bounds = self.bounds(values);
+        let bounds = bounds(values, self.periods());
         let (mut best, mut times) = (first, 2.0);
         loop {
             let longer: Vec<_> =
@@ -246,14 +267,6 @@ impl Search<'_> {
             best = (there, total);
             times *= 2.0;
         }
-    }
-
-    /// Between which bounds each part of a step is.
-    fn bounds(&self, values: &Values) -> Vec<[f64; 2]> {
-        let of = |parameter| if parameter == Parameter::Stiffness { [-1.0, 0.5] } else { [-0.5, 1.0] };
-        let parts = values.joints.iter().flat_map(|_| Parameter::ALL.map(of));
-        let offsets = self.logs.iter().map(|log| LONGEST_OFFSET * log.period).map(|most| [-most, most]);
-        parts.chain(offsets).collect()
     }
 
     /// Minus the logarithm of the likelihood, each joint's innovations normal with the covariance that they have.
@@ -298,49 +311,4 @@ fn weights(total: &Total) -> Vec<[f64; 3]> {
             }
         })
         .collect()
-}
-
-/// (information + damping · its diagonal)⁻¹ score with every part inside its bounds: those that would leave them stay there, and
-/// the others make the best of it. With it what it promises of the logarithm of the likelihood. None where that is not definite.
-fn damped(
-    information: &Symmetric<f64>,
-    score: &[f64],
-    damping: f64,
-    bounds: &[[f64; 2]],
-) -> Option<(Vec<f64>, f64)> {
-    let scale: Vec<f64> = (0..score.len()).map(|i| information.at(i, i).sqrt().recip()).collect();
-    let mut step = vec![0.0; score.len()];
-    let mut free: Vec<usize> = (0..score.len()).collect();
-    loop {
-        let scaled = Symmetric::from_fn(free.len(), |a, b| {
-            let (i, j) = (free[a], free[b]);
-            information.at(i, j) * scale[i] * scale[j] + if i == j { damping } else { 0.0 }
-        });
-        for &i in &free {
-            step[i] = 0.0;
-        }
-        let pulled = times(information, &step);
-        let right: Vec<f64> = free.iter().map(|&i| (score[i] - pulled[i]) * scale[i]).collect();
-        let solution = solved(&cholesky(&scaled)?, &right);
-        free.iter().zip(solution).for_each(|(&i, x)| step[i] = x * scale[i]);
-        let before = free.len();
-        free.retain(|&i| {
-            let inside = step[i].clamp(bounds[i][0], bounds[i][1]);
-            let is_free = (bounds[i][0]..=bounds[i][1]).contains(&step[i]);
-            step[i] = inside;
-            is_free
-        });
-        if free.len() == before {
-            break;
-        }
-    }
-    let curved = times(information, &step);
-    let gain: f64 =
-        step.iter().zip(score.iter().zip(curved)).map(|(x, (score, pull))| x * (score - 0.5 * pull)).sum();
-    (gain > 0.0 && gain.is_finite()).then_some((step, gain))
-}
-
-/// `a` `x`.
-fn times(a: &Symmetric<f64>, x: &[f64]) -> Vec<f64> {
-    (0..x.len()).map(|i| x.iter().enumerate().map(|(j, x)| a.at(i, j) * x).sum()).collect()
 }

@@ -1,12 +1,9 @@
 //! Signals without what is fast in them, and their rates.
 
-/// Longest period that is smoothed away \[s\]: beyond 40 Hz encoders say little about accelerations.
-const WINDOW: f64 = 0.025;
-
-/// The weights of a Hann window, from its middle to one side, for samples every `period` s.
-pub(crate) fn window(period: f64) -> Vec<f64> {
+/// The weights of a Hann window that reaches `reach` s to either side, from its middle to one side, for samples every `period` s.
+pub(crate) fn window(reach: f64, period: f64) -> Vec<f64> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most a few thousand")]
-    let half = (WINDOW / period).round().clamp(2.0, 4096.0) as usize;
+    let half = (reach / period).round().clamp(2.0, 4096.0) as usize;
     let weight = |k: usize| 0.5 + 0.5 * (std::f64::consts::PI * k as f64 / (half + 1) as f64).cos();
     let sum = weight(0) + 2.0 * (1..=half).map(weight).sum::<f64>();
     (0..=half).map(|k| weight(k) / sum).collect()
