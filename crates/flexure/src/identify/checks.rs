@@ -2,9 +2,9 @@
 
 use super::Settings;
 use super::regression::Started;
-use super::smooth::rms;
 use crate::files::{Problem, Problems, number::significant};
 use crate::logs::Log;
+use crate::logs::smooth::rms;
 use crate::robot::Robot;
 
 /// Shortest log that is worth looking at \[s\].

@@ -16,7 +16,6 @@ mod regression;
 mod robot_file;
 mod rubbing;
 mod search;
-mod smooth;
 mod step;
 mod tangents;
 mod torque;
@@ -25,12 +24,12 @@ pub use outcome::{Estimate, Identified, IdentifiedJoint, NoiseRatio, Offset};
 pub use parameters::Parameter;
 pub use robot_file::RobotFile;
 
+use crate::logs::smooth::{rms, whiteness};
 use evidence::Evidence;
 use parameters::Values;
 use predictor::Piece;
 use prior::Prior;
 use search::{Found, Search};
-use smooth::{rms, whiteness};
 
 use crate::files::{Problem, Problems};
 use crate::logs::Log;

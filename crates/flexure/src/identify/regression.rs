@@ -4,9 +4,9 @@
 //! M_m q̈_m + D_m q̇_m + F_m sign q̇_m + K ζ = u. Least squares, joint by joint; the offset of the torque by trying.
 
 use super::parameters::Parameter;
-use super::smooth::{rates, rms, smoothed, window};
 use crate::linalg::{Symmetric, cholesky, solved};
 use crate::logs::Log;
+use crate::logs::smooth::{rates, rms, smoothed, window};
 use crate::robot::Arm;
 
 /// What a regression found of a log.
