@@ -155,7 +155,7 @@ fn limits_of_zero_are_refused_unless_they_are_unknown() {
         let known = ["--assume", "belt", "--scenario", "--unknown-limits", "--force"];
         place.run(&import("zero.urdf", &known)).done();
         place.run(&["check", "zero.toml", "zero-scenario.toml"]).done();
-        let toml = std::fs::read_to_string(place.path("zero.toml")).unwrap();
+        let toml = place.read("zero.toml");
         assert_eq!(toml.matches("unknown_limits = true").count(), 1, "{toml}");
         place.write("zero.toml", toml.replace("unknown_limits = true", "unknown_limits = false"));
         place.run(&["check", "zero.toml"]).refused(&["zero.urdf", said]);

@@ -156,17 +156,21 @@ fn the_work_is_told_as_it_goes() {
     assert!(leap < 0.25, "{leap}");
 }
 
-/// With a delay that no gains bear no error is named that would have to be accepted.
+/// An error that is as large as the motion is nothing to accept: no figure is named for it, and for a smaller one its own.
 #[test]
 fn what_does_not_follow_at_all_names_no_figure() {
-    let file = SpecFile::from_text("spec.toml", "delay = 0.1").unwrap();
-    let specified = Specified::load("two-link-hardware", Reading::default(), &file).unwrap();
-    let found = design(&specified, &file, 8, 0, &unwatched).unwrap_or_else(|problems| panic!("{problems}"));
-    assert!(!found.feasible, "{:?}", found.constraints);
-    let out = found.way_out().expect("a way out");
-    assert!(
-        !out.contains("would have to be accepted") && out.contains("less delay"),
-        "{out} {:?}",
-        found.constraints
-    );
+    let (_, mut found) = tuned("", 2);
+    let size = found.evidence.runs[0].following.size.iter().copied().fold(0.0, f64::max);
+    let way_out = |found: &mut Design, error: f64| {
+        let measured = found.constraints.iter_mut().find(|constraint| constraint.what == "position error");
+        let measured = measured.expect("an error");
+        (measured.value, measured.slack) = (error, 1.0 - error / measured.limit);
+        found.way_out().expect("a way out")
+    };
+    assert!(size > 0.3, "{size}");
+    let lost = way_out(&mut found, 0.6 * size);
+    assert!(lost.contains("does not follow at all") && lost.contains("less delay"), "{lost}");
+    assert!(!lost.contains("would have to be accepted"), "{lost}");
+    let near = way_out(&mut found, 0.25 * size);
+    assert!(near.contains("would have to be accepted") && near.contains("accept.error"), "{near}");
 }

@@ -154,6 +154,6 @@ fn velocities_of_other_units() {
     };
     assert!(read(&log(1.0), None).is_ok() && read(&log(0.7), None).is_ok());
     refused(&log(0.02), None, &["scale", "dq_m is 0.0200 times the rate of q_m", "--columns"]);
-    refused(&log(-1.0), None, &["scale", "dq_m is -1", "sign = -1"]);
+    refused(&log(-1.0), None, &["scale", "dq_m is −1.00 times", "sign = -1"]);
     assert!(read(&log(0.02), Some("q_m=q_m{},u_m=u_m{},dq_m=dq_m{},dq_m.scale=50")).is_ok());
 }
