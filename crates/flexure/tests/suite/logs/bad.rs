@@ -149,7 +149,7 @@ fn velocities_of_other_units() {
         written(&format!("{HEADER},dq_m1,dq_m2"), |k| {
             let t = 1e-3 * k as f64;
             let rate = factor * (1.5 * (3.0 * t).cos() + 0.18 * (9.0 * t).cos());
-            format!("{},{rate},{}", row(k), -1.5 * (5.0 * t).sin())
+            format!("{},{rate},{}", row(k), -1.5 * factor * (5.0 * t).sin())
         })
     };
     assert!(read(&log(1.0), None).is_ok() && read(&log(0.7), None).is_ok());
