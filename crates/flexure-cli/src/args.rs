@@ -162,6 +162,9 @@ pub struct Import {
     /// Class of drives, of `flexure list drives`, that stands in for what a URDF does not say; listed as assumed.
     #[arg(long, value_name = "DRIVES", value_parser = drives)]
     pub assume: Option<&'static DriveClass>,
+    /// Limits of zero, and ranges without width, stand for what nobody knew: take them as none instead of refusing them.
+    #[arg(long)]
+    pub unknown_limits: bool,
     /// Draft a scenario, too: files instead of standard output.
     #[arg(long)]
     pub scenario: bool,

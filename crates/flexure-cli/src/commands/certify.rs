@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use flexure::files::{Reading, read_text};
 use flexure::prove::question::{Direct, Question, Region, SMALLEST_ERROR, prove_watched};
-use flexure::prove::standing::Standing;
+use flexure::prove::standing::{Standing, outside_of_proofs};
 use flexure::prove::summary::ProofSummary;
 use flexure::report::{proof_table, write_certificate};
 use flexure::sampled::probe;
@@ -174,11 +174,10 @@ fn ending(scenario: &Scenario, standing: Standing<'_>, strict: bool) -> Result<(
     let problem = match standing {
         Standing::Proved => return Ok(()),
         Standing::Ideal(_) if !strict => return Ok(()),
-        Standing::Ideal(left_out) => {
-            let message =
-                format!("{}: the proof leaves out {}", scenario.name, left_out.join(", ").replace('_', " "));
-            let help = "it is about the ideal loop: the law on true states, its torque on the motors at once";
-            scenario.places.problem("controller", "ideal", message, help)
+        Standing::Ideal(conditions) => {
+            let outside = outside_of_proofs(&conditions).unwrap_or_default();
+            let help = "without --strict the proof of the ideal loop is enough";
+            scenario.places.problem("controller", "ideal", format!("{}: {outside}", scenario.name), help)
         }
         Standing::Unstable(sampled) => match sampled.problem(scenario) {
             Some(problem) => problem,

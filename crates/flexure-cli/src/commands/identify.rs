@@ -111,23 +111,31 @@ fn tell(found: &Identified, out: Option<&PathBuf>) -> Result<(), Failure> {
     }
 }
 
-/// The exit code: 1 if a stiffness or motor inertia is not known, or the search did not come to its end.
+/// The exit code: 1 if the search did not come to its end, the time at which torques act is not told, or a stiffness or motor
+/// inertia is not known.
 fn ending(found: &Identified) -> Result<(), Failure> {
+    if !found.converged {
+        let message = "the search did not come to its end: no number counts as known".to_owned();
+        let hint = "start from better guesses in the robot file, or log both sides; is there play, or something else that the model \
+                    has not?";
+        return Err(Failure::no("unknown", message, hint));
+    }
+    if let Some(offset) = found.offsets.iter().find(|offset| !offset.is_known()) {
+        let message = format!(
+            "{} does not tell when torques act, but to {} ms: no number counts as known",
+            offset.log,
+            significant(1e3 * offset.error, 2)
+        );
+        return Err(Failure::no("unknown", message, EXCITE));
+    }
     let missing: Vec<_> =
         found.missing().iter().map(|(joint, what)| format!("{} of {joint}", what.key)).collect();
     if !missing.is_empty() {
-        let message = format!("the logs do not know {}", missing.join(", "));
-        let hint = "excite the springs more: `flexure excite` designs such a motion; a longer log, a finer encoder; \
-                    --accuracy says how well a number must be known";
-        return Err(Failure::no("unknown", message, hint));
-    }
-    if !found.converged {
-        let message = "the search did not come to its end: errors are larger than they look".to_owned();
-        return Err(Failure::no(
-            "unknown",
-            message,
-            "is there play, or something else that the model has not?",
-        ));
+        return Err(Failure::no("unknown", format!("the logs do not know {}", missing.join(", ")), EXCITE));
     }
     Ok(())
 }
+
+/// What helps where a log does not know enough.
+const EXCITE: &str = "excite the springs more: `flexure excite` designs such a motion; a longer log, a finer encoder; --accuracy says \
+                      how well a number must be known";

@@ -28,10 +28,10 @@ struct Draft {
 }
 
 pub fn import(options: &Import, json: bool) -> Result<(), Failure> {
-    let Import { urdf, lock, assume, scenario, .. } = options;
+    let &Import { ref urdf, ref lock, assume, unknown_limits, scenario, .. } = options;
     let places = Places::of(options);
     let file = places.as_ref().map(|places| places.urdf.as_str());
-    let draft = robot::import(urdf, &ImportOptions { locks: lock, assume: *assume, file })?;
+    let draft = robot::import(urdf, &ImportOptions { locks: lock, assume, unknown_limits, file })?;
     say(&draft.warnings);
     if let Some((name, _)) =
         lock.iter().enumerate().find_map(|(i, own)| lock[..i].iter().find(|earlier| earlier.0 == own.0))

@@ -33,6 +33,7 @@ pub fn replay(options: &Replay, reading: Reading<'_>, json: bool) -> Result<(), 
         let progress = Progress::of_one(&scenario.name);
         laid(&scenario, &log, options.horizon, &|fraction| progress.set(0, fraction))?
     };
+    say(&found.warnings);
     let files = write_replay(&options.output.out, &found)?;
     if json {
         return print::json(&Outcome { found: &found, files });

@@ -6,6 +6,7 @@ use flexure::feasible;
 use flexure::files::number::short;
 use flexure::files::{Problem, Reading, prepare};
 use flexure::imperfections::Imperfection;
+use flexure::prove::standing::outside_of_proofs;
 use flexure::report::summary_table;
 use flexure::reproduce::{Experiment, write_experiment};
 use flexure::sampled::{Sampled, not_looked_at};
@@ -72,6 +73,11 @@ pub fn run(scenario: &str, reading: Reading<'_>, out: &Path, json: bool) -> Resu
         if let Some(line) = summary_line(&experiment.run.summary) {
             print::line(&line)?;
         }
+        let conditions =
+            experiment.scenario.vcbc().map_or_else(|_| Vec::new(), |_| experiment.scenario.beyond_ideal());
+        if let Some(line) = outside_of_proofs(&conditions) {
+            print::line(&line)?;
+        }
         let sampled = experiment.sampled.as_ref().map(Sampled::line);
         if let Some(line) = sampled.or_else(|| not_looked_at(&experiment.scenario)) {
             print::line(&line)?;
@@ -108,7 +114,8 @@ fn summary_line(summary: &Summary) -> Option<String> {
         && (!summary.imperfections.is_empty() || summary.stops > 0 || summary.suspended_fraction > 0.0);
     real.then(|| {
         format!(
-            "rms |e_l| {:.3} mrad; no certificate could hold for {:.2} % of the run; safe stops: {}",
+            "rms |e_l| {:.3} mrad; motors gave other torques than the law's, or the guard acted, in {:.2} % of the run; \
+             safe stops: {}",
             1e3 * summary.rms_e_l,
             100.0 * summary.suspended_fraction,
             summary.stops

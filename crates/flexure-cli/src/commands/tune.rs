@@ -6,6 +6,7 @@ use flexure::design::{Design, SpecFile, Specified, check_out, design};
 use flexure::feasible;
 use flexure::files::number::short;
 use flexure::files::{Reading, prepare, write_atomic};
+use flexure::prove::standing::outside_of_proofs;
 use flexure::report::{constraints_table, gains_table, margins_table, trades_table};
 use serde::Serialize;
 
@@ -48,7 +49,7 @@ pub fn tune(options: &Tune, reading: Reading<'_>, json: bool) -> Result<(), Fail
         print::json(&Outcome { design: &found, file })?;
     } else {
         let joints: Vec<String> = scenario.robot.joints.iter().map(|joint| joint.name.clone()).collect();
-        show(&found, &joints)?;
+        show(&found, &joints, &scenario.beyond_ideal())?;
         if let Some(file) = file {
             print::line(&format!("wrote {}", file.display()))?;
         }
@@ -72,7 +73,7 @@ fn beside(scenario: &str, name: &str) -> PathBuf {
     Path::new(scenario).with_file_name(format!("{name}-tuned.toml"))
 }
 
-fn show(found: &Design, joints: &[String]) -> Result<(), Failure> {
+fn show(found: &Design, joints: &[String], conditions: &[&str]) -> Result<(), Failure> {
     let width = print::columns();
     print::line(&gains_table(joints, found, width))?;
     if !found.broken_off {
@@ -88,6 +89,9 @@ fn show(found: &Design, joints: &[String]) -> Result<(), Failure> {
     }
     if let (Some(verdict), Some(rate)) = (evidence.verdict, evidence.rate_certified) {
         print::line(&format!("contraction rate: {} 1/s, {verdict}", short(rate, 4)))?;
+        if let Some(line) = outside_of_proofs(conditions) {
+            print::line(&line)?;
+        }
     }
     if let Some(frail) = found.frail() {
         print::line(&format!(

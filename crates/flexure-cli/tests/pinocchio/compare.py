@@ -56,7 +56,7 @@ def locks_needed(model):
 
 def robot_file(binary, urdf, locks, folder):
     """The drafted robot file with every missing number supplied, or None of a refused URDF."""
-    draft = flexure(binary, "import", urdf, *(word for name in locks for word in ("--lock", f"{name}=0")))
+    draft = flexure(binary, "import", urdf, "--unknown-limits", *(word for name in locks for word in ("--lock", f"{name}=0")))
     if draft.returncode != 0:
         return None
     path = folder / "robot.toml"

@@ -58,7 +58,7 @@ fn proofs_of_another_loop_say_so() {
     );
     let strict = folder.run(&["certify", "two-link-hardware", "--strict"]);
     assert_eq!(strict.code, Some(1), "{strict:?}");
-    strict.said(&["the proof leaves out encoder"]);
+    strict.said(&["outside of them stand, in this scenario: encoder"]);
     assert!(strict.stdout.contains("proved (ideal loop)"), "{}", strict.stdout);
     let run = folder.run(&["run", "two-link-hardware", "--json"]).done().json();
     assert_eq!(run["rate_certified"], Value::Null);

@@ -98,19 +98,17 @@ fn what_is_missing_is_listed_once() {
     assert!(locked.get("scenario").is_none());
 }
 
-/// Limits of zero, ranges without end, joints that slide, efforts that are none: drafts that can be checked, or a clear no.
+/// Limits that are not there, ranges without end, joints that slide, efforts that are none: drafts that can be checked, or a clear no.
 #[test]
 fn strange_joints_make_sound_drafts() {
     let place = Place::new();
     for (from, to) in [
-        ("effort=\"30\"", "effort=\"0\""),
         ("effort=\"30\" ", ""),
+        ("velocity=\"3\"", ""),
         ("<limit effort=\"30\" velocity=\"3\" lower=\"-0.4\" upper=\"2.0\"/>", ""),
         ("type=\"revolute\"", "type=\"continuous\""),
         ("type=\"revolute\"", "type=\"prismatic\""),
-        ("lower=\"-0.4\" upper=\"2.0\"", "lower=\"0\" upper=\"0\""),
         ("lower=\"-0.4\" upper=\"2.0\"", "lower=\"100\" upper=\"100.001\""),
-        ("velocity=\"3\"", "velocity=\"0\""),
         ("name=\"pivot\"", "name=\"joint with spaces, \u{3c0}\""),
         ("effort=\"30\"", "effort=\"1e9\""),
     ] {
@@ -133,6 +131,34 @@ fn strange_joints_make_sound_drafts() {
             .run(&import("bad/swing.urdf", &["--assume", "belt", "--scenario", "--out", "none"]))
             .refused(&[said]);
         assert!(place.names("none").is_empty());
+    }
+}
+
+/// A limit of zero is refused whatever is asked for, and nothing is written; said to be unknown, it is none in draft and run.
+#[test]
+fn limits_of_zero_are_refused_unless_they_are_unknown() {
+    let place = Place::new();
+    for (from, to, said) in [
+        ("effort=\"30\"", "effort=\"0\"", "joint 'pivot': effort 0"),
+        ("effort=\"30\"", "effort=\"-5\"", "effort -5"),
+        ("velocity=\"3\"", "velocity=\"0.0\"", "velocity 0"),
+        ("lower=\"-0.4\" upper=\"2.0\"", "lower=\"0\" upper=\"0\"", "lower 0 with upper 0"),
+        ("lower=\"-0.4\" upper=\"2.0\"", "lower=\"1\" upper=\"-1\"", "lower 1 with upper -1"),
+        ("lower=\"-0.4\" upper=\"2.0\"", "lower=\"0.5\"", "lower 0.5 with upper 0"),
+    ] {
+        assert!(SWING.contains(from), "{from}");
+        place.write("zero.urdf", SWING.replace(from, to));
+        for more in [&["--out", "none"] as &[_], &["--assume", "belt", "--scenario", "--out", "none"], &[]] {
+            place.run(&import("zero.urdf", more)).refused(&["limits", "1 joint cannot move", said]);
+        }
+        assert!(place.names("none").is_empty());
+        let known = ["--assume", "belt", "--scenario", "--unknown-limits", "--force"];
+        place.run(&import("zero.urdf", &known)).done();
+        place.run(&["check", "zero.toml", "zero-scenario.toml"]).done();
+        let toml = place.read("zero.toml");
+        assert_eq!(toml.matches("unknown_limits = true").count(), 1, "{toml}");
+        place.write("zero.toml", toml.replace("unknown_limits = true", "unknown_limits = false"));
+        place.run(&["check", "zero.toml"]).refused(&["zero.urdf", said]);
     }
 }
 

@@ -25,6 +25,24 @@ fn a_tuned_scenario_is_written_and_follows() {
     );
 }
 
+/// Tuning, a run and a proof say of the same loop in the same words what is proved, and what stands outside.
+#[test]
+fn what_stands_outside_of_proofs_is_said_alike() {
+    let place = Place::new();
+    place.write("late.toml", format!("{SHORT}[[imperfection]]\nkind = \"delay\"\ncomputation = 0.001\n"));
+    let words = "proofs are of the ideal loop (true states, no delay, torque in continuous time); outside of them stand, in this scenario: \
+                 delay";
+    let tuned = place.run(&["tune", "late.toml", "--budget", "4"]).done().stdout;
+    assert!(tuned.contains("proved (ideal loop)") && tuned.contains(words), "{tuned}");
+    for command in ["run", "certify"] {
+        let said = place.run(&[command, "late-tuned.toml"]).done().stdout;
+        assert!(said.contains(words), "{command}: {said}");
+    }
+    // Nothing stands outside, nothing is said.
+    place.write("swing.toml", SHORT);
+    assert!(!place.run(&["run", "swing.toml"]).done().stdout.contains("proofs are of"));
+}
+
 #[test]
 fn what_cannot_be_had_is_a_no_and_writes_nothing() {
     let place = Place::new();
@@ -57,6 +75,8 @@ fn questions_that_cannot_be_meant_are_refused() {
     refused(&["tune", "swing.toml", "--out", "spec.toml"], &["is there already"]);
     refused(&["tune", "swing.toml", "--out", "."], &["is there already"]);
     refused(&["tune", "panda"], &["robot"]);
+    let robot = ["tune", "swing.toml", "--set", "robot.gravity=[0, 0, 0]"];
+    refused(&robot, &["what is written is the scenario's", "--set robot=COPY.toml"]);
     assert_eq!(
         place.names("."),
         ["bad.toml", "both.toml", "ideal.toml", "pd.toml", "spec.toml", "swing.toml"]

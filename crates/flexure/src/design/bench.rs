@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 
 use crate::design::constraint::{Constraint, NOMINAL};
-use crate::design::search::Watch;
 use crate::design::spec::Spec;
+use crate::design::watch::Watch;
 use crate::feasible;
 use crate::files::Problems;
 use crate::files::number::short;
@@ -167,6 +167,11 @@ impl Bench {
         };
         let lost: Vec<_> = self.corners.par_iter().map(lost).collect::<Result<_, Problems>>()?;
         Ok(lost.into_iter().flatten().collect())
+    }
+
+    /// How many things the loops shall bear.
+    pub fn corners(&self) -> usize {
+        self.corners.len()
     }
 
     /// The loops under `controller`.

@@ -17,6 +17,7 @@ mod search;
 mod spec;
 mod specified;
 mod trade;
+mod watch;
 
 pub use constraint::{Constraint, Kind};
 pub use outcome::{Design, Evidence, Feasible, check_out, design};

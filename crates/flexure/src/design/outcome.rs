@@ -8,10 +8,11 @@ use crate::design::bench::Bench;
 use crate::design::constraint::{Constraint, FOLLOWS, Kind, NOMINAL};
 use crate::design::family::{Family, Pace};
 use crate::design::least::Least;
-use crate::design::search::{Found, Search, Watch};
+use crate::design::search::{Found, Search, work};
 use crate::design::spec::{Rate, SpecFile};
 use crate::design::specified::Specified;
 use crate::design::trade::{Trade, trades, untraded};
+use crate::design::watch::{Effort, Watch, side_by_side};
 use crate::files::bounds;
 use crate::files::number::short;
 use crate::files::{Problem, Problems, read_text};
@@ -71,10 +72,8 @@ pub struct Feasible {
     pub rate: Option<f64>,
 }
 
-/// Parts of the work: where the search ends, that for a rate that is feasible, and trades.
-const SEARCHED: f64 = 0.6;
-const INSTEAD: f64 = 0.75;
-const TRADED: f64 = 0.8;
+/// Runs that margins take about.
+const MARGINS: usize = 75;
 
 /// Tunes the gains of the scenario in `specified` to what `file` asks, with at most `budget` runs in the search. What `progress`
 /// breaks off has the best so far.
@@ -101,24 +100,25 @@ pub fn design(
     let family = Family::new(start.controller, least, &drives(&scenario.robot)?);
     let bench = Bench::new(&specified.scenarios, &file.spec)?;
     let outlooks = bench.outlooks()?;
-    let watch = Watch::new(progress);
+    // Where each part of the work ends, in runs.
+    let effort = Effort::of(scenario);
+    let searched = work(&family, effort, budget);
+    let borne = searched + side_by_side(bench.corners());
+    let traded = borne + effort.trial * side_by_side(scenario.controller.gains().len());
+    let all = traded + side_by_side(MARGINS) / specified.scenarios.len() as f64;
+    let watch = Watch::new(progress, all);
     let pace = match file.spec.rate {
         None => Pace::Free,
         Some(Rate::AtLeast(rate)) => Pace::AtLeast(rate),
         Some(Rate::Largest) => Pace::Proved,
     };
-    let search = |pace, part| Search {
-        bench: &bench,
-        outlooks: &outlooks,
-        family: &family,
-        pace,
-        watch: &watch,
-        part,
-    };
+    let search =
+        |pace| Search { bench: &bench, outlooks: &outlooks, family: &family, pace, watch: &watch, effort };
     // Gains of the file take part, where nothing is asked that they may not know of.
     let takes_part = pace == Pace::Free && !scenario.has_starting_gains();
     let own: Vec<Controller> = takes_part.then(|| scenario.controller.clone()).into_iter().collect();
-    let Found { best, mut runs, mut broken_off } = search(pace, [0.0, SEARCHED]).run(&own, budget, seed)?;
+    let Found { best, mut runs, mut broken_off } = search(pace).run(&own, budget, seed)?;
+    watch.reach(searched);
     let tuned = bench.loops(&best.controller).swap_remove(0);
     let mut constraints = best.constraints.clone();
     let proof =
@@ -137,20 +137,27 @@ pub fn design(
         best.keeps() && constraints.iter().all(|constraint| constraint.is_kept() || !constraint.asked);
     let mut instead = None;
     if let (false, false, Some(Rate::AtLeast(_))) = (feasible, broken_off, file.spec.rate) {
-        let found = search(Pace::Proved, [SEARCHED, INSTEAD]).run(&[], budget.div_ceil(2), seed)?;
+        let found = search(Pace::Proved).run(&[], budget.div_ceil(2), seed)?;
         runs += found.runs;
         broken_off |= found.broken_off;
         instead = Some(Feasible { rate: found.best.keeps().then(|| (-found.best.cost).exp()) });
     }
-    watch.tell(INSTEAD);
+    watch.reach(borne);
     // What was broken off comes back at once.
     let sampled = if broken_off { None } else { probe(&tuned)? };
     let verdict = proof.as_ref().map(|proof| Standing::of(&tuned, proof, sampled.as_ref()).words());
-    let gains =
-        if broken_off { untraded(&best.controller) } else { trades(&bench, &outlooks, &best, &watch)? };
-    watch.tell(TRADED);
+    let gains = if broken_off {
+        untraded(&best.controller)
+    } else {
+        trades(&bench, &outlooks, &best, &watch, effort)?
+    };
+    watch.reach(traded);
     let margins = if feasible && !broken_off {
-        let found = margins(&tuned, &|fraction| progress(TRADED + (1.0 - TRADED) * fraction))?;
+        let measured = |fraction: f64| {
+            watch.reach(traded + (all - traded) * fraction);
+            watch.go_on()
+        };
+        let found = margins(&tuned, &measured)?;
         broken_off |= found.broken_off;
         Some(found)
     } else {
@@ -218,6 +225,13 @@ pub fn check_out(out: &Path, inputs: &[Option<&Path>]) -> Result<(), Problem> {
     Err(Problem::new("exists", message, "name another file with --out, or remove this one"))
 }
 
+/// What lets more gains be stable.
+const QUICKER: &str = "less delay ([[imperfection]] delay, a time of its own: a shorter control_period alone leaves it), with that a shorter \
+                       control_period, a faster velocity filter or an observer";
+
+/// Part of the size of the reference that is no error any more.
+const HALF: f64 = 0.5;
+
 impl Design {
     /// What a scenario file with these gains says of them in its first lines.
     pub fn comment(&self) -> String {
@@ -271,6 +285,15 @@ impl Design {
         broken.min_by(|a, b| a.slack.total_cmp(&b.slack))
     }
 
+    /// Whether the loop does not follow at all, so that nobody would accept what it does: an error as large as half of the
+    /// motion that is asked for.
+    fn is_lost(&self) -> bool {
+        let sizes = self.evidence.runs.iter().flat_map(|run| &run.following.size);
+        let size = sizes.copied().fold(0.0, f64::max);
+        let error = self.constraints.iter().find(|constraint| constraint.kind == Kind::Run(Measure::Error));
+        error.is_some_and(|error| !error.is_kept() && error.value >= HALF * size)
+    }
+
     /// What would have to change for that constraint to be kept.
     pub fn way_out(&self) -> Option<String> {
         let binding = self.binding()?;
@@ -285,11 +308,11 @@ impl Design {
         let way = match binding.kind {
             Kind::Radius => {
                 let spec = if what == NOMINAL { "" } else { "; or a SPEC that asks for less margin and uncertainty" };
-                format!(
-                    "less delay ([[imperfection]] delay, a time of its own: a shorter control_period alone leaves it), with that a shorter \
-                     control_period, a faster velocity filter or an observer{spec}"
-                )
+                format!("{QUICKER}{spec}")
             }
+            Kind::Run(_) if self.is_lost() => format!(
+                "the loop does not follow at all with any gains that were tried, so that no limit can be named: {QUICKER}; or a slower reference"
+            ),
             Kind::Run(Measure::AtLimit) => {
                 "drives with larger torque limits, a slower reference ([reference.time_scaling] margin), or accept.at_limit above 0".to_owned()
             }

@@ -4,17 +4,15 @@
 //! errors shrink fastest. Then the loop is run with the fastest of these, and the search moves all numbers from the best of them.
 
 use std::cell::{Cell, RefCell};
-use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
 use crate::design::bench::{Bench, Outlooks, Trial};
 use crate::design::family::{Family, Pace};
+use crate::design::watch::{Effort, Watch, side_by_side};
 use crate::files::Problems;
 use crate::laws::Controller;
-use crate::progress::Progress;
-use crate::tune::search;
+use crate::tune::{search, together};
 
 /// Loops that are run in the search for gains.
 pub const BUDGET: usize = 40;
@@ -32,35 +30,6 @@ const FIRST: usize = 12;
 /// How far the search goes from the best of these, as a logarithm.
 const HALF_WIDTH: f64 = 1.2;
 
-/// Who watches a search: told how far it is, and asked whether to go on.
-pub(super) struct Watch<'a> {
-    progress: Progress<'a>,
-    at: AtomicU64,
-}
-
-impl<'a> Watch<'a> {
-    pub fn new(progress: Progress<'a>) -> Self {
-        Self { progress, at: AtomicU64::new(0.0_f64.to_bits()) }
-    }
-
-    /// Tells that `fraction` is done.
-    pub fn tell(&self, fraction: f64) {
-        self.at.store(fraction.to_bits(), Ordering::Relaxed);
-        let _ = self.go_on();
-    }
-
-    /// # Errors
-    /// [`Problems::interrupted`] if it is time to end.
-    pub fn check(&self) -> Result<(), Problems> {
-        if self.go_on().is_break() { Err(Problems::interrupted()) } else { Ok(()) }
-    }
-
-    /// Whether to go on.
-    pub fn go_on(&self) -> ControlFlow<()> {
-        (self.progress)(f64::from_bits(self.at.load(Ordering::Relaxed)))
-    }
-}
-
 /// A search for gains.
 pub(super) struct Search<'a> {
     pub bench: &'a Bench,
@@ -68,8 +37,7 @@ pub(super) struct Search<'a> {
     pub family: &'a Family,
     pub pace: Pace,
     pub watch: &'a Watch<'a>,
-    /// Which part of the whole job it is, from and to.
-    pub part: [f64; 2],
+    pub effort: Effort,
 }
 
 /// What a search found.
@@ -83,19 +51,24 @@ pub(super) struct Found {
 }
 
 impl Search<'_> {
-    /// The best gains among those of at most `budget` runs, and `given` ones.
+    /// The best gains among the starting ones, or slower ones, which are tried first so that there is something to keep, those of
+    /// at most `budget` runs, and `given` ones.
     ///
     /// # Errors
     /// As [`Scenario::open`](crate::Scenario::open), and [`Problems::interrupted`] if it was broken off before anything was tried.
     pub fn run(&self, given: &[Controller], budget: usize, seed: u64) -> Result<Found, Problems> {
-        let state = State::default();
+        let start = self.at(&self.slowed(), f64::INFINITY, 1)?;
+        let state = State { best: RefCell::new(Some(start)), ..State::default() };
         let own = |controller: &Controller| {
-            self.bench.try_out(self.outlooks, controller.clone(), f64::ln, f64::INFINITY, self.watch)
+            let trial =
+                self.bench.try_out(self.outlooks, controller.clone(), f64::ln, f64::INFINITY, self.watch);
+            self.watch.add(self.effort.trial);
+            trial
         };
-        self.note(&state, budget, given.iter().take(budget).map(own).collect::<Vec<_>>());
-        let ridge = self.ridge(FIRST.min(budget.div_ceil(2)));
+        note(&state, given.iter().take(budget).map(own).collect::<Vec<_>>());
+        let ridge = self.ridge(first_runs(budget));
         let first: Vec<&Vec<f64>> = ridge.iter().take(budget.saturating_sub(state.runs.get())).collect();
-        let costs = self.note(&state, budget, first.par_iter().map(|x| self.at(x, f64::INFINITY)).collect());
+        let costs = note(&state, first.par_iter().map(|x| self.at(x, f64::INFINITY, first.len())).collect());
         let center = costs.iter().zip(&first).min_by(|(a, _), (b, _)| a.total_cmp(b));
         let center = center.map_or_else(|| vec![0.0; self.family.dimension()], |(_, x)| (*x).clone());
         let costs = |steps: &[Vec<f64>]| {
@@ -105,9 +78,9 @@ impl Search<'_> {
             let least = state.best.borrow().as_ref().map_or(f64::INFINITY, |best| best.cost);
             let at = |step: &Vec<f64>| {
                 let x: Vec<f64> = center.iter().zip(step).map(|(x, step)| x + step).collect();
-                self.at(&x, least)
+                self.at(&x, least, steps.len())
             };
-            self.note(&state, budget, steps.par_iter().map(at).collect())
+            note(&state, steps.par_iter().map(at).collect())
         };
         let left = budget.saturating_sub(state.runs.get());
         if left > 0 {
@@ -122,46 +95,43 @@ impl Search<'_> {
         }
     }
 
-    /// The member at `x` on trial.
-    fn at(&self, x: &[f64], best: f64) -> Result<Trial, Problems> {
+    /// The member at `x` on trial, one of so many that are tried side by side.
+    fn at(&self, x: &[f64], best: f64, tried: usize) -> Result<Trial, Problems> {
         let controller = self.family.at(x, self.pace);
         let cost = |error: f64| if self.pace == Pace::Proved { -x[0] } else { error.ln() };
-        self.bench.try_out(self.outlooks, controller, cost, best, self.watch)
+        let trial = self.bench.try_out(self.outlooks, controller, cost, best, self.watch);
+        self.watch.add(self.effort.trial * side_by_side(tried) / tried as f64);
+        trial
     }
 
-    /// Takes in trials, and gives what they cost: infinitely much where one failed.
-    fn note(&self, state: &State, budget: usize, trials: Vec<Result<Trial, Problems>>) -> Vec<f64> {
-        let note = |trial: Result<Trial, Problems>| match trial {
-            Ok(trial) => {
-                state.runs.set(state.runs.get() + 1);
-                let cost = trial.cost;
-                let mut best = state.best.borrow_mut();
-                if best.as_ref().is_none_or(|best| cost < best.cost) {
-                    *best = Some(trial);
-                }
-                cost
-            }
-            Err(problems) => {
-                state.failed.borrow_mut().get_or_insert(problems);
-                f64::INFINITY
-            }
+    /// Numbers of the fastest member with starting gains, or slower ones in the same proportions, of whose sampled loop a first
+    /// idea is that small errors shrink in it; of the starting gains if there is none.
+    fn slowed(&self) -> Vec<f64> {
+        let at = |speed: &f64| {
+            let mut numbers = self.start();
+            numbers[0] += speed;
+            numbers
         };
-        let costs = trials.into_iter().map(note).collect();
-        let [from, to] = self.part;
-        self.watch.tell(from + (to - from) * state.runs.get() as f64 / budget as f64);
-        costs
+        let slower: Vec<Vec<f64>> = SPEEDS.iter().rev().filter(|speed| **speed <= 0.0).map(at).collect();
+        let shrinks = |x: &&Vec<f64>| self.outlooks.first_idea(&self.family.at(x, self.pace)) < 1.0;
+        let first = slower.par_iter().find_first(shrinks);
+        first.cloned().unwrap_or_else(|| self.start())
+    }
+
+    /// Numbers of the member with the starting gains, or with the least ones that prove their rate.
+    fn start(&self) -> Vec<f64> {
+        let mut numbers = vec![0.0; self.family.dimension()];
+        if self.pace == Pace::Proved {
+            numbers[0] = self.family.base_rate();
+        }
+        numbers
     }
 
     /// For each speed and damping of the motors the member whose sampled loop makes small errors shrink fastest, from fast to slow: at
     /// most `most` of the stable ones, or else the one that is closest.
     fn ridge(&self, most: usize) -> Vec<Vec<f64>> {
-        let origin = if self.pace == Pace::Proved { self.family.base_rate() } else { 0.0 };
-        let (dampings, scales): (&[f64], Vec<[f64; 2]>) = if self.family.is_vcbc() {
-            let scales = METRICS.iter().flat_map(|metric| BALANCES.map(|balance| [*metric, balance]));
-            (&DAMPINGS, scales.collect())
-        } else {
-            (&[0.0], vec![[0.0; 2]])
-        };
+        let origin = self.start()[0];
+        let (dampings, scales) = looks(self.family);
         let mut paces: Vec<[f64; 2]> =
             SPEEDS.iter().flat_map(|speed| dampings.iter().map(|damping| [*speed, *damping])).collect();
         // Errors are the smaller the faster the loop and the stiffer its motors.
@@ -173,9 +143,14 @@ impl Search<'_> {
             scales.iter().map(at).collect::<Vec<_>>()
         };
         let members: Vec<Vec<f64>> = paces.iter().flat_map(members).collect();
-        let idea = |x: &Vec<f64>| match self.watch.go_on() {
-            ControlFlow::Continue(()) => self.outlooks.first_idea(&self.family.at(x, self.pace)),
-            ControlFlow::Break(()) => f64::INFINITY,
+        let each = self.effort.idea * side_by_side(members.len()) / members.len() as f64;
+        let idea = |x: &Vec<f64>| {
+            if self.watch.go_on().is_break() {
+                return f64::INFINITY;
+            }
+            let growth = self.outlooks.first_idea(&self.family.at(x, self.pace));
+            self.watch.add(each);
+            growth
         };
         let growths: Vec<f64> = members.par_iter().map(idea).collect();
         let best = |(members, growths): (&[Vec<f64>], &[f64])| {
@@ -201,4 +176,50 @@ struct State {
     best: RefCell<Option<Trial>>,
     runs: Cell<usize>,
     failed: RefCell<Option<Problems>>,
+}
+
+/// Takes in trials, and gives what they cost: infinitely much where one failed.
+fn note(state: &State, trials: Vec<Result<Trial, Problems>>) -> Vec<f64> {
+    let note = |trial: Result<Trial, Problems>| match trial {
+        Ok(trial) => {
+            state.runs.set(state.runs.get() + 1);
+            let cost = trial.cost;
+            let mut best = state.best.borrow_mut();
+            if best.as_ref().is_none_or(|best| cost < best.cost) {
+                *best = Some(trial);
+            }
+            cost
+        }
+        Err(problems) => {
+            state.failed.borrow_mut().get_or_insert(problems);
+            f64::INFINITY
+        }
+    };
+    trials.into_iter().map(note).collect()
+}
+
+/// Dampings, and metrics with balances, that are looked at for each speed.
+fn looks(family: &Family) -> (&'static [f64], Vec<[f64; 2]>) {
+    if !family.is_vcbc() {
+        return (&[0.0], vec![[0.0; 2]]);
+    }
+    let scales = METRICS.iter().flat_map(|metric| BALANCES.map(|balance| [*metric, balance]));
+    (&DAMPINGS, scales.collect())
+}
+
+/// Loops that are run of the ridge.
+fn first_runs(budget: usize) -> usize {
+    FIRST.min(budget.div_ceil(2))
+}
+
+/// How long a search in `family` with `budget` runs takes.
+pub(super) fn work(family: &Family, effort: Effort, budget: usize) -> f64 {
+    let (dampings, scales) = looks(family);
+    let ideas = side_by_side(SPEEDS.len() * dampings.len() * scales.len());
+    let first = first_runs(budget);
+    let left = budget.saturating_sub(first);
+    let together = together(family.dimension(), left);
+    let alone = left.saturating_sub(together.iter().sum());
+    let trials = 1.0 + side_by_side(first) + together.map(side_by_side).iter().sum::<f64>() + alone as f64;
+    effort.idea * ideas + effort.trial * trials
 }

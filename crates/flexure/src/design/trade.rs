@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::design::bench::{Bench, Outlooks, Trial};
-use crate::design::search::Watch;
+use crate::design::watch::{Effort, Watch, side_by_side};
 use crate::files::Problems;
 use crate::laws::Controller;
 
@@ -50,6 +50,7 @@ pub(super) fn trades(
     outlooks: &Outlooks<'_>,
     trial: &Trial,
     watch: &Watch<'_>,
+    effort: Effort,
 ) -> Result<Vec<Trade>, Problems> {
     let gains = trial.controller.gains();
     let one = |(number, (gain, values)): (usize, &(String, &[f64]))| {
@@ -58,6 +59,7 @@ pub(super) fn trades(
             Err(problems) if problems.is_interrupted() => None,
             other => Some(other?),
         };
+        watch.add(effort.trial * side_by_side(gains.len()) / gains.len() as f64);
         let after = other.as_ref().and_then(figures);
         let effect = after.zip(figures(trial)).map(|(after, before)| Effect {
             error: after[0] / before[0],

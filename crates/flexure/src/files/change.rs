@@ -131,7 +131,7 @@ impl Change {
     /// That a change of the robot's file cannot be written into a scenario.
     pub(crate) fn of_another_file(&self) -> Problem {
         let message = "this changes the robot's file, and what is written is the scenario's";
-        let help = "change the robot's file itself";
+        let help = "copy the robot's file, change the copy, and name it: --set robot=COPY.toml; `run` and others take the change as it is";
         Problem::new("unsupported", message, help).at(&Source::new(NAME, &self.text), 0..self.value.start)
     }
 

@@ -2,9 +2,9 @@
 
 use super::Settings;
 use super::regression::Started;
-use super::smooth::rms;
 use crate::files::{Problem, Problems, number::significant};
 use crate::logs::Log;
+use crate::logs::smooth::rms;
 use crate::robot::Robot;
 
 /// Shortest log that is worth looking at \[s\].
@@ -42,8 +42,13 @@ pub(crate) fn check(robot: &Robot, logs: &[Log], settings: &Settings) -> Result<
             "with motor encoders alone the search starts from the robot file: give a guess, 30 % off will do";
         problems.push(Problem::new("log", message, help));
     }
-    for log in logs {
+    for (k, log) in logs.iter().enumerate() {
         problems.extend(alone(robot, log));
+        if logs[..k].iter().any(|other| other.q_m == log.q_m && other.u_m == log.u_m) {
+            let message = format!("{} is there twice", log.name);
+            let help = "what is counted twice looks better known than it is: name each log once";
+            problems.push(Problem::new("log", message, help));
+        }
         let same = log.q_l.is_some() == first.q_l.is_some()
             && log.q_m.is_some() == first.q_m.is_some()
             && (log.period / first.period - 1.0).abs() < 1e-6;
@@ -147,7 +152,19 @@ pub(crate) fn explained(robot: &Robot, log: &Log, started: &Started) -> Result<(
         let joint = &robot.joints[i].name;
         let torque = rms(&log.u_m, log.joints, i);
         let [stiffness, inertia, ..] = started.joints[i];
-        if *link <= UNEXPLAINED && *motor <= UNEXPLAINED && (stiffness <= 0.0 || inertia <= 0.0) {
+        // With motors alone the equation that is seen is that of links and motors together.
+        let (seen, is_positive) = match &log.q_l {
+            Some(_) => (
+                format!(
+                    "{:.0} % of the spring torque and {:.0} % of the motor torque",
+                    100.0 * link,
+                    100.0 * motor
+                ),
+                stiffness > 0.0 && inertia > 0.0,
+            ),
+            None => (format!("{:.0} % of the motor torque", 100.0 * motor), true),
+        };
+        if *link <= UNEXPLAINED && *motor <= UNEXPLAINED && !is_positive {
             let what = if stiffness <= 0.0 { "stiffness" } else { "motor inertia" };
             let message = format!("{}: no positive {what} of {joint} explains how it moves", log.name);
             let help = "the motion is too slow or too small to show it (`flexure excite` designs one that does), or a column has \
@@ -155,11 +172,9 @@ pub(crate) fn explained(robot: &Robot, log: &Log, started: &Started) -> Result<(
             problems.push(Problem::new("log-mismatch", message, help));
         } else if *link > UNEXPLAINED || *motor > UNEXPLAINED {
             let message = format!(
-                "{}: {joint} does not move as the robot does: its equations leave {:.0} % of the spring torque and {:.0} % \
-                 of the motor torque ({} N m rms) unexplained, whatever its numbers are",
+                "{}: {joint} does not move as the robot does: its equations leave {seen} ({} N m rms) unexplained, whatever its \
+                 numbers are",
                 log.name,
-                100.0 * link,
-                100.0 * motor,
                 significant(torque, 3)
             );
             let help = "are columns swapped, in degrees, on the motor side of the gear, of another sign, or is the motion \

@@ -1,8 +1,9 @@
 //! From a log to the numbers of the joints: stiffness, motor inertia, damping and dry friction of both sides, and the time
 //! offset between torques and positions, with error bars.
 //!
-//! First a start without local minima (`regression.rs`), then maximum likelihood of the innovations of a predictor of constant
-//! gain (`search.rs`, `predictor.rs`), whose derivatives are exact (`step.rs`). docs/identification.md is the guide.
+//! First a start without local minima (`regression`), then maximum likelihood of the innovations of a predictor of constant
+//! gain (`search.rs`, `predictor.rs`), whose derivatives are exact (`step.rs`), and a look beyond the minimum that it found
+//! (`scan.rs`). docs/identification.md is the guide.
 
 mod bounded;
 mod checks;
@@ -18,7 +19,6 @@ mod robot_file;
 mod rubbing;
 mod scan;
 mod search;
-mod smooth;
 mod step;
 mod tangents;
 mod torque;
@@ -27,12 +27,12 @@ pub use outcome::{Estimate, Identified, IdentifiedJoint, NoiseRatio, Offset};
 pub use parameters::Parameter;
 pub use robot_file::RobotFile;
 
+use crate::logs::smooth::{rms, whiteness};
 use evidence::Evidence;
 use parameters::Values;
 use predictor::Piece;
 use prior::Prior;
 use search::{Found, Search};
-use smooth::{rms, whiteness};
 
 use crate::files::{Problem, Problems};
 use crate::logs::Log;
@@ -62,10 +62,6 @@ const SIGMAS: f64 = 3.0;
 
 /// Dampings and frictions are known if their error is below this part of them: they are told from zero.
 const TOLD_FROM_ZERO: f64 = 1.0;
-
-/// Largest error (three standard deviations) of the time at which torques act for anything to count as known \[s\]: a log that does not
-/// tell that within a few samples has no motion in it that a spring or a motor would show.
-const TIMED: f64 = 0.005;
 
 /// Length of the pieces that a log is predicted in, and what each begins with to forget where it began \[s\].
 const PIECE: f64 = 4.0;
@@ -157,14 +153,16 @@ fn from_file(robot: &Robot, torque_size: &[f64], logs: usize) -> Values {
 /// Smallest part of what is written that a search starts from, and its inverse.
 const FAR: f64 = 0.02;
 
-/// Where the search starts: by regression where both sides are measured, else at the numbers of the file.
+/// Where the search starts: by regression, with the stiffness of the file where only motors are measured.
 fn started(robot: &Robot, logs: &[Log], written: &Values) -> Result<Values, Problems> {
     let mut values = written.clone();
     let arm = robot.arm()?;
     for (k, log) in logs.iter().enumerate() {
         let started = match (&log.q_l, &log.q_m) {
             (Some(q_l), Some(q_m)) => regression::both_sides::start(&*arm, log, q_l, q_m),
-            (None, Some(q_m)) => regression::motors::start(&*arm, log, q_m, &written.of(Parameter::Stiffness)),
+            (None, Some(q_m)) => {
+                regression::motors::start(&*arm, log, q_m, &written.of(Parameter::Stiffness))
+            }
             (_, None) => continue,
         };
         checks::explained(robot, log, &started)?;
@@ -242,8 +240,13 @@ fn judged(
     let validation =
         layer::total(search.layer, search.logs, kept.iter().copied(), values, &found.weighing, false);
     let names: Vec<String> = robot.joints.iter().map(|joint| joint.name.clone()).collect();
-    let offset_error = |k: usize| SIGMAS * evidence.deviations[names.len() * Parameter::COUNT + k];
-    let is_timed = (0..search.logs.len()).all(|k| offset_error(k) <= TIMED);
+    let offsets = search.logs.iter().enumerate().map(|(k, log)| Offset {
+        log: log.name.clone(),
+        value: values.offsets[k],
+        error: SIGMAS * evidence.deviations[names.len() * Parameter::COUNT + k],
+    });
+    let offsets: Vec<_> = offsets.collect();
+    let is_timed = offsets.iter().all(Offset::is_known);
     let joints = (0..names.len()).map(|i| {
         let root = |x: f64, noise: f64| x.sqrt() / noise;
         let [l, _, m] = found.total.covariance(i);
@@ -271,16 +274,11 @@ fn judged(
         }
     });
     let joints = joints.collect();
-    let offsets = search.logs.iter().enumerate().map(|(k, log)| Offset {
-        log: log.name.clone(),
-        value: values.offsets[k],
-        error: offset_error(k),
-    });
     let (direction, deviation) = &evidence.weakest;
     Identified {
         robot: robot.name.clone(),
         joints,
-        offsets: offsets.collect(),
+        offsets,
         samples: found.total.samples,
         held_out: validation.samples,
         link_encoders: search.logs[0].q_l.is_some(),

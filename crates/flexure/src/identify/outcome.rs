@@ -81,6 +81,17 @@ pub struct Offset {
     pub error: f64,
 }
 
+/// Largest error (three standard deviations) of the time at which torques act for anything to count as known \[s\]: a log that does not
+/// tell that within a few samples has no motion in it that a spring or a motor would show.
+const TIMED: f64 = 0.005;
+
+impl Offset {
+    /// Whether the log tells when torques act; where it does not, no number of it counts as known.
+    pub fn is_known(&self) -> bool {
+        self.error <= TIMED
+    }
+}
+
 impl Identified {
     /// Stiffnesses and motor inertias that the logs do not know: joint, parameter.
     pub fn missing(&self) -> Vec<(&str, &Estimate)> {

@@ -4,6 +4,9 @@ use std::fmt::Write as _;
 use std::ops::Range;
 use std::path::Path;
 
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
 use super::outcome::{Estimate, Identified};
 use super::parameters::Parameter;
 use crate::files::base::Base;
@@ -85,10 +88,8 @@ impl RobotFile {
         for parameter in KEPT {
             edits.tolerance(found, parameter)?;
         }
+        edits.edits.extend(friction_comment(&self.text).map(|span| (span, String::new())));
         let mut text = edits.made();
-        if let Some(at) = text.find(FRICTION) {
-            text.truncate(at);
-        }
         text.truncate(text.trim_end().len());
         text.push('\n');
         text.push_str(&friction(found));
@@ -112,27 +113,47 @@ fn readable(text: &str, path: &Path, outside: Outside) -> Result<Robot, Problems
 
 /// `text` with its gaps filled, and which parameters have some.
 fn filled(text: &str) -> (String, Vec<Parameter>) {
+    let (root, _) = DeTable::parse_recoverable(text);
     let mut gaps = Vec::new();
-    let mut is_tolerance = false;
-    let lines = text.split_inclusive('\n').map(|line| {
-        if line.trim_start().starts_with('[') {
-            is_tolerance = line.trim_start().starts_with("[tolerances]");
-        }
-        let (code, comment) = line.split_at(line.find('#').unwrap_or(line.len()));
-        let key = code.split('=').next().unwrap_or_default().trim();
-        let parameter = KEPT.into_iter().find(|parameter| parameter.name() == key);
-        match parameter.filter(|_| code.contains(GAP) && !is_tolerance) {
-            None => line.to_owned(),
-            Some(parameter) => {
-                gaps.push(parameter);
-                format!("{}{comment}", code.replace(GAP, stand_in(parameter)))
-            }
-        }
-    });
-    let text = lines.collect();
-    gaps.sort_unstable();
-    gaps.dedup();
-    (text, gaps)
+    if let Some(joints) = root.get_ref().get("joints") {
+        note_gaps(joints.get_ref(), &mut gaps);
+    }
+    let mut text = text.to_owned();
+    for (parameter, span) in &gaps {
+        text.replace_range(span.clone(), stand_in(*parameter));
+    }
+    let mut parameters: Vec<_> = gaps.into_iter().map(|(parameter, _)| parameter).collect();
+    parameters.sort_unstable();
+    parameters.dedup();
+    (text, parameters)
+}
+
+/// Where in `[joints]`, or in a joint's own table there, a parameter is [`GAP`], alone or in a list.
+fn note_gaps(value: &DeValue<'_>, gaps: &mut Vec<(Parameter, Range<usize>)>) {
+    let DeValue::Table(table) = value else { return };
+    for (key, value) in table {
+        let Some(parameter) = KEPT.into_iter().find(|parameter| parameter.name() == key.get_ref().as_ref())
+        else {
+            note_gaps(value.get_ref(), gaps);
+            continue;
+        };
+        let entries: Vec<_> = match value.get_ref() {
+            DeValue::Array(entries) => entries.iter().collect(),
+            _ => vec![value],
+        };
+        let is_gap =
+            |entry: &&Spanned<DeValue<'_>>| matches!(entry.get_ref(), DeValue::Float(x) if x.as_str() == GAP);
+        gaps.extend(entries.into_iter().filter(is_gap).map(|entry| (parameter, entry.span())));
+    }
+}
+
+/// Where `text` has the comment with dry friction, and nothing that is not of it.
+fn friction_comment(text: &str) -> Option<Range<usize>> {
+    let start = text.find(FRICTION)?;
+    let own = ["# [[imperfection]]", "# kind = \"friction\"", "# side = ", "# coulomb = ["];
+    let lines = text[start..].split_inclusive('\n').enumerate();
+    let of_it = lines.take_while(|(k, line)| *k == 0 || own.iter().any(|own| line.starts_with(own)));
+    Some(start..start + of_it.map(|(_, line)| line.len()).sum::<usize>())
 }
 
 /// What is to be changed in a text.
@@ -203,8 +224,7 @@ impl Edits<'_> {
 
     /// Puts `line` at the end, behind a header of `table` if it is the first.
     fn append(&mut self, table: &str, line: &str) {
-        // The comment at the end is written anew.
-        let text = self.file.text.split(FRICTION).next().unwrap_or_default();
+        let text = &self.file.text;
         let end = text.trim_end().len();
         let end = end + text[end..].find('\n').map_or(0, |newline| newline + 1);
         let header = format!("\n[{table}]\n");
@@ -342,6 +362,7 @@ fn friction(found: &Identified) -> String {
                 (0..found.joints.len()).map(|joint| number(found.estimate(joint, parameter))).collect();
             numbers.join(", ")
         };
+        // What the log does not know is no more than its error.
         let values = of(&|estimate| if estimate.known { written(estimate) } else { "0.0".to_owned() });
         let errors = of(&|estimate| two_digits(estimate.error));
         let _ = write!(

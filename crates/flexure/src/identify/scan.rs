@@ -51,13 +51,18 @@ impl Along {
     }
 }
 
-
 /// Where the logarithm of the likelihood is worse by this than the best, a walk ends.
 const HOPELESS: f64 = 1000.0;
 
 /// From `values`, joint by joint, to the least `cost` on these walks; with how much less it is there.
-pub(crate) fn scanned(values: &Values, cost: impl Fn(&Values) -> f64) -> (Values, f64) {
-    let here = cost(values);
+///
+/// # Errors
+/// Those of `cost`.
+pub(crate) fn scanned<E>(
+    values: &Values,
+    cost: impl Fn(&Values) -> Result<f64, E>,
+) -> Result<(Values, f64), E> {
+    let here = cost(values)?;
     let mut best = (values.clone(), here);
     for joint in 0..values.joints.len() {
         for along in Along::ALL {
@@ -65,7 +70,7 @@ pub(crate) fn scanned(values: &Values, cost: impl Fn(&Values) -> f64) -> (Values
             for side in [-1, 1] {
                 for steps in 1..=along.most() {
                     let there = along.walked(&from, joint, side * steps);
-                    let cost = cost(&there);
+                    let cost = cost(&there)?;
                     if cost < best.1 {
                         best = (there, cost);
                     } else if cost > best.1 + HOPELESS {
@@ -75,7 +80,7 @@ pub(crate) fn scanned(values: &Values, cost: impl Fn(&Values) -> f64) -> (Values
             }
         }
     }
-    (best.0, here - best.1)
+    Ok((best.0, here - best.1))
 }
 
 #[cfg(test)]
@@ -92,8 +97,10 @@ mod tests {
         for along in Along::ALL {
             let there = along.walked(&from, 1, 3);
             let back = along.walked(&there, 1, -3);
-            assert_eq!(there.joints[0], from.joints[0]);
-            assert_ne!(there.joints[1], from.joints[1]);
+            let moved = |joint: usize| {
+                there.joints[joint].iter().zip(&from.joints[joint]).any(|(x, y)| (x - y).abs() > 0.0)
+            };
+            assert!(!moved(0) && moved(1));
             for (x, y) in back.joints[1].iter().zip(&from.joints[1]) {
                 assert!((x - y).abs() < 1e-12 * y);
             }
@@ -108,15 +115,16 @@ mod tests {
     #[test]
     fn the_likeliest_dent_is_found() {
         let looks = std::cell::Cell::new(0);
-        let (found, better) = scanned(&values(), |at| {
+        let found = scanned(&values(), |at| {
             looks.set(looks.get() + 1);
             let [first, second] = [at.joints[0], at.joints[1]];
             let dent = |x: f64| 50.0 * x * x + 20.0 * (1.0 - (30.0 * x).cos());
-            dent((first[0] / 1260.0).ln()) + 1e6 * (second[0] / 1000.0).ln().powi(2)
+            Ok::<_, ()>(dent((first[0] / 1260.0).ln()) + 1e6 * (second[0] / 1000.0).ln().powi(2))
         });
+        let (found, better) = found.unwrap();
         assert!((found.joints[0][0] / 1260.0 - 1.0).abs() < 0.03 && better > 1.0, "{found:?} {better}");
         assert!((found.joints[1][0] - 1000.0).abs() < 1e-9);
-        // Three walks of 2 × 8 looks for the first, two and two short ones for the second, and the first look.
-        assert!(looks.get() <= 1 + 3 * 16 + 2 + 2 * 16, "{}", looks.get());
+        // Whole walks along what the cost does not know; one step to each side along what it knows well; and the first look.
+        assert_eq!(looks.get(), 1 + 40 + 12 + 12 + 2 + 12 + 12);
     }
 }

@@ -85,8 +85,10 @@ impl Search<'_> {
         for look in 0..LOOKS {
             (values, converged) =
                 self.climb(values, &mut weighing, ENOUGH, &|step| told(ROUNDS + look, step))?;
-            let cost = |there: &Values| self.cost(&self.total(there, &weighing, false), there);
-            let (there, better) = scanned(&values, cost);
+            let (there, better) = scanned(&values, |there| {
+                told(ROUNDS + look, STEPS - 1)?;
+                Ok::<_, Problems>(self.cost(&self.total(there, &weighing, false), there))
+            })?;
             if better < ROUGH {
                 break;
             }
@@ -218,7 +220,9 @@ impl Search<'_> {
             let mut promised = None;
             let mut moved = None;
             while damping < 1e6 {
-                let Some((step, gain)) = damped(&information, &score, damping, &bounds(&values, self.periods())) else {
+                let Some((step, gain)) =
+                    damped(&information, &score, damping, &bounds(&values, self.periods()))
+                else {
                     damping *= 10.0;
                     continue;
                 };

@@ -10,6 +10,8 @@ mod lines;
 mod log;
 mod plausible;
 mod read;
+pub(crate) mod smooth;
+mod speeds;
 
 pub use columns::Columns;
 pub use log::Log;

@@ -5,6 +5,7 @@ use crate::files::source::Source;
 use crate::files::{Problem, Problems};
 use crate::logs::channel::Channel;
 use crate::logs::log::Log;
+use crate::logs::speeds;
 use crate::robot::{JointKind, Robot};
 
 /// Of a position limit, more than this is no overshoot but another unit.
@@ -16,8 +17,8 @@ const FAR_BEYOND: f64 = 5.0;
 /// A joint that turned farther than this \[rad\], about eight turns, is not one of an arm.
 const FAR: f64 = 50.0;
 
-/// Position ranges below this \[rad\] say nothing of how motors and links move together.
-const STILL: f64 = 0.02;
+/// Position ranges below this \[rad\] say nothing of how motors and links move together, or how fast.
+pub(super) const STILL: f64 = 0.02;
 
 /// Motors move as links do, to this part, or what bends the spring comes from the motor.
 const TOGETHER: f64 = 0.5;
@@ -36,6 +37,7 @@ pub(super) fn check(log: &Log, robot: &Robot) -> Result<Vec<Problem>, Problems> 
         }
         problems.extend(apart(log, robot, i));
         problems.extend(no_torque(log, robot, i));
+        problems.extend(speeds::foreign(log, robot, i));
     }
     Problems::or_warnings(problems)
 }
@@ -51,7 +53,7 @@ fn values(log: &Log, channel: Channel) -> Option<&[f64]> {
 }
 
 /// A problem with the log as a whole.
-fn problem(log: &Log, code: &'static str, what: String, help: &str) -> Problem {
+pub(super) fn problem(log: &Log, code: &'static str, what: String, help: &str) -> Problem {
     Problem::new(code, what, help).at(&Source::part(&log.name, "", 0), 0..0)
 }
 

@@ -46,6 +46,18 @@ impl<'a> Standing<'a> {
     }
 }
 
+/// What a loop has that a proof of its law does not speak of, in words; nothing if it has nothing such. What has it are the
+/// `conditions` of [`Standing::Ideal`].
+pub fn outside_of_proofs(conditions: &[&str]) -> Option<String> {
+    (!conditions.is_empty()).then(|| {
+        format!(
+            "proofs are of the ideal loop (true states, no delay, torque in continuous time); outside of them stand, in this \
+             scenario: {}",
+            conditions.join(", ").replace('_', " ")
+        )
+    })
+}
+
 /// Whether a certificate of the law in continuous time is about the loop of `scenario`: nothing stands between them, and the
 /// sampled loop is stable.
 pub fn is_about(scenario: &Scenario, sampled: Option<&Sampled>) -> bool {

@@ -8,6 +8,7 @@
 mod closed_loop;
 mod figures;
 mod prediction;
+mod readings;
 mod start;
 
 use serde::Serialize;
@@ -40,6 +41,9 @@ pub struct Replay {
     pub joints: Vec<JointResiduals>,
     /// When the closed loop diverged, if it did \[s\].
     pub diverged_at: Option<f64>,
+    /// What is doubtful about the log as one of this robot.
+    #[serde(skip)]
+    pub warnings: Vec<Problem>,
     /// Log, closed loop, prediction and residuals over time: what the CSV file has.
     #[serde(skip)]
     pub trace: Trace,
@@ -48,7 +52,8 @@ pub struct Replay {
 /// Lays `log` over `scenario`; predictions run over windows of `horizon` s. The log begins where the scenario does.
 ///
 /// # Errors
-/// If the log is of a robot with another number of joints, the horizon is shorter than a sample, or the scenario cannot be run;
+/// If the log is of a robot with another number of joints; if its springs carry the links only with its sides swapped or its positions in
+/// degrees; if the horizon is shorter than a sample, or the scenario cannot be run;
 /// [`Problems::interrupted`] if it was broken off.
 pub fn replay(
     scenario: &Scenario,
@@ -66,6 +71,7 @@ pub fn replay(
             format!("the horizon is {horizon} s, must be at least one sample of the log: {} s", log.period);
         return Err(Problem::new("range", message, "0.1 s is what springs need to show").into());
     }
+    let warnings = readings::check(&scenario.robot, log)?;
     let closed = closed_loop::closed_loop(scenario, log, progress)?;
     let predicted = prediction::prediction(scenario, log, horizon)?;
     let sheet = figures::Sheet { scenario, log, closed: &closed.signals, predicted: &predicted };
@@ -77,6 +83,7 @@ pub fn replay(
         horizon,
         joints: sheet.residuals(),
         diverged_at: closed.diverged_at,
+        warnings,
         trace: sheet.trace(),
     })
 }

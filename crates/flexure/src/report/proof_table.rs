@@ -6,6 +6,7 @@ use crate::files::number::{NONE, engineering, short, significant};
 use crate::prove::along::{Along, Limit};
 use crate::prove::engine::certificate::{LoopSide, Norm, StructureName};
 use crate::prove::engine::verdict::Verdict;
+use crate::prove::standing::outside_of_proofs;
 use crate::prove::summary::{BlockSummary, ProofSummary, WithinSummary, WitnessSummary};
 use crate::report::columns::laid_out;
 use crate::report::table::{headed, right};
@@ -14,9 +15,9 @@ use crate::units::{self, Unit};
 /// What was proved, refuted or left undecided; the table in so many columns.
 pub fn proof_table(summary: &ProofSummary, width: usize) -> String {
     let mut text = format!("{}: {}\n", summary.name, summary.verdict);
-    if let Some(left_out) = left_out(summary) {
+    if let Some(outside) = outside_of_proofs(&summary.left_out) {
         // Writing to a text cannot fail.
-        let _ = writeln!(text, "the proof leaves out what the loop in the file has: {left_out}");
+        let _ = writeln!(text, "{outside}");
     }
     if let Some(sampled) = &summary.sampled {
         let _ = writeln!(text, "{}", sampled.line());
@@ -28,11 +29,6 @@ pub fn proof_table(summary: &ProofSummary, width: usize) -> String {
         let _ = write!(text, "\n{line}");
     }
     text
-}
-
-/// What a proof leaves out, in words.
-fn left_out(summary: &ProofSummary) -> Option<String> {
-    (!summary.left_out.is_empty()).then(|| summary.left_out.join(", ").replace('_', " "))
 }
 
 /// What was proved of several scenarios, a row each, in so many columns.

@@ -248,15 +248,19 @@ impl Reader<'_> {
         let lower = read("position_lower", &quantity::STOP, -none, |drive| drive.position_lower);
         let upper = read("position_upper", &quantity::STOP, none, |drive| drive.position_upper);
         let (lower, upper) = (lower?, upper?);
-        for ((lower, upper), joint) in lower.iter().zip(&upper).zip(self.moving) {
-            if lower >= upper {
-                let message = format!(
-                    "joint {}: position_lower is {lower} rad and position_upper {upper} rad, must be lower < upper",
-                    suggest::quoted(&joint.name)
-                );
-                self.table.error("range", message, "limits of the link position, rad");
-                return None;
-            }
+        let ranges = lower.iter().zip(&upper).zip(self.moving).filter(|((lower, upper), _)| lower >= upper);
+        let line = |((lower, upper), joint): ((&f64, &f64), &MovingJoint)| {
+            format!("\n  joint {}: {lower} and {upper}", suggest::quoted(&joint.name))
+        };
+        let empty: String = ranges.map(line).collect();
+        if !empty.is_empty() {
+            let message = format!("position_lower must be less than position_upper:{empty}");
+            self.table.error(
+                "range",
+                message,
+                "limits of the link position, rad, or m for a prismatic joint",
+            );
+            return None;
         }
         Some(Limits {
             torque: torque?,

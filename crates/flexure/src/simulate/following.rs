@@ -19,6 +19,9 @@ pub struct Following {
     pub used: Vec<Used>,
     /// What it was held to.
     pub accepted: Accepted,
+    /// How far the reference goes from where the links start, a joint each [rad or m].
+    #[serde(skip)]
+    pub size: Vec<f64>,
 }
 
 /// What a run came to of a limit, in the joint in which that is most.
@@ -171,7 +174,7 @@ impl Watch {
         }
         let Criteria { settling, settling_because: because, .. } = self.criteria;
         let accepted = Accepted { settling, because, bounds };
-        Following { follows: reasons.is_empty(), reasons, used, accepted }
+        Following { follows: reasons.is_empty(), reasons, used, accepted, size: self.size.clone() }
     }
 
     /// The largest value of what `bound` limits in joint `i`, and when that was if it was at some time.

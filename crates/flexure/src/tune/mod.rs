@@ -5,6 +5,7 @@ mod search;
 use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 
+pub(crate) use search::together;
 pub use search::{BestPoint, has_random_points, search};
 
 use crate::feasible;

@@ -42,7 +42,7 @@ pub fn search(
     let origin = vec![0.0; dimension];
     let mut best = BestPoint { cost: f64::INFINITY, at: origin.clone(), evaluations: 0 };
     best.consider_all(std::slice::from_ref(&origin), &finite);
-    let along = if dimension == 0 { 0 } else { budget / 4 };
+    let [_, along, scattered] = together(dimension, budget);
     let line = (0..along).map(|i| {
         let mut at = origin.clone();
         at[0] = half_width * (2.0 * (i as f64 + 0.5) / along as f64 - 1.0);
@@ -53,7 +53,6 @@ pub fn search(
     let around =
         Uniform::new_inclusive(-0.5 * half_width, 0.5 * half_width).expect("a half width above zero");
     let center = best.at.clone();
-    let scattered = if dimension == 0 { 0 } else { budget.div_ceil(2).saturating_sub(best.evaluations) };
     let points = (0..scattered).map(|_| {
         let step = |x: &f64| (x + around.sample(&mut random)).clamp(-half_width, half_width);
         center.iter().map(step).collect()
@@ -85,6 +84,15 @@ pub fn search(
         None,
     );
     tried.into_inner()
+}
+
+/// How many points a search asks for together: the first, those along the first direction, those at random. The rest come one by one.
+pub(crate) fn together(dimension: usize, budget: usize) -> [usize; 3] {
+    if dimension == 0 {
+        return [1, 0, 0];
+    }
+    let along = budget / 4;
+    [1, along, budget.div_ceil(2).saturating_sub(1 + along)]
 }
 
 /// Whether a search with this budget tries points at random.

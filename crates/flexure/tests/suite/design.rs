@@ -1,5 +1,8 @@
 //! Gains from a specification.
 
+use std::ops::ControlFlow;
+use std::sync::Mutex;
+
 use flexure::Scenario;
 use flexure::design::{Design, SpecFile, Specified, design};
 use flexure::files::{Problem, Reading};
@@ -118,4 +121,56 @@ fn specs_that_cannot_be_meant_are_refused() {
     let file = SpecFile::from_text("spec.toml", "[[imperfection]]\nkind = \"encodre\"").expect("a spec");
     let problems = Specified::load("pendulum-tanh", Reading::default(), &file).expect_err("an unknown kind");
     assert!(problems.to_string().contains("encodre"));
+}
+
+/// The starting gains are run before anything is searched: what is broken off then has them.
+#[test]
+fn what_is_broken_off_soon_has_the_starting_gains() {
+    let (specified, file) = pendulum("");
+    let at_once =
+        |fraction: f64| if fraction > 0.0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    let found = design(&specified, &file, 6, 0, &at_once).unwrap_or_else(|problems| panic!("{problems}"));
+    assert!(found.broken_off && found.feasible && found.runs == 0, "{found:?}");
+    let start = Scenario::load("pendulum-tanh").unwrap();
+    let ratio = |i: usize| found.controller.gains()[i].1[0] / start.controller.gains()[i].1[0];
+    assert!((0..start.controller.gains().len()).all(|i| ratio(i).is_finite()), "{found:?}");
+    let before = design(&specified, &file, 6, 0, &|_| ControlFlow::Break(()));
+    assert!(before.is_err_and(|problems| problems.is_interrupted()));
+}
+
+/// The fraction that is told grows from 0 to 1 in many steps, none of them a large part of the work.
+#[test]
+fn the_work_is_told_as_it_goes() {
+    let (specified, file) = pendulum("");
+    let told = Mutex::new(Vec::new());
+    let tell = |fraction: f64| {
+        told.lock().unwrap().push(fraction);
+        ControlFlow::Continue(())
+    };
+    design(&specified, &file, 24, 0, &tell).unwrap_or_else(|problems| panic!("{problems}"));
+    let mut told = told.into_inner().unwrap();
+    assert!(told.iter().all(|fraction| (0.0..=1.0).contains(fraction)));
+    assert!(told.last().is_some_and(|last| *last > 0.98), "{:?}", told.last());
+    told.sort_by(f64::total_cmp);
+    let leap = told.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+    assert!(leap < 0.25, "{leap}");
+}
+
+/// An error that is as large as the motion is nothing to accept: no figure is named for it, and for a smaller one its own.
+#[test]
+fn what_does_not_follow_at_all_names_no_figure() {
+    let (_, mut found) = tuned("", 2);
+    let size = found.evidence.runs[0].following.size.iter().copied().fold(0.0, f64::max);
+    let way_out = |found: &mut Design, error: f64| {
+        let measured = found.constraints.iter_mut().find(|constraint| constraint.what == "position error");
+        let measured = measured.expect("an error");
+        (measured.value, measured.slack) = (error, 1.0 - error / measured.limit);
+        found.way_out().expect("a way out")
+    };
+    assert!(size > 0.01, "{size}");
+    let lost = way_out(&mut found, 0.6 * size);
+    assert!(lost.contains("does not follow at all") && lost.contains("less delay"), "{lost}");
+    assert!(!lost.contains("would have to be accepted"), "{lost}");
+    let near = way_out(&mut found, 0.25 * size);
+    assert!(near.contains("would have to be accepted") && near.contains("accept.error"), "{near}");
 }

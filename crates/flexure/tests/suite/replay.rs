@@ -143,3 +143,55 @@ fn what_does_not_fit_is_refused() {
         assert_eq!(problems.iter().next().unwrap().code_word(), "range", "{horizon}");
     }
 }
+
+fn refusal(scenario: &Scenario, log: &Log) -> Option<String> {
+    let problems = replay(scenario, log, HORIZON, &unwatched).err()?;
+    let problem = problems.into_iter().next().unwrap();
+    assert_eq!(problem.code_word(), "log-mismatch");
+    Some(problem.to_string())
+}
+
+/// Robots without limits, under gravity and without it; one with encoders.
+const LOGGED: [(&str, [&str; 3]); 4] = [
+    ("pendulum-tanh", ["q_l", "q_m", "u_m"]),
+    ("planar-3r-tanh", ["q_l", "q_m", "u_m"]),
+    ("two-link-tanh-smooth", ["q_l", "q_m", "u_m"]),
+    ("two-link-hardware", ["q_l_measured", "q_m_measured", "u_m_measured"]),
+];
+
+/// Sides that are swapped and positions in degrees are refused; offsets of encoders and the wrong numbers that robot files have are not.
+#[test]
+fn logs_that_are_others_than_they_say_are_refused() {
+    for (name, signals) in LOGGED {
+        let mut scenario = short(name, 6.0);
+        let log = log(&scenario, signals);
+        assert_eq!(refusal(&scenario, &log), None, "{name}");
+        let swapped = Log { q_l: log.q_m.clone(), q_m: log.q_l.clone(), ..log.clone() };
+        let said = refusal(&scenario, &swapped).unwrap_or_else(|| panic!("{name}: swapped"));
+        assert!(said.contains("links and motors swapped"), "{name}: {said}");
+        let degrees = |q: &Option<Vec<f64>>| q.as_ref().map(|q| q.iter().map(|x| x.to_degrees()).collect());
+        let in_degrees = Log { q_l: degrees(&log.q_l), q_m: degrees(&log.q_m), ..log.clone() };
+        let said = refusal(&scenario, &in_degrees).unwrap_or_else(|| panic!("{name}: degrees"));
+        assert!(said.contains("positions in degrees"), "{name}: {said}");
+        let moved = log.q_m.as_ref().map(|q| q.iter().map(|x| x + 0.2).collect());
+        assert_eq!(refusal(&scenario, &Log { q_m: moved, ..log.clone() }), None, "{name}: an offset");
+        for (stiffness, inertia) in [(0.25, 1.0), (4.0, 1.0), (1.0, 0.3), (1.0, 3.0), (3.0, 3.0)] {
+            let mut other = scenario.clone();
+            other.robot.stiffness.iter_mut().for_each(|k| *k *= stiffness);
+            other.robot.motor_inertia.iter_mut().for_each(|m| *m *= inertia);
+            // The loop itself need not live with them.
+            other.duration = 0.01;
+            assert_eq!(
+                refusal(&other, &log),
+                None,
+                "{name}: {stiffness} times stiffness, {inertia} times inertia"
+            );
+        }
+        // Torques of the other sign are likely a mistake, no more.
+        scenario.duration = 0.01;
+        let against = Log { u_m: log.u_m.iter().map(|u| -u).collect(), ..log.clone() };
+        let warnings = laid(&scenario, &against, HORIZON).warnings;
+        let as_it_is = laid(&scenario, &log, HORIZON).warnings;
+        assert!(as_it_is.is_empty() && warnings.len() <= 1, "{name}: {as_it_is:?} {warnings:?}");
+    }
+}

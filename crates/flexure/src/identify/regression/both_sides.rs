@@ -5,12 +5,9 @@
 
 use super::{Smooth, Started, delayed, least_squares, likeliest, residual, rows, sampled, torques_of};
 use crate::identify::parameters::Parameter;
-use crate::identify::smooth::{rms, smoothed, window};
 use crate::logs::Log;
+use crate::logs::smooth::{REACH, rms, smoothed, window};
 use crate::robot::Arm;
-
-/// What is smoothed away \[s\]: beyond 40 Hz encoders say little about accelerations.
-const WINDOW: f64 = 0.025;
 
 /// Smoothed signals of a joint, at the rows.
 struct Rows {
@@ -23,7 +20,7 @@ struct Rows {
 /// Starts from `log`, which has positions of both sides.
 pub(crate) fn start(arm: &dyn Arm, log: &Log, q_l: &[f64], q_m: &[f64]) -> Started {
     let n = log.joints;
-    let window = window(WINDOW, log.period);
+    let window = window(REACH, log.period);
     let [links, motors] = [q_l, q_m].map(|q| Smooth::all(q, log, &window));
     let at = rows(log, window.len());
     let torques = torques_of(arm, &links, &at);

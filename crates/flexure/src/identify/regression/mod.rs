@@ -4,9 +4,9 @@ pub(crate) mod both_sides;
 pub(crate) mod motors;
 
 use super::parameters::Parameter;
-use super::smooth::{rates, rms, smoothed};
 use crate::linalg::{Symmetric, cholesky, solved};
 use crate::logs::Log;
+use crate::logs::smooth::{rates, rms, smoothed};
 use crate::robot::Arm;
 
 /// What a regression found of a log.
@@ -54,7 +54,10 @@ impl Smooth {
 /// The offset in half periods that leaves least.
 fn likeliest(misfit: impl Fn(i32) -> f64) -> i32 {
     let tried = 2 * OFFSETS.start()..=2 * OFFSETS.end();
-    tried.map(|halves| (halves, misfit(halves))).min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(halves, _)| halves)
+    tried
+        .map(|halves| (halves, misfit(halves)))
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .map_or(0, |(halves, _)| halves)
 }
 
 /// The signal at the samples `at`.

@@ -4,17 +4,17 @@
 //! says. That is linear in the motor inertia and in the sums of both sides, of which each side gets half.
 
 use super::{Smooth, Started, delayed, least_squares, likeliest, residual, rows, sampled, torques_of};
-use crate::identify::smooth::{rms, smoothed, window};
 use crate::logs::Log;
+use crate::logs::smooth::{rms, smoothed, window};
 use crate::robot::Arm;
 
-/// What is smoothed away \[s\]: beyond some Hz springs swing.
-const WINDOW: f64 = 0.1;
+/// Reach of the window \[s\]: above some 10 Hz springs swing, and links do not follow their motors.
+const REACH: f64 = 0.1;
 
 /// Starts from `log`, which has the positions `q_m` of the motors, with springs of `stiffness` [N m/rad].
 pub(crate) fn start(arm: &dyn Arm, log: &Log, q_m: &[f64], stiffness: &[f64]) -> Started {
     let n = log.joints;
-    let window = window(WINDOW, log.period);
+    let window = window(REACH, log.period);
     let motors = Smooth::all(q_m, log, &window);
     let links = behind(arm, log, &motors, stiffness, &window);
     let at = rows(log, 2 * window.len());

@@ -129,7 +129,7 @@ struct Kind {
 /// Kinds whose joints stand in the file.
 const TREES: &[(&str, Kind)] = &[
     ("tree", Kind { keys: &["joint"], read: tree::read, joints: None }),
-    ("urdf", Kind { keys: &["file", "locked"], read: urdf::read, joints: None }),
+    ("urdf", Kind { keys: &["file", "locked", "unknown_limits"], read: urdf::read, joints: None }),
 ];
 
 /// Reads `[links]`; the number of moving joints also if only the numbers in it are bad.

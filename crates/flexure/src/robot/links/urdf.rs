@@ -10,6 +10,7 @@ use crate::robot::urdf::{self, Locks};
 
 pub(crate) fn read(table: &Table<'_>, base: &Base) -> Option<Assembled> {
     let locked = table.optional("locked", locked);
+    let unknown_limits = table.optional("unknown_limits", Field::boolean);
     let file = table.required("file", "path of a URDF, relative to this file")?;
     let source = match base.read(file.text()?, urdf::LIMIT) {
         Ok(source) => source,
@@ -18,7 +19,7 @@ pub(crate) fn read(table: &Table<'_>, base: &Base) -> Option<Assembled> {
             return None;
         }
     };
-    let locked = locked?.unwrap_or_default();
+    let (locked, unknown_limits) = (locked?.unwrap_or_default(), unknown_limits?.unwrap_or(false));
     let log = Log::new(&source);
     let assembled = urdf::with(&log, |urdf| {
         let sound: Vec<_> = locked.iter().map(|(name, q, field)| urdf.can_hold(name, *q, field)).collect();
@@ -27,6 +28,7 @@ pub(crate) fn read(table: &Table<'_>, base: &Base) -> Option<Assembled> {
         file.log.contain(&file.path, urdf.normal.clone());
         urdf.assemble(
             &locked.iter().map(|(name, q, _)| (*name, *q)).collect::<Locks<'_>>(),
+            unknown_limits,
             file.log.decimals(),
         )
     });

@@ -20,8 +20,16 @@ pub(crate) struct Joint<'a> {
     /// Joint axis in the joint frame.
     pub axis: Axis,
     pub drive: DriveDefaults,
+    /// Limits under which it cannot move, if it has such.
+    pub standstill: Option<Standstill<'a>>,
     pub mimic: Option<Mimic<'a>>,
     pub matter: Matter,
+}
+
+/// Limits of zero, or a range without width: where they stand, and what they say.
+pub(crate) struct Standstill<'a> {
+    pub site: Site<'a>,
+    pub said: String,
 }
 
 impl Joint<'_> {
@@ -72,8 +80,9 @@ pub(crate) fn read<'a>(name: &'a str, node: &Node<'a>) -> Option<Connection<'a>>
     let moves = kind != Some(Kind::Fixed);
     let axis = if moves { axis(node) } else { Some(X) };
     let continuous = text.is_some_and(|(text, _)| text == "continuous");
-    let drive = if moves { drive(node, !continuous) } else { Some(DriveDefaults::default()) };
+    let drive = if moves { drive(node, !continuous) } else { Some((DriveDefaults::default(), None)) };
     let mimic = mimic(node);
+    let (drive, standstill) = drive?;
     let joint = Joint {
         site: node.site.clone(),
         name,
@@ -81,7 +90,8 @@ pub(crate) fn read<'a>(name: &'a str, node: &Node<'a>) -> Option<Connection<'a>>
         parent: None,
         frame: origin?,
         axis: axis?,
-        drive: drive?,
+        drive,
+        standstill,
         mimic: mimic?,
         matter: Matter::NOTHING,
     };
@@ -126,47 +136,38 @@ fn mimic<'a>(node: &Node<'a>) -> Option<Option<Mimic<'a>>> {
     Some(Some(Mimic { site: mimic.site.clone(), of, multiplier, offset }))
 }
 
-/// What `<dynamics>` and `<limit>` say.
-fn drive(node: &Node<'_>, has_stops: bool) -> Option<DriveDefaults> {
+/// What `<dynamics>` and `<limit>` say; limits under which the joint cannot move are apart.
+fn drive<'a>(node: &Node<'a>, has_stops: bool) -> Option<(DriveDefaults, Option<Standstill<'a>>)> {
     let mut drive = DriveDefaults::default();
     if let Some(dynamics) = node.child("dynamics")? {
         drive.damping = dynamics.optional_number("damping", &quantity::DAMPING)?;
         drive.friction = dynamics.optional_number("friction", &quantity::FRICTION)?.filter(|&x| x > 0.0);
     }
-    if let Some(limit) = node.child("limit")? {
-        let effort = limit.optional_number("effort", &quantity::EFFORT);
-        let velocity = limit.optional_number("velocity", &quantity::SPEED);
-        let (effort, velocity) = (effort?, velocity?);
-        drive.torque_limit = effort.filter(|&x| x > 0.0);
-        drive.velocity_limit = velocity.filter(|&x| x > 0.0);
-        let unknown: Vec<_> = [("effort", effort), ("velocity", velocity)]
-            .iter()
-            .filter_map(|(name, x)| x.filter(|&x| x <= 0.0).map(|x| format!("{name} {x}")))
-            .collect();
-        if !unknown.is_empty() {
-            let message = format!("{}: {} is taken as no limit", limit.site.path, unknown.join(", "));
-            limit.site.warn("limits", message, "limits are > 0; give them in [joints] of the robot file");
+    let Some(limit) = node.child("limit")? else { return Some((drive, None)) };
+    let effort = limit.optional_number("effort", &quantity::EFFORT);
+    let velocity = limit.optional_number("velocity", &quantity::SPEED);
+    let lower = limit.optional_number("lower", &quantity::STOP);
+    let upper = limit.optional_number("upper", &quantity::STOP);
+    let (effort, velocity, lower, upper) = (effort?, velocity?, lower?, upper?);
+    let mut said = Vec::new();
+    let mut above_zero = |name: &str, limit: Option<f64>| {
+        let sound = limit.filter(|&x| x > 0.0);
+        if let (Some(x), None) = (limit, sound) {
+            said.push(format!("{name} {x}"));
         }
-        let lower = limit.optional_number("lower", &quantity::STOP);
-        let upper = limit.optional_number("upper", &quantity::STOP);
-        let (lower, upper) = (lower?, upper?);
-        if has_stops && (lower.is_some() || upper.is_some()) {
-            // As the format has it: a missing one is zero.
-            let (low, high) = (lower.unwrap_or(0.0), upper.unwrap_or(0.0));
-            if low < high {
-                (drive.position_lower, drive.position_upper) = (Some(low), Some(high));
-            } else {
-                let message = format!(
-                    "{}: lower is {low} and upper {high}, must be lower < upper: taken as no limits",
-                    limit.site.path
-                );
-                limit.site.warn(
-                    "limits",
-                    message,
-                    "correct the URDF, or give position_lower and position_upper",
-                );
-            }
+        sound
+    };
+    drive.torque_limit = above_zero("effort", effort);
+    drive.velocity_limit = above_zero("velocity", velocity);
+    if has_stops && (lower.is_some() || upper.is_some()) {
+        // As the format has it: a missing one is zero.
+        let (low, high) = (lower.unwrap_or(0.0), upper.unwrap_or(0.0));
+        if low < high {
+            (drive.position_lower, drive.position_upper) = (Some(low), Some(high));
+        } else {
+            said.push(format!("lower {low} with upper {high}"));
         }
     }
-    Some(drive)
+    let standstill = (!said.is_empty()).then(|| Standstill { site: limit.site, said: said.join(", ") });
+    Some((drive, standstill))
 }

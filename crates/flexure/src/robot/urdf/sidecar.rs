@@ -51,6 +51,8 @@ pub struct ImportOptions<'a> {
     pub locks: &'a [(String, f64)],
     /// Drives of this class stand in for what a URDF does not say.
     pub assume: Option<&'static DriveClass>,
+    /// Limits of zero, and ranges without width, stand for what nobody knew: no limits. They are refused otherwise.
+    pub unknown_limits: bool,
     /// The path of the URDF as the draft names it, relative to the draft; as it was read if none is given.
     pub file: Option<&'a str>,
 }
@@ -99,10 +101,10 @@ fn draft<'a>(
     let is_name = |name: &&str| !name.trim().is_empty() && !name.contains(char::is_control);
     let name = urdf.name.filter(is_name).map_or_else(|| stem.into_owned(), str::to_owned);
     let (decimals, site) = (urdf.site.log.decimals(), urdf.site.clone());
-    let Assembled { mut joints, links, .. } = urdf.assemble(&locks, decimals)?;
+    let Assembled { mut joints, links, .. } = urdf.assemble(&locks, options.unknown_limits, decimals)?;
 
     let (mut toml, mut missing) = (String::new(), Vec::new());
-    head(&mut toml, options.file.unwrap_or(path), &name, &locks, &mimicked, class);
+    head(&mut toml, options.file.unwrap_or(path), &name, &locks, &mimicked, options);
     let mut noted = Noted::default();
     for (i, joint) in joints.iter_mut().enumerate() {
         let known = joint.drive.torque_limit;
@@ -184,9 +186,9 @@ fn head(
     name: &str,
     locks: &Locks<'_>,
     mimicked: &Locks<'_>,
-    class: Option<&DriveClass>,
+    options: &ImportOptions<'_>,
 ) {
-    let _ = match class {
+    let _ = match options.assume {
         None => write!(
             toml,
             "# A robot file to complete. Every nan stands for a number that a URDF does not hold and that is still to be\n\
@@ -212,6 +214,9 @@ fn head(
     if !locks.is_empty() {
         let entries: Vec<_> = locks.iter().map(|(name, q)| format!("{} = {q:?}", key(name))).collect();
         let _ = writeln!(toml, "locked = {{ {} }}  # rad, or m for a prismatic joint", entries.join(", "));
+    }
+    if options.unknown_limits {
+        toml.push_str("unknown_limits = true  # limits of zero in the URDF are none\n");
     }
     for name in mimicked.keys() {
         let _ = writeln!(toml, "# {} is locked because joints that mimic it cannot move with it", key(name));

@@ -10,7 +10,7 @@ use crate::files::suggest;
 use crate::robot::links::assembly::{self, Motion, assemble};
 use crate::robot::links::written::{Hold, Matter};
 use crate::robot::links::{Assembled, DriveDefaults, MovingJoint};
-use crate::robot::urdf::joint::{self, Connection, Joint, Kind};
+use crate::robot::urdf::joint::{self, Connection, Joint, Kind, Standstill};
 use crate::robot::urdf::link;
 use crate::robot::urdf::node::Node;
 use crate::robot::urdf::xml::Element;
@@ -20,6 +20,11 @@ const MOST_NAMED: usize = 4;
 
 /// Joints that mimic each other in a row are followed this far; a cycle of them has no end.
 const LONGEST_MIMICRY: usize = 16;
+
+/// What to do about joints that cannot move.
+const MOVE: &str = "correct the URDF; hold joints without a drive still (import --lock JOINT=POSITION, in a robot file links.locked); or, \
+                    if such numbers stand for what nobody knew, say so and they are no limits: import --unknown-limits, in a robot \
+                    file links.unknown_limits = true";
 
 /// A robot as its URDF describes it.
 pub(crate) struct Urdf<'a> {
@@ -223,14 +228,34 @@ impl<'a> Urdf<'a> {
     }
 
     /// The moving bodies, with the joints in `locks` and those that mimic them held still. `decimals` are the numbers of
-    /// the URDF and of the locks.
-    pub fn assemble(self, locks: &Locks<'_>, decimals: Decimals) -> Option<Assembled> {
+    /// the URDF and of the locks. Limits of zero are no limits if they are `unknown_limits`, else they are refused.
+    pub fn assemble(self, locks: &Locks<'_>, unknown_limits: bool, decimals: Decimals) -> Option<Assembled> {
         let held = self.held(locks)?;
+        if !unknown_limits {
+            self.refuse_standstill(&held)?;
+        }
         let site = self.site;
         let joints = self.joints.into_iter().zip(held).map(|(joint, held)| fixed_or_moving(joint, held));
         assemble(&joints.collect::<Vec<_>>(), decimals, || {
             site.error("immovable", "no joint of the robot moves", "at least one joint must stay unlocked");
         })
+    }
+
+    /// Notes one error for all joints that are not held still and cannot move within their limits.
+    fn refuse_standstill(&self, held: &[Option<Hold>]) -> Option<()> {
+        let moving = self.joints.iter().zip(held).filter(|(_, held)| held.is_none());
+        let still: Vec<_> =
+            moving.filter_map(|(joint, _)| Some((joint.name, joint.standstill.as_ref()?))).collect();
+        let Some((_, first)) = still.first() else { return Some(()) };
+        let line = |(name, Standstill { site, said }): &(&str, &Standstill<'_>)| {
+            format!("\n  line {}: joint {}: {said}", site.line(), suggest::quoted(name))
+        };
+        let lines: String = still.iter().map(line).collect();
+        let joints = if still.len() == 1 { "1 joint".to_owned() } else { format!("{} joints", still.len()) };
+        let message =
+            format!("{joints} cannot move: effort and velocity must be > 0, lower less than upper:{lines}");
+        first.site.error("limits", message, MOVE);
+        None
     }
 
     /// Where each joint is held still, if it is; notes an error at one that mimics a joint that moves.

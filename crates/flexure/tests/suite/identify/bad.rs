@@ -41,6 +41,13 @@ fn what_cannot_be_used_is_refused() {
     let degrees = q(&log.q_m).iter().map(|x| x.to_degrees()).collect();
     assert_eq!(code_of(Log { q_m: Some(degrees), ..log.clone() }), "log-mismatch");
     assert_eq!(code_of(Log { u_m: changed(&|_, u| -u), ..log.clone() }), "log-mismatch");
+    // The same where only motors are seen: what is in degrees, of another joint or another sign fits no inertia and friction.
+    let motors = Log { q_l: None, ..log.clone() };
+    assert_eq!(code_of(Log { u_m: swapped(&log.u_m), ..motors.clone() }), "log-mismatch");
+    assert_eq!(code_of(Log { u_m: changed(&|_, u| -u), ..motors.clone() }), "log-mismatch");
+    let degrees = q(&log.q_m).iter().map(|x| x.to_degrees()).collect();
+    assert_eq!(code_of(Log { q_m: Some(degrees), ..motors }), "log-mismatch");
+    assert_eq!(code(&[log.clone(), log.clone()], &Settings::default()), "log");
     // Signals with nothing in them, or too much.
     assert_eq!(code_of(Log { q_m: None, ..log.clone() }), "log");
     let still = q(&log.q_m).iter().enumerate().map(|(k, x)| if k % 2 == 1 { 0.3 } else { *x }).collect();

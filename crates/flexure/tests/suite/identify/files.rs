@@ -94,6 +94,38 @@ fn gaps_are_read_and_filled() {
     assert_eq!(read(&completed(&open, &found(&[]))).motor_inertia, [1234.57, 2469.14]);
 }
 
+/// Only numbers are gaps: not what is said of them, not what is a tolerance; lists may take several lines.
+#[test]
+fn gaps_are_numbers() {
+    let open = ARM
+        .replace("stiffness = [9000.0, 4000.0]", "stiffness = [\n  nan, # to be found\n  4000.0,\n]")
+        .replace("\"assumed: data sheet\"", "\"assumed: data sheet\"\nmotor_inertia = \"Brennan 1998\"");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("arm.toml");
+    fs::write(&path, &open).unwrap();
+    let file = RobotFile::load(path.to_str().unwrap(), Outside::Refused)
+        .unwrap_or_else(|problems| panic!("{problems}"));
+    assert_eq!(file.gaps, [Parameter::Stiffness]);
+    let unknown = [(0, Parameter::MotorInertia), (1, Parameter::MotorInertia)];
+    assert!(completed(&open, &found(&unknown)).contains("\"Brennan 1998\""));
+}
+
+/// Of what an earlier log said of friction only its own lines are replaced.
+#[test]
+fn what_was_written_behind_the_friction_stays() {
+    let text = completed(ARM, &found(&[]));
+    let note = "# The elbow was greased.\n";
+    let noted = text.clone() + note;
+    let again = completed(&noted, &found(&[(1, Parameter::MotorFriction)]));
+    assert_eq!(again.matches("# Dry friction").count(), 1, "{again}");
+    assert!(again.contains(note), "{again}");
+    let (before, tolerances) = text.split_once("\n[tolerances]\n").unwrap();
+    let (tolerances, friction) = tolerances.split_once("\n\n").unwrap();
+    let behind = format!("{before}\n{friction}\n[tolerances]\n{tolerances}\n");
+    let robot = read(&completed(&behind, &found(&[])));
+    assert_eq!(robot.tolerances.stiffness, [0.51, 0.51]);
+}
+
 /// Error bars come along, around what is written, and replace what an earlier log said; what is not known keeps what it had.
 #[test]
 fn error_bars_are_tolerances() {

@@ -55,23 +55,31 @@ fn with_motor_encoders_alone() {
     }
 }
 
-/// Stiffness of every joint, through valleys in which joints about nearly the same axis trade theirs:
+/// Stiffness of every joint, through valleys in which joints about nearly the same axis trade theirs, and past dents in which that
+/// of a light last link is another (seeds 0, 2 and 4):
 /// `cargo test --release -p flexure --test suite -- --ignored seven_joints_with_motor --nocapture`.
 #[test]
-#[ignore = "half a minute of processor time in release, minutes without"]
+#[ignore = "minutes of processor time in release, many without"]
 fn seven_joints_with_motor_encoders_alone() {
     let robot = Robot::load("panda").unwrap();
-    let mut draw = Draw::new(3);
-    let truth = draw.truth(&robot);
-    let log = Log { q_l: None, ..log::<8>(&robot, &truth, 20.0, 0.0, &mut draw) };
-    let found = identify(&robot, &[log], &Settings::default(), &unwatched)
-        .unwrap_or_else(|problems| panic!("{problems}"));
-    for (i, joint) in truth.iter().enumerate() {
-        let stiffness = found.estimate(i, Parameter::Stiffness);
-        let off = (stiffness.value - joint[0]).abs();
-        println!("joint {}: {stiffness:?} for {}", i + 1, joint[0]);
-        assert!(off < 0.03 * joint[0], "{stiffness:?} for {}", joint[0]);
-        assert!(off < 4.0 / 3.0 * stiffness.error, "{stiffness:?} for {}", joint[0]);
+    for seed in 0..5 {
+        let mut draw = Draw::new(seed);
+        let truth = draw.truth(&robot);
+        let log = Log { q_l: None, ..log::<8>(&robot, &truth, 20.0, 0.0, &mut draw) };
+        let begun = std::time::Instant::now();
+        let found = identify(&robot, &[log], &Settings::default(), &unwatched)
+            .unwrap_or_else(|problems| panic!("{problems}"));
+        let took = begun.elapsed();
+        assert!(found.converged, "seed {seed}");
+        let offs = truth.iter().enumerate().map(|(i, joint)| {
+            let stiffness = found.estimate(i, Parameter::Stiffness);
+            let off = (stiffness.value - joint[0]).abs();
+            assert!(off < 0.03 * joint[0], "{stiffness:?} for {}", joint[0]);
+            assert!(off < 4.0 / 3.0 * stiffness.error, "{stiffness:?} for {}", joint[0]);
+            off / joint[0]
+        });
+        let most = offs.fold(0.0, f64::max);
+        println!("seed {seed}: stiffness within {:.2} % in {:.0} s", 100.0 * most, took.as_secs_f64());
     }
 }
 

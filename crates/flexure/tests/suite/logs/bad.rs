@@ -141,3 +141,19 @@ fn maps_of_columns() {
     map("none.toml", &["unreadable", "none.toml"]);
     map("u_m=u_m{},u_m=q_l{}", &["syntax"]);
 }
+
+/// Velocities that are not the rates of their positions, whatever limits there are.
+#[test]
+fn velocities_of_other_units() {
+    let log = |factor: f64| {
+        written(&format!("{HEADER},dq_m1,dq_m2"), |k| {
+            let t = 1e-3 * k as f64;
+            let rate = factor * (1.5 * (3.0 * t).cos() + 0.18 * (9.0 * t).cos());
+            format!("{},{rate},{}", row(k), -1.5 * factor * (5.0 * t).sin())
+        })
+    };
+    assert!(read(&log(1.0), None).is_ok() && read(&log(0.7), None).is_ok());
+    refused(&log(0.02), None, &["scale", "dq_m is 0.0200 times the rate of q_m", "--columns"]);
+    refused(&log(-1.0), None, &["scale", "dq_m is −1.00 times", "sign = -1"]);
+    assert!(read(&log(0.02), Some("q_m=q_m{},u_m=u_m{},dq_m=dq_m{},dq_m.scale=50")).is_ok());
+}

@@ -229,7 +229,7 @@ fn bad_robot_files_about_a_urdf() {
         ("", "[joints.turn]\nstiffness = [1, 2]", "joints.turn.stiffness is an array, must be a number"),
         ("", "[joints.turn]\nstiffness = -1", "joints.turn.stiffness is -1 N m/rad, must be > 0"),
         ("", "stiffness = [1, 2, 3]", "joints.stiffness: 2 numbers expected"),
-        ("", "position_lower = 3", "position_lower is 3 rad and position_upper 2.5 rad"),
+        ("", "position_lower = 3", "joint 'turn': 3 and 2.5"),
     ];
     let folder = Folder::with(ARM);
     for (links, joints, fragment) in cases {

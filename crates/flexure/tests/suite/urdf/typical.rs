@@ -94,7 +94,7 @@ fn what_the_urdf_says_stays() {
     assert_eq!((robot.limits.torque, robot.link_damping), (vec![20.0, 50.0], vec![0.3, 0.7]));
     let drives = [class.drive(JointKind::Revolute, 20.0), class.drive(JointKind::Prismatic, 50.0)];
     assert_eq!(robot.stiffness, drives.map(|drive| drive.stiffness).to_vec());
-    let silent = ARM.replace("effort=\"20\"", "effort=\"0\"").replace("damping=\"0.3\"", "damping=\"0\"");
+    let silent = ARM.replace("effort=\"20\"", "").replace("damping=\"0.3\"", "damping=\"0\"");
     assert_ne!(silent, ARM);
     let robot = assumed(&silent, class);
     // Twice what holds 1 kg at 0.1 m, and the slider with its tool.

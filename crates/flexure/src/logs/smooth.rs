@@ -1,5 +1,8 @@
 //! Signals without what is fast in them, and their rates.
 
+/// Reach of a window that leaves what encoders can say of accelerations \[s\]: up to 40 Hz.
+pub(crate) const REACH: f64 = 0.025;
+
 /// The weights of a Hann window that reaches `reach` s to either side, from its middle to one side, for samples every `period` s.
 pub(crate) fn window(reach: f64, period: f64) -> Vec<f64> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most a few thousand")]
