@@ -1,24 +1,22 @@
 //! A tuned loop with everything that speaks for it.
 
-use std::path::Path;
-
 use serde::Serialize;
 
 use crate::design::bench::Bench;
 use crate::design::constraint::{Constraint, FOLLOWS, Kind, NOMINAL};
 use crate::design::family::{Family, Pace};
+use crate::design::judged::Judged;
 use crate::design::least::Least;
 use crate::design::search::{Found, Search, Watch};
 use crate::design::spec::{Rate, SpecFile};
-use crate::design::specified::Specified;
+use crate::design::specified::{Specified, TUNED};
 use crate::design::trade::{Trade, trades, untraded};
-use crate::files::bounds;
-use crate::files::number::short;
-use crate::files::{Problem, Problems, read_text};
+use crate::files::number::{rounded_down, short};
+use crate::files::{Problem, Problems};
+use crate::imperfections::Imperfection;
 use crate::laws::{Controller, drives};
 use crate::margins::{Margins, margins};
 use crate::progress::Progress;
-use crate::prove::question::{Question, prove_watched};
 use crate::prove::standing::Standing;
 use crate::sampled::{Sampled, probe};
 use crate::scenario::Scenario;
@@ -118,31 +116,33 @@ pub fn design(
     // Gains of the file take part, where nothing is asked that they may not know of.
     let takes_part = pace == Pace::Free && !scenario.has_starting_gains();
     let own: Vec<Controller> = takes_part.then(|| scenario.controller.clone()).into_iter().collect();
-    let Found { best, mut runs, mut broken_off } = search(pace, [0.0, SEARCHED]).run(&own, budget, seed)?;
-    let tuned = bench.loops(&best.controller).swap_remove(0);
-    let mut constraints = best.constraints.clone();
-    let proof =
-        if broken_off { None } else { prove_watched(&tuned, &Question::default(), &|_| watch.go_on()).ok() };
-    let rate = proof.as_ref().and_then(|proof| Some(proof.verdict.proved()?.contraction_rate.approximate()));
-    if let (Some(Rate::AtLeast(asked)), false) = (file.spec.rate, broken_off) {
-        constraints.push(Constraint::rate(rate.unwrap_or(0.0), asked));
-    }
-    if best.keeps() && !broken_off {
-        match bench.lost_at(&best.controller, &watch) {
-            Err(problems) if problems.is_interrupted() => broken_off = true,
-            lost => constraints.extend(lost?),
+    let asked = match file.spec.rate {
+        Some(Rate::AtLeast(asked)) => Some(asked),
+        _ => None,
+    };
+    let judged = |found: Found| {
+        let judged = Judged::of(found.best, &bench, asked, found.broken_off, &watch)?;
+        Ok::<_, Problems>((judged, found.runs))
+    };
+    let (mut chosen, mut runs) = judged(search(pace, [0.0, SEARCHED]).run(&own, budget, seed)?)?;
+    let mut instead = None;
+    if let (Some(asked), false, false) = (asked, chosen.keeps(), chosen.broken_off) {
+        // The search for the largest rate knows nothing of what is asked: what it finds, it finds again.
+        let (other, more) =
+            judged(search(Pace::Proved, [SEARCHED, INSTEAD]).run(&[], budget.div_ceil(2), seed)?)?;
+        runs += more;
+        if other.keeps() {
+            chosen = other;
+        } else {
+            chosen.broken_off |= other.broken_off;
+            let feasible = other.keeps_the_rest() && !other.broken_off;
+            instead = Some(Feasible { rate: other.rate().filter(|rate| feasible && *rate < asked) });
         }
     }
-    let feasible =
-        best.keeps() && constraints.iter().all(|constraint| constraint.is_kept() || !constraint.asked);
-    let mut instead = None;
-    if let (false, false, Some(Rate::AtLeast(_))) = (feasible, broken_off, file.spec.rate) {
-        let found = search(Pace::Proved, [SEARCHED, INSTEAD]).run(&[], budget.div_ceil(2), seed)?;
-        runs += found.runs;
-        broken_off |= found.broken_off;
-        instead = Some(Feasible { rate: found.best.keeps().then(|| (-found.best.cost).exp()) });
-    }
     watch.tell(INSTEAD);
+    let feasible = chosen.keeps();
+    let rate = chosen.rate();
+    let Judged { trial: best, tuned, proof, constraints, mut broken_off } = chosen;
     // What was broken off comes back at once.
     let sampled = if broken_off { None } else { probe(&tuned)? };
     let verdict = proof.as_ref().map(|proof| Standing::of(&tuned, proof, sampled.as_ref()).words());
@@ -199,25 +199,6 @@ impl SpecFile {
     }
 }
 
-/// First line of the files that tuning writes.
-const MARK: &str = "# Tuned by flexure";
-
-/// That a tuned scenario may be written to `out`: it is none of `inputs`, and no file that something else has written.
-///
-/// # Errors
-/// If it is.
-pub fn check_out(out: &Path, inputs: &[Option<&Path>]) -> Result<(), Problem> {
-    let Ok(found) = out.canonicalize() else { return Ok(()) };
-    let is_input =
-        inputs.iter().flatten().any(|input| input.canonicalize().is_ok_and(|input| input == found));
-    let is_tuned = || read_text(out, bounds::LIMIT).is_ok_and(|text| text.starts_with(MARK));
-    if out.is_file() && !is_input && is_tuned() {
-        return Ok(());
-    }
-    let message = format!("{} is there already, and is no scenario that was tuned", out.display());
-    Err(Problem::new("exists", message, "name another file with --out, or remove this one"))
-}
-
 impl Design {
     /// What a scenario file with these gains says of them in its first lines.
     pub fn comment(&self) -> String {
@@ -228,7 +209,7 @@ impl Design {
         format!(
             "{}{}: rms error {} mrad, {} kept.{rate}\n\
              Gains follow from the robot, the reference and the imperfections below: tune again if they change.",
-            MARK.trim_start_matches("# "),
+            TUNED,
             if self.broken_off { ", broken off" } else { "" },
             short(1e3 * rms, 3),
             if self.frail().is_some() { "what is asked is" } else { "every constraint is" },
@@ -236,8 +217,8 @@ impl Design {
     }
 
     /// What is to be said if not every constraint is kept.
-    pub fn objection(&self, scenario: &Scenario) -> Option<Problem> {
-        let binding = self.binding().filter(|_| !self.feasible)?;
+    pub fn objection(&self, scenario: &Scenario, file: &SpecFile) -> Option<Problem> {
+        let binding = self.binding()?;
         let Constraint { what, value, limit, unit, note, .. } = binding;
         let joint = binding.joint.as_ref().map_or_else(String::new, |joint| format!(" in joint {joint}"));
         let said = note.as_ref().map_or_else(
@@ -251,7 +232,7 @@ impl Design {
             "{}: no gains were found that keep every constraint; what is broken most is: {what}{joint}: {said}",
             self.name
         );
-        let help = self.way_out().unwrap_or_default();
+        let help = self.way_out(scenario, file).unwrap_or_default();
         Some(scenario.places.problem("controller", "infeasible", message, help))
     }
 
@@ -271,23 +252,29 @@ impl Design {
         broken.min_by(|a, b| a.slack.total_cmp(&b.slack))
     }
 
-    /// What would have to change for that constraint to be kept.
-    pub fn way_out(&self) -> Option<String> {
+    /// What would have to change in `scenario` or `file` for that constraint to be kept.
+    fn way_out(&self, scenario: &Scenario, file: &SpecFile) -> Option<String> {
         let binding = self.binding()?;
         let Constraint { what, value, limit, unit, .. } = binding;
         let joint = binding.joint.as_ref().map_or_else(String::new, |joint| format!(" of joint {joint}"));
         let amount = |x: f64| format!("{} {unit}", short(x, 4)).trim_end().to_owned();
         let slower = match self.instead {
-            Some(Feasible { rate: Some(rate) }) => format!("rate = {} is feasible; or ", short(rate, 3)),
-            Some(Feasible { rate: None }) => "no rate was found to be feasible: ".to_owned(),
+            Some(Feasible { rate: Some(rate) }) => {
+                format!("rate = {} is feasible; or ", rounded_down(rate, 3))
+            }
+            Some(Feasible { rate: None }) => "no lower rate was found to be enough; what may be: ".to_owned(),
             None => String::new(),
         };
         let way = match binding.kind {
-            Kind::Radius => {
-                let spec = if what == NOMINAL { "" } else { "; or a SPEC that asks for less margin and uncertainty" };
+            Kind::Radius | Kind::Whole => {
+                let less = match binding.kind {
+                    Kind::Whole => "; or a slower reference",
+                    _ if what == NOMINAL => "",
+                    _ => "; or a SPEC that asks for less margin and uncertainty",
+                };
                 format!(
-                    "less delay ([[imperfection]] delay, a time of its own: a shorter control_period alone leaves it), with that a shorter \
-                     control_period, a faster velocity filter or an observer{spec}"
+                    "{}a shorter control_period, a faster velocity filter or an observer{less}",
+                    less_delay(scenario, file)
                 )
             }
             Kind::Run(Measure::AtLimit) => {
@@ -305,4 +292,16 @@ impl Design {
         };
         Some(format!("{slower}{way}"))
     }
+}
+
+/// That the delay of the loop would have to be shorter, if it has one, and where it stands.
+fn less_delay(scenario: &Scenario, file: &SpecFile) -> String {
+    let delays = |imperfection: &Imperfection| imperfection.kind() == "delay";
+    let place = match scenario.imperfections.iter().any(delays) {
+        true if file.spec.delay.is_some() => "delay of the SPEC",
+        true if file.has_delay() => "[[imperfection]] delay of the SPEC",
+        true => "[[imperfection]] delay",
+        false => return String::new(),
+    };
+    format!("less delay ({place}, a time of its own: a shorter control_period alone leaves it), with that ")
 }
