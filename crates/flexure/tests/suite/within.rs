@@ -314,6 +314,11 @@ fn simulated_robots_keep_what_is_said() {
     let within = within_with(&scenario, Some(UNKNOWN));
     assert!(within.settles > 1.1 * self::within(&scenario).settles, "an unknown torque counts");
     let arm = floats::arm(&scenario);
+    // The largest position errors of {W ≤ settles}.
+    let flexure::core::control::Metric::Constant(link) = &arm.law.link.metric else { panic!("constant") };
+    for (error, metric) in within.error.iter().zip(link.iter().chain(arm.law.motor.metric.iter())) {
+        assert!((error / (2.0 * within.settles / metric).sqrt() - 1.0).abs() < 1e-9, "{within:?}");
+    }
     let mut r = Random(4);
     let mut last = 0.0_f64;
     for run in 0..6 {
@@ -336,6 +341,19 @@ fn simulated_robots_keep_what_is_said() {
     }
     println!("{last:e} at the end, {:e} said", within.settles.sqrt());
     assert!(last > 1e-6, "the errors do not vanish: {last}");
+}
+
+/// The level holds the start, wherever it is.
+#[test]
+fn the_start_lies_in_the_level() {
+    let mut scenario = tolerant(scenario(), IDENTIFIED);
+    let alone = within(&scenario);
+    scenario.initial.q_l[0] += 0.02;
+    scenario.initial.q_m[0] += 0.02;
+    let start = proof(&scenario).start.expect("a start");
+    let displaced = within(&scenario);
+    assert!(start > alone.level && displaced.level >= start, "{start}: {displaced:?}");
+    assert!(displaced.settles <= displaced.level && displaced.rate <= alone.rate, "{displaced:?}");
 }
 
 /// What is broken off says nothing.
