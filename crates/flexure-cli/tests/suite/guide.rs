@@ -112,7 +112,7 @@ fn the_comparison_notices() {
     }
 }
 
-/// The SPEC of the page on gains can be met by the robot of the page: with a part of the budget.
+/// The SPEC of the page on gains can be met by the robot of the page: for a part of the run, with a part of the budget.
 #[test]
 fn the_spec_of_the_page_on_gains_is_feasible() {
     const GAINS: &str = include_str!("../../../../docs/tuning.md");
@@ -127,7 +127,7 @@ fn the_spec_of_the_page_on_gains_is_feasible() {
     place.write("spec.toml", spec.split_once('\n').expect("lines").1);
     let command = GAINS.lines().find(|line| line.contains("--spec spec.toml")).expect("a command");
     let mut arguments: Vec<&str> = command.split_whitespace().skip(1).collect();
-    arguments.extend(["--budget", "6"]);
+    arguments.extend(["--budget", "4", "--set", "duration=3.0"]);
     let found = place.run(&arguments).done().stdout;
     assert!(found.contains("wrote fast.toml"), "{found}");
 }

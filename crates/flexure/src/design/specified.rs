@@ -69,7 +69,12 @@ impl Specified {
         };
         let mut scenarios = Vec::new();
         for (name, reference) in references.iter().rev() {
-            document.insert("reference", Item::Table(reference.clone()));
+            let mut reference = reference.clone();
+            stand(
+                &mut reference,
+                document.get("reference").and_then(Item::as_table).and_then(Table::position),
+            );
+            document.insert("reference", Item::Table(reference));
             scenarios.insert(0, read(&document, name)?);
         }
         if references.is_empty() {
@@ -90,12 +95,9 @@ impl Specified {
                 if let Some(above) = old.decor().prefix() {
                     new.decor_mut().set_prefix(above.clone());
                 }
-                new.set_position(old.position());
-                for (_, side) in new.iter_mut() {
-                    let Some(side) = side.as_table_mut() else { continue };
-                    side.decor_mut().set_prefix("\n");
-                    side.set_position(old.position());
-                }
+                stand(new, old.position());
+                let sides = new.iter_mut().filter_map(|(_, item)| item.as_table_mut());
+                sides.for_each(|side| side.decor_mut().set_prefix("\n"));
             }
             document.insert("controller", item);
         }
@@ -119,6 +121,16 @@ impl Specified {
             );
             Problem::new("outside", message, "write it into the folder of the scenario")
         })
+    }
+}
+
+/// Lets `table`, and those in it, stand at `position` of a document.
+fn stand(table: &mut Table, position: Option<isize>) {
+    table.set_position(position);
+    for (_, item) in table.iter_mut() {
+        if let Some(inner) = item.as_table_mut() {
+            stand(inner, position);
+        }
     }
 }
 
@@ -196,7 +208,7 @@ fn replace(document: &mut DocumentMut, mut imperfection: Table) -> Option<usize>
     if let Some(index) = index {
         let entry = entries.get_mut(index)?;
         *imperfection.decor_mut() = entry.decor().clone();
-        imperfection.set_position(entry.position());
+        stand(&mut imperfection, entry.position());
         *entry = imperfection;
         return Some(index);
     }

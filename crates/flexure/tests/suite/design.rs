@@ -140,6 +140,20 @@ fn a_spec_replaces_parts_of_the_scenario() {
     assert_eq!(kinds, ["torque-gain", "delay"]);
     let own = Scenario::load("pendulum-tanh").expect("built in");
     assert_eq!(scenario.initial, own.initial);
+    // What is written is in order: tables stand with what is in them, where those stood that they replace.
+    let spec = "[[reference]]\nkind = \"sine\"\namplitude = 0.2\nfrequency = 1.0\n[reference.smooth_start]\nduration = 0.5";
+    let (specified, _) = pendulum(spec);
+    let text = specified.with(&own.controller, "tuned");
+    let at = |header: &str| text.find(header).unwrap_or_else(|| panic!("{header}: {text}"));
+    let headers = [
+        "[initial]",
+        "[reference]",
+        "[reference.smooth_start]",
+        "[controller]",
+        "[controller.link]",
+        "[sources]",
+    ];
+    assert!(headers.map(at).is_sorted(), "{text}");
 }
 
 #[test]

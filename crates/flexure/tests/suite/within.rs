@@ -254,7 +254,7 @@ fn along(x: &Motion<f64, 2>, [v_l, v_m, a_l, a_m]: &[Vector<f64, 2>; 4], h: f64)
 #[test]
 fn every_robot_within_obeys_the_inequality() {
     for torque in [None, Some(UNKNOWN)] {
-        let scenario = tolerant(scenario(), IDENTIFIED);
+        let scenario = tolerant(displaced(), IDENTIFIED);
         let within = within_with(&scenario, torque);
         let arm = floats::arm(&scenario);
         let mut r = Random(2);
@@ -343,17 +343,27 @@ fn simulated_robots_keep_what_is_said() {
     assert!(last > 1e-6, "the errors do not vanish: {last}");
 }
 
+/// The arm under a reference that moves from the start, which it begins beside.
+fn displaced() -> Scenario {
+    let mut scenario = scenario();
+    scenario.smooth_start = None;
+    let initial = &mut scenario.initial;
+    for speed in initial.dq_l.iter_mut().chain(&mut initial.dq_m) {
+        *speed = 0.6;
+    }
+    initial.q_l[0] += 0.01;
+    initial.q_m[0] += 0.01;
+    scenario
+}
+
 /// The level holds the start, wherever it is.
 #[test]
 fn the_start_lies_in_the_level() {
-    let mut scenario = tolerant(scenario(), IDENTIFIED);
-    let alone = within(&scenario);
-    scenario.initial.q_l[0] += 0.02;
-    scenario.initial.q_m[0] += 0.02;
+    let scenario = tolerant(displaced(), IDENTIFIED);
     let start = proof(&scenario).start.expect("a start");
-    let displaced = within(&scenario);
-    assert!(start > alone.level && displaced.level >= start, "{start}: {displaced:?}");
-    assert!(displaced.settles <= displaced.level && displaced.rate <= alone.rate, "{displaced:?}");
+    let within = within(&scenario);
+    println!("{start} J at the start: {within:?}");
+    assert!(start > 3.0 * within.settles && within.level >= start, "{start}: {within:?}");
 }
 
 /// What is broken off says nothing.
