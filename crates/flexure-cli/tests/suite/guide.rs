@@ -122,8 +122,8 @@ fn the_spec_of_the_page_on_gains_is_feasible() {
     let place = Place::new();
     place.write("ur5.urdf", urdf("ur5"));
     place.run(&["import", "ur5.urdf", "--assume", "harmonic-drive", "--scenario"]).done();
-    let blocks = GAINS.split("\n```").skip(1).step_by(2);
-    let spec = blocks.filter_map(|block| block.strip_prefix("toml\n# spec.toml")).next().expect("a SPEC");
+    let mut blocks = GAINS.split("\n```").skip(1).step_by(2);
+    let spec = blocks.find_map(|block| block.strip_prefix("toml\n# spec.toml")).expect("a SPEC");
     place.write("spec.toml", spec.split_once('\n').expect("lines").1);
     let command = GAINS.lines().find(|line| line.contains("--spec spec.toml")).expect("a command");
     let mut arguments: Vec<&str> = command.split_whitespace().skip(1).collect();

@@ -139,10 +139,10 @@ mod tests {
         for _ in 0..9 {
             drawn.push(beside([50.0, 20.0], &drawn));
         }
-        assert!(drawn.iter().all(|[x, y]| *y == 20.0 && (x - 50.0).abs() <= 8.5 * RADIUS));
+        assert!(drawn.iter().all(|[x, y]| (*y - 20.0).abs() < 1e-9 && (x - 50.0).abs() <= 8.5 * RADIUS));
         let apart = |a: f64, b: f64| (a - b).abs() >= 2.0 * RADIUS;
         assert!((0..9).all(|i| (0..i).all(|j| apart(drawn[i][0], drawn[j][0]))), "{drawn:?}");
-        assert_eq!(beside([50.0, 90.0], &drawn), [50.0, 90.0]);
+        assert_eq!(beside([50.0, 90.0], &drawn).map(f64::to_bits), [50.0, 90.0].map(f64::to_bits));
     }
 
     #[test]
