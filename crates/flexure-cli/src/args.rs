@@ -280,11 +280,11 @@ pub struct Excite {
     /// Control period of the robot, s.
     #[arg(long, value_name = "SECONDS", default_value_t = 0.001, allow_negative_numbers = true)]
     pub control_period: f64,
-    /// One count of the encoders on the links, rad.
-    #[arg(long, value_name = "RAD", default_value_t = RESOLUTION, allow_negative_numbers = true)]
+    /// One count of the encoders on the links, rad; default 2π/2¹⁷, 47.9e-6.
+    #[arg(long, value_name = "RAD", default_value_t = RESOLUTION, hide_default_value = true, allow_negative_numbers = true)]
     pub link_resolution: f64,
-    /// One count of the encoders on the motors, rad on the link side of the gear.
-    #[arg(long, value_name = "RAD", default_value_t = RESOLUTION, allow_negative_numbers = true)]
+    /// One count of the encoders on the motors, rad on the link side of the gear; default 2π/2¹⁷, 47.9e-6.
+    #[arg(long, value_name = "RAD", default_value_t = RESOLUTION, hide_default_value = true, allow_negative_numbers = true)]
     pub motor_resolution: f64,
     /// The links have no encoders.
     #[arg(long, conflicts_with = "link_resolution")]

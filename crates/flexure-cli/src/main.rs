@@ -4,12 +4,12 @@ mod args;
 mod commands;
 mod complaint;
 mod failure;
+mod grammar;
 mod interrupt;
 mod progress;
 
 use std::process::ExitCode;
 
-use clap::Parser;
 use flexure::files::{Outside, Reading};
 
 use args::{Cli, Command};
@@ -18,7 +18,7 @@ use failure::Failure;
 
 fn main() -> ExitCode {
     failure::install();
-    let cli = match Cli::try_parse() {
+    let cli = match grammar::parsed() {
         Ok(cli) => cli,
         Err(error) => {
             if std::env::args_os().any(|argument| argument == "--json") {

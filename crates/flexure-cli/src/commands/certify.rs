@@ -1,15 +1,14 @@
 //! `flexure certify`: a proof and its certificate.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use flexure::files::{Reading, read_text};
+use flexure::files::{Reading, spare};
 use flexure::prove::question::{Direct, Question, Region, SMALLEST_ERROR, prove_watched};
 use flexure::prove::standing::{Standing, outside_of_proofs};
 use flexure::prove::summary::ProofSummary;
 use flexure::report::{proof_table, write_certificate};
 use flexure::sampled::probe;
 use flexure::scenario::{Scenario, load_scenario_with};
-use flexure::verify;
 use serde::Serialize;
 
 use super::print;
@@ -43,7 +42,7 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
                 .out
                 .clone()
                 .unwrap_or_else(|| PathBuf::from(format!("out/{}.certificate.json", scenario.name)));
-            spare_other_files(&path)?;
+            spare(&path, "certificate", |text| text.contains("flexure-certificate"), &[])?;
             write_certificate(&path, certificate)?;
             Some(path)
         }
@@ -64,19 +63,6 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
         Err(Failure::Undecided(reports)) if proof.broken_off => Err(Failure::Interrupted(reports)),
         ended => ended,
     }
-}
-
-/// Refuses to write over what is no certificate: a scenario, a pipe.
-fn spare_other_files(path: &Path) -> Result<(), Failure> {
-    let Ok(found) = path.metadata() else { return Ok(()) };
-    let is_certificate =
-        || read_text(path, verify::LARGEST).is_ok_and(|text| text.contains("flexure-certificate"));
-    let is_other = !found.is_file() || !is_certificate();
-    if !is_other {
-        return Ok(());
-    }
-    let message = format!("{} exists and is no certificate: it is left as it is", path.display());
-    Err(Failure::input("exists", message, "name another file with --out"))
 }
 
 /// What the options ask for, if they fit the robot.

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use flexure::excite::{Excitation, Settings, excite as designed};
+use flexure::excite::{Excitation, Settings, excite as designed, spare_out};
 use flexure::files::number::duration;
-use flexure::files::{Outside, create_folder, write_atomic};
+use flexure::files::{Outside, folder_of, prepare, write_atomic};
 use flexure::report::excitation_table;
 use serde::Serialize;
 
@@ -33,9 +33,8 @@ pub fn excite(options: &Excite, outside: Outside, json: bool) -> Result<(), Fail
     let beside =
         || PathBuf::from(&options.robot).with_file_name(format!("{}-excite.toml", stem.unwrap_or_default()));
     let out = options.out.clone().unwrap_or_else(beside);
-    if let Some(folder) = out.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        create_folder(folder)?;
-    }
+    spare_out(&out, &options.robot)?;
+    prepare(folder_of(&out))?;
     let found = {
         let progress = Progress::of_one(&options.robot);
         designed(&options.robot, &out, outside, &settings, &|fraction| progress.set(0, fraction))?
@@ -46,8 +45,8 @@ pub fn excite(options: &Excite, outside: Outside, json: bool) -> Result<(), Fail
     } else {
         print::line(&excitation_table(&found))?;
         print::line(&format!(
-            "error bars: standard deviations that the Cramér–Rao bound leaves from a log of two periods of {}, if the robot is\n\
-             as its file says: linear joints, one by one, the others held; encoder steps as white noise, torque known to\n\
+            "error bars: three standard deviations that the Cramér–Rao bound leaves from a log of two periods of {}, if the robot\n\
+             is as its file says: linear joints, one by one, the others held; encoder steps as white noise, torque known to\n\
              0.1 % of its limit; no gravity, no coupling, friction at the lines alone. A model that misses something has more",
             duration(found.period)
         ))?;

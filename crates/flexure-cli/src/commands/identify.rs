@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use flexure::files::number::significant;
-use flexure::files::{Outside, prepare, read_text, write_atomic};
+use flexure::files::{Outside, Problem, folder_of, prepare, spare, write_atomic};
 use flexure::identify::{Identified, RobotFile, Settings, identify as identified};
 use flexure::logs::read_log;
 use flexure::report::identified_table;
@@ -33,8 +33,8 @@ pub fn identify(options: &Identify, outside: Outside, json: bool) -> Result<(), 
         logs.push(log);
     }
     if let Some(out) = &options.out {
-        spare_other_files(out)?;
-        prepare(folder(out))?;
+        spare_out(out, &options.robot)?;
+        prepare(folder_of(out))?;
         file.fits(out, outside)?;
     }
     let settings =
@@ -56,23 +56,18 @@ pub fn identify(options: &Identify, outside: Outside, json: bool) -> Result<(), 
     ending(&found)
 }
 
-fn folder(path: &Path) -> &Path {
-    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
-}
-
 fn name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
-/// Refuses to write over what is no robot file: a log, a pipe.
-fn spare_other_files(path: &Path) -> Result<(), Failure> {
-    let Ok(found) = path.metadata() else { return Ok(()) };
-    let is_robot = || read_text(path, 1 << 20).is_ok_and(|text| text.contains("[links]"));
-    if found.is_file() && is_robot() {
+/// That the result for `robot` may be written to `out`: over the file of that robot, or over one that was identified before.
+fn spare_out(out: &Path, robot: &str) -> Result<(), Problem> {
+    let place = |path: &Path| path.canonicalize().ok();
+    if out.is_file() && place(out) == place(Path::new(robot)) {
         return Ok(());
     }
-    let message = format!("{} exists and is no robot file: it is left as it is", path.display());
-    Err(Failure::input("exists", message, "name another file with --out"))
+    let is_identified = |text: &str| text.contains("[links]") && text.contains("identified: ");
+    spare(out, "robot file that was identified", is_identified, &[])
 }
 
 fn tell(found: &Identified, out: Option<&PathBuf>) -> Result<(), Failure> {

@@ -3,14 +3,14 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use clap::{Command, CommandFactory};
+use clap::Command;
 use clap_mangen::Man;
 use flexure::files::{prepare, write_atomic};
 use serde::Serialize;
 
 use super::print;
-use crate::args::Cli;
 use crate::failure::Failure;
+use crate::grammar;
 
 /// The page of the program, and where pages were written.
 #[derive(Serialize)]
@@ -20,7 +20,7 @@ struct Pages {
 }
 
 pub fn man(folder: Option<&Path>, json: bool) -> Result<(), Failure> {
-    let mut program = Cli::command();
+    let mut program = grammar::command();
     program.build();
     let page = page(&program)?;
     let Some(folder) = folder else {

@@ -2,12 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use flexure::design::{Design, SpecFile, Specified, check_out, design};
+use flexure::design::{Design, SpecFile, Specified, design, spare_out};
 use flexure::feasible;
 use flexure::files::number::short;
-use flexure::files::{Reading, prepare, write_atomic};
+use flexure::files::{Reading, folder_of, prepare, write_atomic};
 use flexure::prove::standing::outside_of_proofs;
 use flexure::report::{constraints_table, gains_table, margins_table, trades_table};
+use flexure::sampled::{Sampled, not_looked_at};
+use flexure::scenario::Scenario;
 use serde::Serialize;
 
 use super::print;
@@ -33,9 +35,11 @@ pub fn tune(options: &Tune, reading: Reading<'_>, json: bool) -> Result<(), Fail
         say(&feasible::slowed(scenario)?);
     }
     let out = options.out.clone().unwrap_or_else(|| beside(&options.scenario, &scenario.name));
-    check_out(&out, &[Some(Path::new(&options.scenario)), options.spec.as_deref()])?;
+    let inputs: Vec<_> =
+        std::iter::once(Path::new(&options.scenario)).chain(options.spec.as_deref()).collect();
+    spare_out(&out, &inputs)?;
     specified.belongs(&out, reading.outside)?;
-    prepare(out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")))?;
+    prepare(folder_of(&out))?;
     let found = {
         let progress = Progress::of_one(&scenario.name);
         design(&specified, &spec, options.budget, options.seed, &|fraction| progress.set(0, fraction))?
@@ -48,8 +52,7 @@ pub fn tune(options: &Tune, reading: Reading<'_>, json: bool) -> Result<(), Fail
     if json {
         print::json(&Outcome { design: &found, file })?;
     } else {
-        let joints: Vec<String> = scenario.robot.joints.iter().map(|joint| joint.name.clone()).collect();
-        show(&found, &joints, &scenario.beyond_ideal())?;
+        show(&found, scenario)?;
         if let Some(file) = file {
             print::line(&format!("wrote {}", file.display()))?;
         }
@@ -65,7 +68,7 @@ pub fn tune(options: &Tune, reading: Reading<'_>, json: bool) -> Result<(), Fail
             "without Ctrl-C the search goes on, and margins are measured",
         ));
     }
-    found.objection(scenario).map_or(Ok(()), |problem| Err(Failure::No(vec![problem.into()])))
+    found.objection(scenario, &spec).map_or(Ok(()), |problem| Err(Failure::No(vec![problem.into()])))
 }
 
 /// `NAME-tuned.toml` in the folder of the scenario; of a built-in one, in the current folder.
@@ -73,9 +76,10 @@ fn beside(scenario: &str, name: &str) -> PathBuf {
     Path::new(scenario).with_file_name(format!("{name}-tuned.toml"))
 }
 
-fn show(found: &Design, joints: &[String], conditions: &[&str]) -> Result<(), Failure> {
+fn show(found: &Design, scenario: &Scenario) -> Result<(), Failure> {
     let width = print::columns();
-    print::line(&gains_table(joints, found, width))?;
+    let joints: Vec<String> = scenario.robot.joints.iter().map(|joint| joint.name.clone()).collect();
+    print::line(&gains_table(&joints, found, width))?;
     if !found.broken_off {
         print::line(&trades_table(&found.gains, width))?;
     }
@@ -84,12 +88,12 @@ fn show(found: &Design, joints: &[String], conditions: &[&str]) -> Result<(), Fa
         print::line(&margins_table(std::slice::from_ref(margins), width))?;
     }
     let evidence = &found.evidence;
-    if let Some(sampled) = &evidence.sampled {
-        print::line(&sampled.line())?;
+    if let Some(line) = evidence.sampled.as_ref().map(Sampled::line).or(not_looked_at(scenario)) {
+        print::line(&line)?;
     }
     if let (Some(verdict), Some(rate)) = (evidence.verdict, evidence.rate_certified) {
         print::line(&format!("contraction rate: {} 1/s, {verdict}", short(rate, 4)))?;
-        if let Some(line) = outside_of_proofs(conditions) {
+        if let Some(line) = outside_of_proofs(&scenario.beyond_ideal()) {
             print::line(&line)?;
         }
     }

@@ -111,3 +111,23 @@ fn the_comparison_notices() {
         assert!(shows(bad, printed).is_err(), "{bad}");
     }
 }
+
+/// The SPEC of the page on gains can be met by the robot of the page: for a part of the run, with a part of the budget.
+#[test]
+fn the_spec_of_the_page_on_gains_is_feasible() {
+    const GAINS: &str = include_str!("../../../../docs/tuning.md");
+    if is_out_of_reach() {
+        return;
+    }
+    let place = Place::new();
+    place.write("ur5.urdf", urdf("ur5"));
+    place.run(&["import", "ur5.urdf", "--assume", "harmonic-drive", "--scenario"]).done();
+    let mut blocks = GAINS.split("\n```").skip(1).step_by(2);
+    let spec = blocks.find_map(|block| block.strip_prefix("toml\n# spec.toml")).expect("a SPEC");
+    place.write("spec.toml", spec.split_once('\n').expect("lines").1);
+    let command = GAINS.lines().find(|line| line.contains("--spec spec.toml")).expect("a command");
+    let mut arguments: Vec<&str> = command.split_whitespace().skip(1).collect();
+    arguments.extend(["--budget", "4", "--set", "duration=3.0"]);
+    let found = place.run(&arguments).done().stdout;
+    assert!(found.contains("wrote fast.toml"), "{found}");
+}

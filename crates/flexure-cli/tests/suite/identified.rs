@@ -67,6 +67,16 @@ fn an_identified_arm_is_certified_with_its_error_bars() {
         .done();
     place.run(&["run", "arm-excite.toml", "--out", "."]).done();
     place.run(&["identify", "guess.toml", "--log", "arm-excite.csv", "--out", "found.toml"]).done();
+    let found_text = place.read("found.toml");
+    // Over its own result, and over the file that is completed, but over nothing else.
+    let again = |out: &str| place.run(&["identify", "guess.toml", "--log", "arm-excite.csv", "--out", out]);
+    for other in ["arm.toml", "arm-excite.toml", "arm-excite.csv", "."] {
+        let text = (other != ".").then(|| place.read(other));
+        again(other).refused(&["is no robot file that was identified", "name another file"]);
+        assert_eq!((other != ".").then(|| place.read(other)), text);
+    }
+    again("found.toml").done();
+    assert_eq!(place.read("found.toml"), found_text);
     let found = flexure::Robot::load(place.path().join("found.toml").to_str().unwrap()).unwrap();
     let tolerances = &found.tolerances;
     for (values, tolerances, truth) in [
@@ -125,13 +135,10 @@ fn an_identified_arm_is_certified_with_its_error_bars() {
     assert_eq!(refused.code, Some(1), "{refused:?}");
     refused.said(&["is not about arm-sine.toml", "robot.stiffness"]);
     // With other tolerances it is another file.
-    place.write(
-        "found.toml",
-        place
-            .read("found.toml")
-            .replace("[tolerances]", "[tolerances] # wider")
-            .replace("motor_damping = [0.", "motor_damping = [0.1"),
-    );
+    let (numbers, tolerances) = found_text.split_once("\n[tolerances]\n").expect("tolerances");
+    let wider = tolerances.replacen("stiffness = [", "stiffness = [1", 1);
+    assert_ne!(wider, tolerances);
+    place.write("found.toml", format!("{numbers}\n[tolerances]\n{wider}"));
     let other = place.run(&["verify", file, "--against", "arm-sine.toml"]);
     assert_eq!(other.code, Some(1), "{other:?}");
 }

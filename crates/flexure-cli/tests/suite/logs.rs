@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde_json::Value;
 
-use crate::command::Place;
+use crate::command::{Place, ROBOT};
 
 const SHORT: (&str, &str) = ("duration = 10.0", "duration = 0.3");
 
@@ -139,6 +139,9 @@ fn nasty_logs() {
         assert_eq!(place.names("."), ["log.csv", "out", "s.toml"], "nothing is written");
     }
     place.run(&["replay", "s.toml", "--log", "none.csv"]).refused(&["cannot read none.csv"]);
+    let nowhere = ["replay", "s.toml", "--log", "out/s.csv", "--horizon", "0", "--out", "new/folder"];
+    place.run(&nowhere).refused(&["horizon is 0 s"]);
+    assert_eq!(place.names("."), ["log.csv", "out", "s.toml"], "no folder is made");
     place.run(&["replay", "s.toml", "--log", "."]).refused(&["cannot read ."]);
     assert_eq!(place.run(&["replay", "s.toml"]).code, Some(2));
     place.run(&["replay", "s.toml", "--log", "out/s.csv", "--horizon", "0"]).refused(&["horizon is 0 s"]);
@@ -184,8 +187,18 @@ fn motions_that_cannot_be_designed() {
         (&["excite", "none.toml"], &["cannot read"]),
         (&["excite", "pandaa"], &["panda"]),
         (&["excite", "two-link-tanh"], &["two-link-tanh"]),
+        (&["excite", "pendulum-1dof", "--out", "new/folder/m.toml"], &["torque_limit"]),
     ] {
         place.run(args).refused(fragments);
         assert_eq!(place.names("."), Vec::<String>::new(), "{args:?}");
     }
+    // No file is lost, be it the robot's.
+    place.write("arm.toml", ROBOT).write("notes.md", "# Notes");
+    for (out, reason) in
+        [("arm.toml", "is what is read"), ("notes.md", "is no motion"), (".", "is no motion")]
+    {
+        let args = ["excite", "arm.toml", "--duration", "4", "--budget", "1", "--out", out];
+        place.run(&args).refused(&[reason, "it is left as it is", "name another file"]);
+    }
+    assert_eq!((place.read("arm.toml"), place.read("notes.md")), (ROBOT.to_owned(), "# Notes".to_owned()));
 }

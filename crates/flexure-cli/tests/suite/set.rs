@@ -59,3 +59,27 @@ fn changes_that_change_nothing_are_refused() {
     let changed = ["check", "panda", "--set", "joints.stiffness=1234", "--json"];
     assert_eq!(place.run(&changed).done().json()[0]["robot"][6]["stiffness"], 1234.0);
 }
+
+/// Where there is no scenario, changes are refused, and the help does not offer them.
+#[test]
+fn commands_without_a_scenario_do_not_offer_changes() {
+    let place = Place::new();
+    for command in [
+        &["reproduce"][..],
+        &["model", "panda", "--states", "states"],
+        &["import", "arm.urdf"],
+        &["excite", "panda"],
+        &["identify", "panda", "--log", "log.csv"],
+        &["list"],
+        &["completions", "bash"],
+        &["man"],
+    ] {
+        place.run(&[command, &["--set", "duration=1"]].concat()).refused(&["takes none", command[0]]);
+        let help = place.run(&[command[0], "--help"]).done().stdout;
+        assert!(!help.contains("--set") && help.contains("--json"), "{help}");
+    }
+    for command in ["run", "certify", "check", "compare", "eval", "margins", "replay", "tune", "verify"] {
+        let help = place.run(&[command, "--help"]).done().stdout;
+        assert!(help.contains("--set <KEY=VALUE>"), "{help}");
+    }
+}

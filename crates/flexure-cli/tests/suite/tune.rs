@@ -54,6 +54,20 @@ fn what_cannot_be_had_is_a_no_and_writes_nothing() {
 }
 
 #[test]
+fn what_diverges_is_a_no() {
+    let place = Place::new();
+    place.write("spec.toml", "delay = 0.07\n");
+    let late =
+        ["tune", "two-link-tanh-smooth", "--spec", "spec.toml", "--budget", "2", "--out", "new/tuned.toml"];
+    let outcome = place.run(&late);
+    assert_eq!(outcome.code, Some(1), "{outcome:?}");
+    outcome.said(&["diverges at t = ", "less delay"]);
+    assert!(outcome.stdout.contains("sampled loop: not looked at"), "{}", outcome.stdout);
+    assert!(!outcome.stdout.contains("small errors shrink in the sampled loop"), "{}", outcome.stdout);
+    assert_eq!(place.names("."), ["spec.toml"]);
+}
+
+#[test]
 fn questions_that_cannot_be_meant_are_refused() {
     let place = Place::new();
     place
@@ -71,9 +85,9 @@ fn questions_that_cannot_be_meant_are_refused() {
     refused(&["tune", "swing.toml", "--spec", "both.toml"], &["both say how late", "leave one"]);
     refused(&["tune", "pd.toml", "--spec", "spec.toml"], &["rate is asked for", "leave rate out"]);
     refused(&["tune", "ideal.toml"], &["hold is \"continuous\""]);
-    refused(&["tune", "swing.toml", "--out", "swing.toml"], &["is there already"]);
-    refused(&["tune", "swing.toml", "--out", "spec.toml"], &["is there already"]);
-    refused(&["tune", "swing.toml", "--out", "."], &["is there already"]);
+    refused(&["tune", "swing.toml", "--out", "swing.toml"], &["is what is read"]);
+    refused(&["tune", "swing.toml", "--out", "spec.toml"], &["exists and is no scenario that was tuned"]);
+    refused(&["tune", "swing.toml", "--out", "."], &["exists and is no scenario that was tuned"]);
     refused(&["tune", "panda"], &["robot"]);
     let robot = ["tune", "swing.toml", "--set", "robot.gravity=[0, 0, 0]"];
     refused(&robot, &["what is written is the scenario's", "--set robot=COPY.toml"]);

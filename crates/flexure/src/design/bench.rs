@@ -66,7 +66,7 @@ const UNSTABLE: f64 = 300.0;
 impl Trial {
     /// Whether every constraint is kept that was looked at, wishes aside.
     pub fn keeps(&self) -> bool {
-        self.cost < BROKEN
+        self.constraints.iter().all(Constraint::is_met)
     }
 }
 
@@ -117,14 +117,17 @@ impl Bench {
     ) -> Result<Trial, Problems> {
         watch.check()?;
         let radius = outlooks.nominal(&controller);
-        let mut constraints = vec![Constraint::radius(NOMINAL.to_owned(), radius)];
-        if !constraints[0].is_kept() {
-            let cost = UNSTABLE + bounded(radius - 1.0);
+        let mut constraints: Vec<_> =
+            radius.map(|radius| Constraint::radius(NOMINAL.to_owned(), radius)).into_iter().collect();
+        if let Some(unstable) = constraints.iter().find(|constraint| !constraint.is_kept()) {
+            let cost = UNSTABLE + bounded(unstable.value - 1.0);
             return Ok(Trial { controller, cost, constraints, runs: Vec::new() });
         }
         let runs = self.runs(&self.scenarios, &controller, watch)?;
-        if let Some(divergence) = runs.iter().find_map(|run| run.divergence) {
-            let cost = DIVERGED + bounded(1.0 / (divergence.time + 1e-3));
+        let diverged = |(run, scenario): (&Run, &Scenario)| Some((run.divergence?.time, scenario.duration));
+        if let Some((time, duration)) = runs.iter().zip(&self.scenarios).find_map(diverged) {
+            constraints.push(Constraint::diverged(time, duration));
+            let cost = DIVERGED + bounded(1.0 / (time + 1e-3));
             return Ok(Trial { controller, cost, constraints, runs });
         }
         constraints.extend(Constraint::of_runs(&runs, self.at_limit));
@@ -145,14 +148,15 @@ impl Bench {
         Ok(Trial { controller, cost, constraints, runs })
     }
 
-    /// The spectral radius at each corner.
+    /// The spectral radius at each corner that is looked at.
     fn borne(&self, outlooks: &Outlooks<'_>, controller: &Controller) -> Vec<Constraint> {
-        let radii: Vec<f64> =
+        let radii: Vec<Option<f64>> =
             outlooks.corners.par_iter().map(|corner| largest(corner.iter(), controller)).collect();
         let named = self.corners.iter().zip(radii);
-        named
-            .map(|(corner, radius)| Constraint::radius(corner.what.clone(), radius).asked(corner.asked))
-            .collect()
+        let constraint = |(corner, radius): (&Corner, Option<f64>)| {
+            Some(Constraint::radius(corner.what.clone(), radius?).asked(corner.asked))
+        };
+        named.filter_map(constraint).collect()
     }
 
     /// What the loop does not bear although small errors shrink in it: each corner in which some run does not follow.
@@ -174,11 +178,6 @@ impl Bench {
         self.corners.len()
     }
 
-    /// The loops under `controller`.
-    pub fn loops(&self, controller: &Controller) -> Vec<Scenario> {
-        self.scenarios.iter().map(|scenario| scenario.under(controller)).collect()
-    }
-
     fn runs(
         &self,
         scenarios: &[Scenario],
@@ -193,26 +192,26 @@ impl Bench {
 }
 
 impl Outlooks<'_> {
-    /// By what small errors grow in the loops under `controller` in a control period, at most.
-    pub fn nominal(&self, controller: &Controller) -> f64 {
+    /// By what small errors grow in the loops under `controller` in a control period, at most; none if no loop is looked at.
+    pub fn nominal(&self, controller: &Controller) -> Option<f64> {
         largest(self.nominal.iter(), controller)
     }
 
-    /// A first idea of that, with the delay that they shall bear beyond their own.
+    /// A first idea of that, with the delay that they shall bear beyond their own; 0 if no loop is looked at, so that it is run.
     pub fn first_idea(&self, controller: &Controller) -> f64 {
         let late = self.late.map_or(&[][..], |late| &self.corners[late]);
-        whole(self.nominal.iter().chain(late).map(|outlook| outlook.first_idea(controller)))
+        let ideas = self.nominal.iter().chain(late).map(|outlook| outlook.first_idea(controller));
+        whole(ideas).unwrap_or(0.0)
     }
 }
 
-/// Those that are not looked at count as stable; what is no number does not.
-fn largest<'a>(outlooks: impl Iterator<Item = &'a Outlook<'a>>, controller: &Controller) -> f64 {
+fn largest<'a>(outlooks: impl Iterator<Item = &'a Outlook<'a>>, controller: &Controller) -> Option<f64> {
     whole(outlooks.map(|outlook| outlook.growth(controller)))
 }
 
-fn whole(radii: impl Iterator<Item = Option<f64>>) -> f64 {
-    let radii = radii.map(|radius| radius.unwrap_or(0.0));
-    radii.map(|radius| if radius.is_nan() { f64::INFINITY } else { radius }).fold(0.0, f64::max)
+/// The largest of those that there are; what is no number is infinite.
+fn whole(radii: impl Iterator<Item = Option<f64>>) -> Option<f64> {
+    radii.flatten().map(|radius| if radius.is_nan() { f64::INFINITY } else { radius }).reduce(f64::max)
 }
 
 /// By how much constraints that are `asked`, or those that are wished for, are broken together; 0 if all are kept.

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::files::number;
 use crate::simulate::{Measure, Run, Used};
 
 /// Something that a tuned loop is held to.
@@ -13,7 +14,7 @@ pub struct Constraint {
     pub joint: Option<String>,
     /// What the loop has.
     pub value: f64,
-    /// Largest value that is accepted, or smallest for a rate.
+    /// Largest value that is accepted, or smallest for a rate and for the time that a run lasts.
     pub limit: f64,
     /// Unit of both; nothing for pure numbers.
     pub unit: &'static str,
@@ -33,6 +34,8 @@ pub struct Constraint {
 pub enum Kind {
     /// A spectral radius that must be below 1.
     Radius,
+    /// A run that comes to its end.
+    Whole,
     /// Something that a run is held to.
     Run(Measure),
     /// A loop with something to bear that does not follow.
@@ -65,6 +68,21 @@ impl Constraint {
             asked: true,
             kind: Kind::Radius,
             note: None,
+        }
+    }
+
+    /// That a run comes to its end at `duration` in s, where it diverges at `time`.
+    pub(super) fn diverged(time: f64, duration: f64) -> Self {
+        Self {
+            what: "the run comes to its end".to_owned(),
+            joint: None,
+            value: time,
+            limit: duration,
+            unit: "s",
+            slack: -1.0,
+            asked: true,
+            kind: Kind::Whole,
+            note: Some(format!("diverges at t = {}", number::duration(time))),
         }
     }
 
@@ -148,6 +166,11 @@ impl Constraint {
     /// Whether the loop keeps it.
     pub fn is_kept(&self) -> bool {
         self.slack >= 0.0
+    }
+
+    /// Whether the loop keeps it, or it is wished for alone.
+    pub fn is_met(&self) -> bool {
+        self.is_kept() || !self.asked
     }
 
     /// By how much it is broken; 0 if it is kept.

@@ -20,12 +20,15 @@ pub(super) struct Least {
     link_damping: Vec<f64>,
     motor_inertia: Vec<f64>,
     motor_damping: Vec<f64>,
-    /// Gains Λ and κ over the rate of φ, links and motors: 1 for φ linear.
+    /// Gains Λ and κ over the rate of φ, links and motors: 1 for φ linear, else as much as proves it after rounding.
     shaping: [f64; 2],
 }
 
 /// What s is larger than its samples by: proofs reach 99.98 % of sampled rates, and round outwards.
 const RESERVE: f64 = 1.002;
+
+/// What Λ and κ are larger by for φ other than linear, whose proved rates are rounded down.
+const OUTWARDS: f64 = 1.0 + 1e-6;
 
 /// Part of β M that is injected where the robot's own damping is enough: the law wants K_d > 0.
 const SOME: f64 = 1e-3;
@@ -90,5 +93,6 @@ fn shaping(scenario: &Scenario, gains: &VcbcGains) -> Result<[f64; 2], Problems>
     let Some(certificate) = proof.verdict.proved() else { return Ok([f64::INFINITY; 2]) };
     let smallest = |side: &SideGains| side.shaping.iter().copied().fold(f64::INFINITY, f64::min);
     let rates = BlockSummary::contraction(certificate);
-    Ok([smallest(&gains.link) / rates.phi_l, smallest(&gains.motor) / rates.phi_m])
+    Ok([smallest(&gains.link) / rates.phi_l, smallest(&gains.motor) / rates.phi_m]
+        .map(|part| OUTWARDS * part))
 }

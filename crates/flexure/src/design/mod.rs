@@ -11,6 +11,7 @@
 mod bench;
 mod constraint;
 mod family;
+mod judged;
 mod least;
 mod outcome;
 mod search;
@@ -20,8 +21,8 @@ mod trade;
 mod watch;
 
 pub use constraint::{Constraint, Kind};
-pub use outcome::{Design, Evidence, Feasible, check_out, design};
+pub use outcome::{Design, Evidence, Feasible, design};
 pub use search::BUDGET;
 pub use spec::{AskedMargins, Rate, Spec, SpecFile, Uncertainty};
-pub use specified::Specified;
+pub use specified::{Specified, spare_out};
 pub use trade::{Effect, Trade};

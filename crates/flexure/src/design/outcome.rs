@@ -1,25 +1,23 @@
 //! A tuned loop with everything that speaks for it.
 
-use std::path::Path;
-
 use serde::Serialize;
 
 use crate::design::bench::Bench;
 use crate::design::constraint::{Constraint, FOLLOWS, Kind, NOMINAL};
 use crate::design::family::{Family, Pace};
+use crate::design::judged::Judged;
 use crate::design::least::Least;
 use crate::design::search::{Found, Search, work};
 use crate::design::spec::{Rate, SpecFile};
-use crate::design::specified::Specified;
+use crate::design::specified::{Specified, TUNED};
 use crate::design::trade::{Trade, trades, untraded};
 use crate::design::watch::{Effort, Watch, side_by_side};
-use crate::files::bounds;
-use crate::files::number::short;
-use crate::files::{Problem, Problems, read_text};
+use crate::files::number::{rounded_down, short};
+use crate::files::{Problem, Problems};
+use crate::imperfections::Imperfection;
 use crate::laws::{Controller, drives};
 use crate::margins::{Margins, margins};
 use crate::progress::Progress;
-use crate::prove::question::{Question, prove_watched};
 use crate::prove::standing::Standing;
 use crate::sampled::{Sampled, probe};
 use crate::scenario::Scenario;
@@ -117,32 +115,33 @@ pub fn design(
     // Gains of the file take part, where nothing is asked that they may not know of.
     let takes_part = pace == Pace::Free && !scenario.has_starting_gains();
     let own: Vec<Controller> = takes_part.then(|| scenario.controller.clone()).into_iter().collect();
-    let Found { best, mut runs, mut broken_off } = search(pace).run(&own, budget, seed)?;
+    let asked = match file.spec.rate {
+        Some(Rate::AtLeast(asked)) => Some(asked),
+        _ => None,
+    };
+    let judged = |found: Found| {
+        let judged = Judged::of(found.best, &bench, asked, found.broken_off, &watch)?;
+        Ok::<_, Problems>((judged, found.runs))
+    };
+    let (mut chosen, mut runs) = judged(search(pace).run(&own, budget, seed)?)?;
     watch.reach(searched);
-    let tuned = bench.loops(&best.controller).swap_remove(0);
-    let mut constraints = best.constraints.clone();
-    let proof =
-        if broken_off { None } else { prove_watched(&tuned, &Question::default(), &|_| watch.go_on()).ok() };
-    let rate = proof.as_ref().and_then(|proof| Some(proof.verdict.proved()?.contraction_rate.approximate()));
-    if let (Some(Rate::AtLeast(asked)), false) = (file.spec.rate, broken_off) {
-        constraints.push(Constraint::rate(rate.unwrap_or(0.0), asked));
-    }
-    if best.keeps() && !broken_off {
-        match bench.lost_at(&best.controller, &watch) {
-            Err(problems) if problems.is_interrupted() => broken_off = true,
-            lost => constraints.extend(lost?),
+    let mut instead = None;
+    if let (Some(asked), false, false) = (asked, chosen.keeps(), chosen.broken_off) {
+        // The search for the largest rate knows nothing of what is asked: what it finds, it finds again.
+        let (other, more) = judged(search(Pace::Proved).run(&[], budget.div_ceil(2), seed)?)?;
+        runs += more;
+        if other.keeps() {
+            chosen = other;
+        } else {
+            chosen.broken_off |= other.broken_off;
+            let feasible = other.keeps_the_rest() && !other.broken_off;
+            instead = Some(Feasible { rate: other.rate().filter(|rate| feasible && *rate < asked) });
         }
     }
-    let feasible =
-        best.keeps() && constraints.iter().all(|constraint| constraint.is_kept() || !constraint.asked);
-    let mut instead = None;
-    if let (false, false, Some(Rate::AtLeast(_))) = (feasible, broken_off, file.spec.rate) {
-        let found = search(Pace::Proved).run(&[], budget.div_ceil(2), seed)?;
-        runs += found.runs;
-        broken_off |= found.broken_off;
-        instead = Some(Feasible { rate: found.best.keeps().then(|| (-found.best.cost).exp()) });
-    }
     watch.reach(borne);
+    let feasible = chosen.keeps();
+    let rate = chosen.rate();
+    let Judged { trial: best, tuned, proof, constraints, mut broken_off } = chosen;
     // What was broken off comes back at once.
     let sampled = if broken_off { None } else { probe(&tuned)? };
     let verdict = proof.as_ref().map(|proof| Standing::of(&tuned, proof, sampled.as_ref()).words());
@@ -206,28 +205,8 @@ impl SpecFile {
     }
 }
 
-/// First line of the files that tuning writes.
-const MARK: &str = "# Tuned by flexure";
-
-/// That a tuned scenario may be written to `out`: it is none of `inputs`, and no file that something else has written.
-///
-/// # Errors
-/// If it is.
-pub fn check_out(out: &Path, inputs: &[Option<&Path>]) -> Result<(), Problem> {
-    let Ok(found) = out.canonicalize() else { return Ok(()) };
-    let is_input =
-        inputs.iter().flatten().any(|input| input.canonicalize().is_ok_and(|input| input == found));
-    let is_tuned = || read_text(out, bounds::LIMIT).is_ok_and(|text| text.starts_with(MARK));
-    if out.is_file() && !is_input && is_tuned() {
-        return Ok(());
-    }
-    let message = format!("{} is there already, and is no scenario that was tuned", out.display());
-    Err(Problem::new("exists", message, "name another file with --out, or remove this one"))
-}
-
-/// What lets more gains be stable.
-const QUICKER: &str = "less delay ([[imperfection]] delay, a time of its own: a shorter control_period alone leaves it), with that a shorter \
-                       control_period, a faster velocity filter or an observer";
+/// What is quicker besides a shorter delay.
+const BESIDES: &str = "a shorter control_period, a faster velocity filter or an observer";
 
 /// Part of the size of the reference that is no error any more.
 const HALF: f64 = 0.5;
@@ -242,7 +221,7 @@ impl Design {
         format!(
             "{}{}: rms error {} mrad, {} kept.{rate}\n\
              Gains follow from the robot, the reference and the imperfections below: tune again if they change.",
-            MARK.trim_start_matches("# "),
+            TUNED,
             if self.broken_off { ", broken off" } else { "" },
             short(1e3 * rms, 3),
             if self.frail().is_some() { "what is asked is" } else { "every constraint is" },
@@ -250,8 +229,8 @@ impl Design {
     }
 
     /// What is to be said if not every constraint is kept.
-    pub fn objection(&self, scenario: &Scenario) -> Option<Problem> {
-        let binding = self.binding().filter(|_| !self.feasible)?;
+    pub fn objection(&self, scenario: &Scenario, file: &SpecFile) -> Option<Problem> {
+        let binding = self.binding()?;
         let Constraint { what, value, limit, unit, note, .. } = binding;
         let joint = binding.joint.as_ref().map_or_else(String::new, |joint| format!(" in joint {joint}"));
         let said = note.as_ref().map_or_else(
@@ -265,7 +244,7 @@ impl Design {
             "{}: no gains were found that keep every constraint; what is broken most is: {what}{joint}: {said}",
             self.name
         );
-        let help = self.way_out().unwrap_or_default();
+        let help = self.way_out(scenario, file).unwrap_or_default();
         Some(scenario.places.problem("controller", "infeasible", message, help))
     }
 
@@ -294,24 +273,32 @@ impl Design {
         error.is_some_and(|error| !error.is_kept() && error.value >= HALF * size)
     }
 
-    /// What would have to change for that constraint to be kept.
-    pub fn way_out(&self) -> Option<String> {
+    /// What would have to change in `scenario` or `file` for that constraint to be kept.
+    fn way_out(&self, scenario: &Scenario, file: &SpecFile) -> Option<String> {
         let binding = self.binding()?;
         let Constraint { what, value, limit, unit, .. } = binding;
         let joint = binding.joint.as_ref().map_or_else(String::new, |joint| format!(" of joint {joint}"));
         let amount = |x: f64| format!("{} {unit}", short(x, 4)).trim_end().to_owned();
         let slower = match self.instead {
-            Some(Feasible { rate: Some(rate) }) => format!("rate = {} is feasible; or ", short(rate, 3)),
-            Some(Feasible { rate: None }) => "no rate was found to be feasible: ".to_owned(),
+            Some(Feasible { rate: Some(rate) }) => {
+                format!("rate = {} is feasible; or ", rounded_down(rate, 3))
+            }
+            Some(Feasible { rate: None }) => "no lower rate was found to be enough; what may be: ".to_owned(),
             None => String::new(),
         };
         let way = match binding.kind {
-            Kind::Radius => {
-                let spec = if what == NOMINAL { "" } else { "; or a SPEC that asks for less margin and uncertainty" };
-                format!("{QUICKER}{spec}")
+            Kind::Radius | Kind::Whole => {
+                let less = match binding.kind {
+                    Kind::Whole => "; or a slower reference",
+                    _ if what == NOMINAL => "",
+                    _ => "; or a SPEC that asks for less margin and uncertainty",
+                };
+                format!("{}{less}", quicker(scenario, file))
             }
             Kind::Run(_) if self.is_lost() => format!(
-                "the loop does not follow at all with any gains that were tried, so that no limit can be named: {QUICKER}; or a slower reference"
+                "the loop does not follow at all with any gains that were tried, so that no limit can be named: {}; or a slower \
+                 reference",
+                quicker(scenario, file)
             ),
             Kind::Run(Measure::AtLimit) => {
                 "drives with larger torque limits, a slower reference ([reference.time_scaling] margin), or accept.at_limit above 0".to_owned()
@@ -328,4 +315,18 @@ impl Design {
         };
         Some(format!("{slower}{way}"))
     }
+}
+
+/// What lets more gains be stable: a shorter delay, if the loop has one, with where it stands; and what is quicker besides.
+fn quicker(scenario: &Scenario, file: &SpecFile) -> String {
+    let delays = |imperfection: &Imperfection| imperfection.kind() == "delay";
+    let place = match scenario.imperfections.iter().any(delays) {
+        true if file.spec.delay.is_some() => "delay of the SPEC",
+        true if file.has_delay() => "[[imperfection]] delay of the SPEC",
+        true => "[[imperfection]] delay",
+        false => return BESIDES.to_owned(),
+    };
+    format!(
+        "less delay ({place}, a time of its own: a shorter control_period alone leaves it), with that {BESIDES}"
+    )
 }

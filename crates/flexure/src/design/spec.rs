@@ -59,8 +59,6 @@ pub struct SpecFile {
     pub spec: Spec,
     /// The file as it is, with the parts that replace those of the scenario.
     pub(super) document: DocumentMut,
-    /// Its name.
-    pub(super) name: String,
     /// Where its keys stand.
     pub(super) places: Option<Places>,
 }
@@ -93,7 +91,7 @@ const FACTOR: Quantity = Quantity::positive("factor on the torque", crate::units
 impl SpecFile {
     /// No wishes but the usual ones.
     pub fn usual() -> Self {
-        Self { spec: Spec::default(), document: DocumentMut::new(), name: String::new(), places: None }
+        Self { spec: Spec::default(), document: DocumentMut::new(), places: None }
     }
 
     /// Reads the file at `path`.
@@ -121,7 +119,7 @@ impl SpecFile {
         })?;
         // What one parser of the format took, the other takes: both are the same.
         let document = source.text.parse().unwrap_or_default();
-        let read = Self { spec, document, name: source.name.to_string(), places: found };
+        let read = Self { spec, document, places: found };
         if read.spec.delay.is_some() && read.has_delay() {
             let message =
                 "delay and an [[imperfection]] of the kind \"delay\" both say how late torques come"
@@ -134,7 +132,7 @@ impl SpecFile {
 
 impl SpecFile {
     /// Whether one of its imperfections is a delay.
-    fn has_delay(&self) -> bool {
+    pub(super) fn has_delay(&self) -> bool {
         let imperfections = self.document.get("imperfection").and_then(Item::as_array_of_tables);
         let is_delay = |entry: &toml_edit::Table| entry.get("kind").and_then(Item::as_str) == Some("delay");
         imperfections.is_some_and(|entries| entries.iter().any(is_delay))

@@ -6,9 +6,22 @@ use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, value};
 
 use crate::design::spec::SpecFile;
 use crate::files::source::Source;
-use crate::files::{Outside, Problem, Problems, Reading, change};
+use crate::files::traced::traced;
+use crate::files::{Outside, Problem, Problems, Reading, change, spare};
 use crate::laws::Controller;
 use crate::scenario::{self, Hold, Scenario};
+
+/// What the first line of the files begins with that tuning writes, as a comment.
+pub(super) const TUNED: &str = "Tuned by flexure";
+
+/// That a tuned scenario may be written to `out`: it is none of `inputs`, and no file that something else has written.
+///
+/// # Errors
+/// If it is.
+pub fn spare_out(out: &Path, inputs: &[&Path]) -> Result<(), Problem> {
+    let is_tuned = |text: &str| text.strip_prefix("# ").is_some_and(|text| text.starts_with(TUNED));
+    spare(out, "scenario that was tuned", is_tuned, inputs)
+}
 
 /// The loops that gains are wanted for, and the file that they go into.
 #[derive(Clone, Debug)]
@@ -43,26 +56,29 @@ impl Specified {
             return Err(own.places.problem("hold", "unsupported", message, help).into());
         }
         let mut document = change::edited(&source, changes);
-        spec.replace_in(&mut document);
+        let replaced = spec.replace_in(&mut document);
         let references = spec.references();
-        let name = if spec.name.is_empty() {
-            source.name.to_string()
-        } else {
-            format!("{} with {}", source.name, spec.name)
-        };
-        let read = |document: &DocumentMut| {
-            let mut scenario =
-                scenario::document::read(&Source::new(&name, &document.to_string()), &base, &[])?;
-            scenario.name.clone_from(&own.name);
-            Ok::<_, Problems>(scenario)
+        let read = |document: &DocumentMut, reference: &str| {
+            let origin = |key: &str| {
+                let spec = spec.places.as_ref();
+                let of_spec = || spec?.origin(&named_in_spec(key, reference, &replaced));
+                of_spec().or_else(|| own.places.origin(key))
+            };
+            let source = traced(&source.name, &document.to_string(), origin);
+            scenario::document::read(&source, &base, &[])
         };
         let mut scenarios = Vec::new();
-        for reference in references.iter().rev() {
-            document.insert("reference", Item::Table(reference.clone()));
-            scenarios.insert(0, read(&document)?);
+        for (name, reference) in references.iter().rev() {
+            let mut reference = reference.clone();
+            stand(
+                &mut reference,
+                document.get("reference").and_then(Item::as_table).and_then(Table::position),
+            );
+            document.insert("reference", Item::Table(reference));
+            scenarios.insert(0, read(&document, name)?);
         }
         if references.is_empty() {
-            scenarios.push(read(&document)?);
+            scenarios.push(read(&document, "")?);
         }
         Ok(Self { scenarios, document })
     }
@@ -72,12 +88,16 @@ impl Specified {
         let mut document = self.document.clone();
         let gains: DocumentMut = controller.to_toml().parse().unwrap_or_default();
         if let Some(mut item) = gains.get("controller").cloned() {
-            // Where the old one stood, with the comments before it.
+            // Where the old one stood, with the comments above it.
             if let (Some(new), Some(old)) =
                 (item.as_table_mut(), document.get("controller").and_then(Item::as_table))
             {
-                new.decor_mut().clone_from(old.decor());
-                new.set_position(old.position());
+                if let Some(above) = old.decor().prefix() {
+                    new.decor_mut().set_prefix(above.clone());
+                }
+                stand(new, old.position());
+                let sides = new.iter_mut().filter_map(|(_, item)| item.as_table_mut());
+                sides.for_each(|side| side.decor_mut().set_prefix("\n"));
             }
             document.insert("controller", item);
         }
@@ -104,18 +124,47 @@ impl Specified {
     }
 }
 
+/// Lets `table`, and those in it, stand at `position` of a document.
+fn stand(table: &mut Table, position: Option<isize>) {
+    table.set_position(position);
+    for (_, item) in table.iter_mut() {
+        if let Some(inner) = item.as_table_mut() {
+            stand(inner, position);
+        }
+    }
+}
+
+/// What the `key` of a scenario that comes from a SPEC is called there; `reference` is the name of its reference, and `imperfections`
+/// are indices of those that were replaced, with their names.
+fn named_in_spec(key: &str, reference: &str, imperfections: &[(usize, String)]) -> String {
+    if let Some(rest) = key.strip_prefix("reference") {
+        return format!("{reference}{rest}");
+    }
+    let of_imperfection = |(index, name): &(usize, String)| {
+        let rest = key.strip_prefix(&format!("imperfection[{index}]"))?;
+        // A delay is one number there.
+        Some(if name == "delay" { name.clone() } else { format!("{name}{rest}") })
+    };
+    imperfections.iter().find_map(of_imperfection).unwrap_or_else(|| key.to_owned())
+}
+
 impl SpecFile {
-    /// The references of the SPEC: none, one table, or an array of them.
-    fn references(&self) -> Vec<Table> {
+    /// The references of the SPEC with their names: none, one table, or an array of them.
+    fn references(&self) -> Vec<(String, Table)> {
         match self.document.get("reference") {
-            Some(Item::Table(one)) => vec![one.clone()],
-            Some(Item::ArrayOfTables(several)) => several.iter().cloned().collect(),
+            Some(Item::Table(one)) => vec![("reference".to_owned(), one.clone())],
+            Some(Item::ArrayOfTables(several)) => {
+                let named = several.iter().enumerate();
+                named.map(|(i, one)| (format!("reference[{i}]"), one.clone())).collect()
+            }
             _ => Vec::new(),
         }
     }
 
-    /// Puts what the SPEC has in the place of what the scenario has, references aside.
-    fn replace_in(&self, document: &mut DocumentMut) {
+    /// Puts what the SPEC has in the place of what the scenario has, references aside; the indices of imperfections that it has, with
+    /// their names in the SPEC.
+    fn replace_in(&self, document: &mut DocumentMut) -> Vec<(usize, String)> {
+        let mut replaced = Vec::new();
         if let Some(period) = self.document.get("control_period") {
             document.insert("control_period", period.clone());
         }
@@ -128,8 +177,9 @@ impl SpecFile {
             }
         }
         if let Some(imperfections) = self.document.get("imperfection").and_then(Item::as_array_of_tables) {
-            for imperfection in imperfections {
-                replace(document, imperfection.clone());
+            for (i, imperfection) in imperfections.iter().enumerate() {
+                let index = replace(document, imperfection.clone());
+                replaced.extend(index.map(|index| (index, format!("imperfection[{i}]"))));
             }
         }
         if let Some([_, longest]) = self.spec.delay {
@@ -137,15 +187,17 @@ impl SpecFile {
             delay.insert("kind", value("delay"));
             delay.insert("computation", value(longest));
             delay.insert("actuation", value(0.0));
-            replace(document, delay);
+            let index = replace(document, delay);
+            replaced.extend(index.map(|index| (index, "delay".to_owned())));
         }
+        replaced
     }
 }
 
-/// Puts `imperfection` in the place of the one of its kind, placement and side, or behind the others.
-fn replace(document: &mut DocumentMut, mut imperfection: Table) {
+/// Puts `imperfection` in the place of the one of its kind, placement and side, or behind the others; its index.
+fn replace(document: &mut DocumentMut, mut imperfection: Table) -> Option<usize> {
     let item = document.entry("imperfection").or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
-    let Some(entries) = item.as_array_of_tables_mut() else { return };
+    let entries = item.as_array_of_tables_mut()?;
     let alike = |entry: &Table| {
         ["kind", "placement", "side"].iter().all(|key| {
             let text = |table: &Table| table.get(key).and_then(Item::as_str).map(str::to_owned);
@@ -153,14 +205,13 @@ fn replace(document: &mut DocumentMut, mut imperfection: Table) {
         })
     };
     let index = entries.iter().position(alike);
-    match index {
-        Some(index) => {
-            if let Some(entry) = entries.get_mut(index) {
-                *imperfection.decor_mut() = entry.decor().clone();
-                imperfection.set_position(entry.position());
-                *entry = imperfection;
-            }
-        }
-        None => entries.push(imperfection),
+    if let Some(index) = index {
+        let entry = entries.get_mut(index)?;
+        *imperfection.decor_mut() = entry.decor().clone();
+        stand(&mut imperfection, entry.position());
+        *entry = imperfection;
+        return Some(index);
     }
+    entries.push(imperfection);
+    Some(entries.len() - 1)
 }

@@ -28,8 +28,8 @@ pub struct Effect {
     pub torque: f64,
     /// Of the root mean square change of the torque from one control instant to the next.
     pub chatter: f64,
-    /// Of the rate at which small errors shrink in the sampled loop.
-    pub decay: f64,
+    /// Of the rate at which small errors shrink in the sampled loop; none where that is not looked at.
+    pub decay: Option<f64>,
 }
 
 /// How much more of a gain is tried.
@@ -65,7 +65,9 @@ pub(super) fn trades(
             error: after[0] / before[0],
             torque: after[1] / before[1],
             chatter: after[2] / before[2],
-            decay: decay(outlooks, &more) / decay(outlooks, &trial.controller),
+            decay: decay(outlooks, &more)
+                .zip(decay(outlooks, &trial.controller))
+                .map(|(more, own)| more / own),
         });
         Ok(Trade { gain: gain.clone(), values: values.to_vec(), effect })
     };
@@ -73,8 +75,8 @@ pub(super) fn trades(
 }
 
 /// Logarithm by which small errors shrink in a control period.
-fn decay(outlooks: &Outlooks<'_>, controller: &Controller) -> f64 {
-    -outlooks.nominal(controller).ln()
+fn decay(outlooks: &Outlooks<'_>, controller: &Controller) -> Option<f64> {
+    outlooks.nominal(controller).map(|growth| -growth.ln())
 }
 
 /// Error, torque and chatter, each the largest of all runs; none without runs or if one diverged.

@@ -15,6 +15,9 @@ use crate::files::{Problem, Problems};
 use crate::linalg::Complex;
 use crate::robot::Robot;
 
+/// How the files begin that hold a motion.
+pub(super) const MARK: &str = "# Identification motion of";
+
 /// Part of the run in which the robot joins the motion.
 const JOINING: f64 = 0.1;
 
@@ -259,7 +262,7 @@ impl<'a> Plan<'a> {
         let Settings { control_period, link_resolution, motor_resolution, .. } = self.settings;
         let duration = self.joining + PERIODS * self.period;
         let mut toml = format!(
-            "# Identification motion of {}: {} s to join it, then {PERIODS} periods of {} s.\n\n\
+            "{MARK} {}: {} s to join it, then {PERIODS} periods of {} s.\n\n\
              robot = {}\nduration = {duration}  # s\ncontrol_period = {control_period}  # s\n\n\
              [initial]  # at rest, the springs carry the links\nq_l = {}\nq_m = {}\n\n\
              [reference]  # rad, rad/s\nkind = \"multisine\"\noffset = {}\n",

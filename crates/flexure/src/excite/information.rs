@@ -25,7 +25,7 @@ pub(super) struct Noise {
     pub samples: f64,
 }
 
-/// What the Cramér–Rao bound leaves: no unbiased estimate from such a log has smaller standard deviations.
+/// What the Cramér–Rao bound leaves, three standard deviations each: no unbiased estimate from such a log has smaller ones.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ErrorBars {
     /// Of the stiffness, over the stiffness.
@@ -104,13 +104,16 @@ fn total(joint: &Joint, lines: &[Logged], noise: &Noise) -> Matrix<f64, ALL, ALL
     })
 }
 
+/// Standard deviations in an error bar, as in those of identified numbers.
+const SIGMAS: f64 = 3.0;
+
 /// What a log of these lines leaves unknown of `joint`; infinite where it tells nothing.
 pub(super) fn error_bars(joint: &Joint, lines: &[Logged], noise: &Noise) -> ErrorBars {
     let factor = total(joint, lines, noise).ldl();
     let known = factor.pivots().iter().all(|pivot| pivot > 0.0);
     let [stiffness, motor_inertia, link_damping, motor_damping, coulomb] = std::array::from_fn(|p| {
         let unit = Vector::<f64, ALL>::from_fn(|i| f64::from(u8::from(i == p)));
-        if known { factor.solve(&unit)[p].sqrt() } else { f64::INFINITY }
+        if known { SIGMAS * factor.solve(&unit)[p].sqrt() } else { f64::INFINITY }
     });
     ErrorBars { stiffness, motor_inertia, link_damping, motor_damping, coulomb }
 }

@@ -24,7 +24,7 @@ use serde::Serialize;
 use crate::feasible::{self, Usage};
 use crate::files::base::Base;
 use crate::files::source::{self, Source};
-use crate::files::{Outside, Problem, Problems, builtin};
+use crate::files::{Outside, Problem, Problems, builtin, spare};
 use crate::progress::Progress;
 use crate::robot::{Robot, load_robot_with};
 use crate::scenario::{Scenario, document};
@@ -68,7 +68,7 @@ pub struct JointMotion {
     pub lines: Vec<Line>,
     /// Largest magnitude of the joint's own linear motion over its limits: 1 where the first one is reached.
     pub crest_share: f64,
-    /// Standard deviations that the Cramér–Rao bound leaves.
+    /// Three standard deviations that the Cramér–Rao bound leaves.
     pub error_bars: ErrorBars,
 }
 
@@ -100,6 +100,14 @@ const ATTEMPTS: usize = 16;
 
 /// Times that it is made smaller by a third because the simulated loop does not follow it.
 const SMALLER: usize = 4;
+
+/// That a motion for the robot at `robot`, a file or a built-in name, may be written to `out`: nothing is there, or an earlier motion.
+///
+/// # Errors
+/// If something else is.
+pub fn spare_out(out: &Path, robot: &str) -> Result<(), Problem> {
+    spare(out, "motion for identification", |text| text.starts_with(draft::MARK), &[Path::new(robot)])
+}
 
 /// Designs the motion for the robot at `robot`, a file or a built-in name, for a scenario file at `out`, which names the robot from
 /// there; nothing is written. `outside` says whether files may name files outside of their folders.

@@ -63,7 +63,13 @@ impl Diagnostic for WriteError {
     }
 }
 
-/// Writes `path` by `write`, into a temporary file in the same folder that takes the name at the end.
+/// The folder that `path` lies in.
+pub fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// Writes `path` by `write`, into a temporary file in the same folder that takes the name at the end; the folder is made if it is
+/// missing.
 ///
 /// # Errors
 /// If the folder is not writable, the target is not a regular file, or `write` or the system fails.
@@ -74,6 +80,7 @@ pub fn write_atomic(
     if fs::metadata(path).is_ok_and(|existing| !existing.is_file()) {
         return Err(WriteError::NotAFile { path: path.into() });
     }
+    make(folder_of(path))?;
     let file = written(path, write)?;
     file.persist(path).map_err(|error| WriteError::Content { path: path.into(), cause: error.error })?;
     Ok(())
@@ -84,7 +91,7 @@ fn written(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<NamedTempFile, WriteError> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = folder_of(path);
     let failed = |cause| WriteError::Content { path: path.into(), cause };
     let file =
         leftover::create(folder).map_err(|cause| WriteError::Folder { folder: folder.into(), cause })?;
@@ -123,14 +130,22 @@ pub fn write_together(files: &[(PathBuf, &str)], replace: bool) -> Result<(), Wr
     Ok(())
 }
 
-/// Creates `folder` if it is missing, and a file in it that is gone again: to know before a long run that its outputs
-/// can be written.
+/// That files can be created in `folder`, or in the nearest folder above that is there: to know before a long run that its outputs can
+/// be written. What is missing is not made before they are. Removes temporary files that runs left there which were killed.
 ///
 /// # Errors
 /// If they cannot.
 pub fn prepare(folder: &Path) -> Result<(), WriteError> {
-    create_folder(folder)?;
-    tempfile::tempfile_in(folder)
+    let missing =
+        |place: &Path| fs::metadata(place).is_err_and(|error| error.kind() == io::ErrorKind::NotFound);
+    let mut place = folder;
+    while missing(place) && place != Path::new(".") {
+        place = folder_of(place);
+    }
+    if place == folder {
+        leftover::remove(folder);
+    }
+    tempfile::tempfile_in(place)
         .map(drop)
         .map_err(|cause| WriteError::Folder { folder: folder.into(), cause })
 }
@@ -140,17 +155,22 @@ pub fn prepare(folder: &Path) -> Result<(), WriteError> {
 /// # Errors
 /// If it cannot be created.
 pub fn create_folder(folder: &Path) -> Result<(), WriteError> {
-    fs::create_dir_all(folder).map_err(|cause| WriteError::Folder { folder: folder.into(), cause })?;
+    make(folder)?;
     leftover::remove(folder);
     Ok(())
+}
+
+fn make(folder: &Path) -> Result<(), WriteError> {
+    fs::create_dir_all(folder).map_err(|cause| WriteError::Folder { folder: folder.into(), cause })
 }
 
 #[cfg(test)]
 mod tests {
     use std::fs;
     use std::io;
+    use std::path::Path;
 
-    use super::{WriteError, write_atomic, write_together};
+    use super::{WriteError, prepare, write_atomic, write_together};
 
     #[test]
     fn whole_or_not_at_all() {
@@ -190,8 +210,23 @@ mod tests {
     #[test]
     fn says_what_is_in_the_way() {
         let folder = tempfile::tempdir().unwrap();
-        let missing = folder.path().join("none").join("trace.csv");
-        assert!(matches!(write_atomic(&missing, |_| Ok(())), Err(WriteError::Folder { .. })));
+        fs::write(folder.path().join("file"), "").unwrap();
+        let inside = folder.path().join("file").join("trace.csv");
+        assert!(matches!(write_atomic(&inside, |_| Ok(())), Err(WriteError::Folder { .. })));
         assert!(matches!(write_atomic(folder.path(), |_| Ok(())), Err(WriteError::NotAFile { .. })));
+    }
+
+    #[test]
+    fn folders_are_made_with_their_first_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let (new, blocked) = (folder.path().join("a").join("b"), folder.path().join("file").join("b"));
+        fs::write(folder.path().join("file"), "").unwrap();
+        prepare(&new).unwrap();
+        assert!(matches!(prepare(&blocked), Err(WriteError::Folder { folder, .. }) if folder == blocked));
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "the file alone");
+        write_atomic(&new.join("trace.csv"), |_| Ok(())).unwrap();
+        prepare(&new).unwrap();
+        assert!(new.join("trace.csv").is_file());
+        prepare(Path::new("none-in-the-current-folder")).unwrap();
     }
 }

@@ -233,7 +233,7 @@ pub struct Places {
 }
 
 impl Places {
-    fn of(source: &Source, root: &DeTable<'_>) -> Self {
+    pub(super) fn of(source: &Source, root: &DeTable<'_>) -> Self {
         let mut places = Self { source: source.clone(), spans: BTreeMap::new() };
         places.visit("", root);
         places
@@ -272,6 +272,16 @@ impl Places {
     /// Where the value of `key`, dotted, stands in the text.
     pub(crate) fn span(&self, key: &str) -> Option<Range<usize>> {
         self.spans.get(key).cloned()
+    }
+
+    /// The file, or the change, in which the value of `key`, dotted, stands, and where.
+    pub(crate) fn origin(&self, key: &str) -> Option<(Source, Range<usize>)> {
+        self.span(key).map(|span| self.source.part_with(span))
+    }
+
+    /// Dotted keys with where their values stand.
+    pub(super) fn spans(&self) -> impl Iterator<Item = (&str, &Range<usize>)> {
+        self.spans.iter().map(|(key, span)| (key.as_str(), span))
     }
 
     /// A problem at `key` (dotted, like `reference.amplitude` or `links.joint[2].mass`), or at the start of the file if

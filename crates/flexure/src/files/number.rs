@@ -52,6 +52,17 @@ pub fn short(value: f64, digits: usize) -> String {
     format!("{digits}{power}")
 }
 
+/// The largest number of `digits` significant digits, or nearly, that is not above `value`, which is positive.
+pub fn rounded_down(value: f64, digits: usize) -> f64 {
+    let rounded = |x: f64| format!("{x:.*e}", digits.saturating_sub(1)).parse().unwrap_or(x);
+    let nearest = rounded(value);
+    if nearest <= value {
+        return nearest;
+    }
+    let step = |x: f64| 10f64.powf(x.log10().floor() + 1.0) / 10f64.powf(digits as f64);
+    rounded(value - step(value))
+}
+
 /// Seconds in the unit that reads best: `3 ms`, `1.25 s`.
 pub fn duration(seconds: f64) -> String {
     if seconds != 0.0 && seconds.abs() < 0.1 {
@@ -78,7 +89,7 @@ fn shift(mantissa: &str, places: i32) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{duration, engineering, power_of_ten, significant};
+    use super::{duration, engineering, power_of_ten, rounded_down, significant};
 
     #[test]
     fn three_digits_and_powers_in_steps_of_three() {
@@ -120,6 +131,27 @@ mod tests {
                     format!("{digits}e{}", if power.is_empty() { "0" } else { &power }).parse().unwrap();
                 assert!((back / value - 1.0).abs() < 6e-3, "{value:e} printed as {text}"); // half of the third digit
             }
+        }
+    }
+
+    #[test]
+    fn what_is_rounded_down_is_never_above() {
+        let cases = [
+            (39.46, 39.4),
+            (39.4, 39.4),
+            (39.44, 39.4),
+            (9.999, 9.99),
+            (10.0, 10.0),
+            (0.012_39, 0.0123),
+            (11_970.0, 11_900.0),
+        ];
+        for (value, below) in cases {
+            assert_eq!(rounded_down(value, 3).to_string(), f64::to_string(&below), "{value}");
+        }
+        for k in 0..20_000 {
+            let value = 1e-3 * 1.0007_f64.powi(k);
+            let below = rounded_down(value, 3);
+            assert!(below <= value && below > 0.989 * value, "{value}: {below}");
         }
     }
 

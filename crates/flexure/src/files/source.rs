@@ -20,8 +20,21 @@ pub(crate) struct Source {
     shown: Arc<str>,
     /// Lines of the file before `text`.
     lines_before: usize,
-    /// What `text` is put together from, and where in it that begins: the file and the changes; nothing for a file alone.
-    parts: Arc<[(usize, Source)]>,
+    /// What `text` is put together from, in order; nothing for a file alone.
+    parts: Arc<[Part]>,
+    /// Bytes of `text` without changes.
+    length: usize,
+}
+
+/// A part of a text that comes from elsewhere.
+#[derive(Clone, Debug)]
+pub(crate) struct Part {
+    /// Where it begins in the text.
+    pub start: usize,
+    /// The file, or the change.
+    pub source: Source,
+    /// Where it begins there.
+    pub at: usize,
 }
 
 impl Source {
@@ -34,7 +47,13 @@ impl Source {
     pub fn part(name: &str, text: &str, lines_before: usize) -> Self {
         let text: Arc<str> = text.into();
         let shown = if text.contains(is_hostile) { harmless(text.to_string()).into() } else { text.clone() };
-        Self { name: name.into(), text, shown, lines_before, parts: Arc::from([]) }
+        let length = text.len();
+        Self { name: name.into(), text, shown, lines_before, parts: Arc::from([]), length }
+    }
+
+    /// The same text, put together from `parts`, which are in order.
+    pub fn of_parts(self, parts: Vec<Part>) -> Self {
+        Self { parts: parts.into(), ..self }
     }
 
     /// With the texts of `changes` behind that of the file.
@@ -42,29 +61,34 @@ impl Source {
         if changes.is_empty() {
             return self.clone();
         }
-        let (mut text, mut parts) = (self.text.to_string(), vec![(0, self.clone())]);
+        let file = Part { start: 0, source: self.clone(), at: 0 };
+        let (mut text, mut parts) = (self.text.to_string(), vec![file]);
         for change in changes {
             text.push('\n');
-            parts.push((text.len(), Self::new(change::NAME, change.text())));
+            let source = Self::new(change::NAME, change.text());
+            parts.push(Part { start: text.len(), source, at: 0 });
             text.push_str(change.text());
         }
-        Self { parts: parts.into(), ..Self::new(&self.name, &text) }
+        Self { length: self.text.len(), ..Self::new(&self.name, &text).of_parts(parts) }
     }
 
     /// The text of the file alone.
     pub fn of_file(&self) -> &str {
-        self.parts.first().map_or(&self.text, |(_, file)| &file.text)
+        self.text.get(..self.length).unwrap_or_default()
     }
 
     /// Where the changes begin in the text.
     pub fn changes(&self) -> impl Iterator<Item = usize> {
-        self.parts.iter().skip(1).map(|(start, _)| *start)
+        self.parts.iter().skip(1).map(|part| part.start)
     }
 
     /// The part, file or change, that `span` is in, and where in it.
     pub fn part_with(&self, span: Range<usize>) -> (Self, Range<usize>) {
-        match self.parts.iter().rfind(|(start, _)| *start <= span.start) {
-            Some((start, part)) => (part.clone(), span.start - start..span.end - start),
+        match self.parts.iter().rfind(|part| part.start <= span.start) {
+            Some(Part { start, source, at }) => {
+                let there = |byte: usize| source.boundary(byte - start + at);
+                (source.clone(), there(span.start)..there(span.end))
+            }
             None => (self.clone(), span),
         }
     }
@@ -123,10 +147,13 @@ impl Source {
         let text = &*self.shown;
         let line_start = text[..offset].rfind('\n').map_or(0, |newline| newline + 1);
         let line_end = text[offset..].find('\n').map_or(text.len(), |newline| offset + newline);
-        let boundary =
-            |at: usize| (0..=at.min(text.len())).rev().find(|&i| text.is_char_boundary(i)).unwrap_or(0);
-        let start = boundary(offset.saturating_sub(WIDEST / 2)).max(line_start);
-        start..boundary(start + WIDEST).min(line_end)
+        let start = self.boundary(offset.saturating_sub(WIDEST / 2)).max(line_start);
+        start..self.boundary(start + WIDEST).min(line_end)
+    }
+
+    /// The last place at or before `at` where a character of the text ends.
+    fn boundary(&self, at: usize) -> usize {
+        (0..=at.min(self.text.len())).rev().find(|&i| self.text.is_char_boundary(i)).unwrap_or(0)
     }
 }
 

@@ -265,8 +265,9 @@ pub fn prove(scenario: &Scenario, question: &Question) -> Result<Proof, Problems
     prove_watched(scenario, question, &unwatched)
 }
 
-/// Parts of the work that the rates and the direct proof take, about; bounds along the reference take the rest.
+/// Where the rates, all robots within tolerances and the direct proof end, about; bounds along the reference take the rest.
 const RATES: f64 = 0.05;
+const WITHIN: f64 = 0.25;
 const DIRECT: f64 = 0.6;
 
 /// As [`prove`]; `progress` is told about what fraction is done. Once the rates are proved, what it breaks off has what was
@@ -306,9 +307,14 @@ pub fn prove_watched(
     let _ = watched(RATES);
     let has_tolerances = !scenario.robot.tolerances.are_none();
     let budget = slabs(scenario.robot.joint_count());
-    let within = match verdict.proved().filter(|_| has_tolerances) {
-        None => None,
-        Some(certificate) => within(scenario, certificate, start, budget / SHARE, &|_| watched(RATES))?,
+    let watched = &watched;
+    let between = |from: f64, to: f64| move |fraction: f64| watched(from + (to - from) * fraction);
+    let (within, begun) = match verdict.proved().filter(|_| has_tolerances) {
+        None => (None, RATES),
+        Some(certificate) => {
+            let found = within(scenario, certificate, start, budget / SHARE, &between(RATES, WITHIN))?;
+            (found, WITHIN)
+        }
     };
     // Where the robot need not be that of the file, the level is that of all robots that it may be.
     let level = match &within {
@@ -318,15 +324,13 @@ pub fn prove_watched(
     };
     // Whichever is asked for alone takes all the time.
     let middle = match (question.direct, &level) {
-        (None, _) => RATES,
+        (None, _) => begun,
         (Some(_), None) => 1.0,
         (Some(_), Some(_)) => DIRECT,
     };
-    let watched = &watched;
-    let between = |from: f64, to: f64| move |fraction: f64| watched(from + (to - from) * fraction);
     let confirmation = match (verdict.proved(), question.direct) {
         (Some(certificate), Some(direct)) if !is_broken_off() => {
-            Some(confirm(scenario, certificate, direct, &between(RATES, middle))?)
+            Some(confirm(scenario, certificate, direct, &between(begun, middle))?)
         }
         _ => None,
     };

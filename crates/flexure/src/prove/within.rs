@@ -8,11 +8,14 @@
 //! meanwhile. W is made with the numbers of the file. [`Deviation`] has μ and ν for the states with W ≤ c, and c is such that no
 //! motion leaves them: ν² ≤ 2 c.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use flexure_core::scalar::{Interval, Scalar};
 use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::files::Problems;
+use crate::files::number::engineering;
 use crate::progress::Progress;
 use crate::prove::along::enclosed;
 use crate::prove::engine::certificate::{BlockName, Certificate};
@@ -108,13 +111,15 @@ pub fn within(
     };
     let (mut level, mut slabs) = (start.next_up().max(LEAST), 0);
     for tried in 0..LEVELS {
-        let watched = |fraction: f64| progress((tried as f64 + fraction) / LEVELS as f64);
+        // Nobody knows how many it takes: each is half of what is left.
+        let watched = |fraction: f64| progress(1.0 - 0.5_f64.powf(tried as f64 + fraction));
         let Some((found, spent)) = search.at(level, &watched) else { return Ok(None) };
         slabs += spent;
         let Some(Bound { rate, length }) = found else {
             return open(
                 format!(
-                    "where W ≤ {level:.3e} J some robot within the tolerances may move away from the reference"
+                    "where W ≤ {} J it was not shown that every robot within the tolerances comes back to the reference",
+                    engineering(level)
                 ),
                 slabs,
             );
@@ -130,14 +135,15 @@ pub fn within(
         if level > largest {
             return open(
                 format!(
-                    "the differences can push W to {:.3e} J, beyond the region's level of {largest:.3e} J",
-                    needed.hi()
+                    "for all that was shown the differences push W to {} J, beyond the region's level of {} J",
+                    engineering(needed.hi()),
+                    engineering(largest)
                 ),
                 slabs,
             );
         }
     }
-    open(format!("no level of W up to {level:.3e} J was found that holds the motion"), slabs)
+    open(format!("no level of W up to {} J was found that holds the motion", engineering(level)), slabs)
 }
 
 /// Convergence rates of the blocks of W in the order of the errors [1/s].
@@ -160,8 +166,14 @@ struct Search<'a> {
 impl Search<'_> {
     /// The bound over {W ≤ `level`} and the whole run, none if there is none with a rate above 0; and slabs looked at.
     fn at(&self, level: f64, progress: Progress<'_>) -> Option<(Option<Bound>, usize)> {
-        let goes_on = || progress(0.0).is_continue();
-        let slab = |time: Interval| Deviation::watched(self.system, &self.spread, level, time, &goes_on);
+        let looked_at = AtomicUsize::new(0);
+        let done = || looked_at.load(Ordering::Relaxed) as f64 / self.budget.max(1) as f64;
+        let goes_on = || progress(done().min(1.0)).is_continue();
+        let slab = |time: Interval| {
+            let found = Deviation::watched(self.system, &self.spread, level, time, &goes_on);
+            looked_at.fetch_add(1, Ordering::Relaxed);
+            found
+        };
         let first = self.budget.clamp(1, FIRST);
         let cut =
             |i: usize| if i == first { self.duration } else { self.duration * (i as f64 / first as f64) };

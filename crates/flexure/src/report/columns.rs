@@ -51,14 +51,23 @@ pub(super) fn laid_out(table: &Table, keys: usize, width: usize) -> String {
     blocks.iter().map(block).collect::<Vec<_>>().join("\n")
 }
 
-/// Lines of at most `width` characters: a longer one goes on after a `_`, `-`, `.` or blank, and inside of what has none of them in
-/// so many characters.
+/// Lines of at most `width` characters: a longer one goes on after a `_`, `-`, `.` or blank that is not inside a number, and inside of
+/// what has none of them in so many characters.
 fn folded(text: &str, width: usize) -> String {
+    let ends = |pair: &[char]| match pair {
+        ['.' | '-', next] => !next.is_ascii_digit(),
+        [last, _] => matches!(last, '_' | ' '),
+        _ => false,
+    };
     let fold = |line: &str| {
         let (mut lines, mut length) = (String::new(), 0);
-        for part in line.split_inclusive(['_', '-', '.', ' ']) {
-            let characters: Vec<char> = part.chars().collect();
-            for piece in characters.chunks(width.max(1)) {
+        let characters: Vec<char> = line.chars().collect();
+        let mut begin = 0;
+        let cuts = characters.windows(2).enumerate().filter(|(_, pair)| ends(pair)).map(|(i, _)| i + 1);
+        for cut in cuts.chain([characters.len()]) {
+            let part = &characters[begin..cut];
+            begin = cut;
+            for piece in part.chunks(width.max(1)) {
                 if length > 0 && length + piece.len() > width {
                     lines.push('\n');
                     length = 0;
@@ -85,6 +94,8 @@ mod tests {
         assert_eq!(folded("short\nleft_inner_finger_joint", 12), "short\nleft_inner_\nfinger_joint");
         assert_eq!(folded("aaaaaaaaaa", 4), "aaaa\naaaa\naa");
         assert_eq!(folded("", 4), "");
+        assert_eq!(folded("leaves 0.007598 rad of joint-a", 9), "leaves \n0.007598 \nrad of \njoint-a");
+        assert_eq!(folded("below 1e-12 J", 8), "below \n1e-12 J");
     }
 
     /// Every number is there at every width, no line is wider, and every name is whole or folded between words.

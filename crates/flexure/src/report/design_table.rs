@@ -2,7 +2,7 @@
 
 use comfy_table::Cell;
 
-use crate::design::{Constraint, Design, Trade};
+use crate::design::{Constraint, Design, Effect, Trade};
 use crate::files::number::{NONE, engineering, short, significant};
 use crate::report::columns::laid_out;
 use crate::report::table::{headed, right};
@@ -23,11 +23,14 @@ pub fn trades_table(trades: &[Trade], width: usize) -> String {
     let titles = ["a quarter more of", "rms\n|e_l|", "max\n|u_m|", "torque\nchange", "decay as\nsampled"];
     let mut table = headed(titles.into_iter());
     for trade in trades {
-        let factor = |x: f64| right(format!("×{}", significant(x, 3)));
+        let factor = |x: f64| format!("×{}", significant(x, 3));
         let numbers = match trade.effect {
-            Some(effect) => [effect.error, effect.torque, effect.chatter, effect.decay].map(factor),
-            None => ["unstable", NONE, NONE, NONE].map(|text| right(text.to_owned())),
+            Some(Effect { error, torque, chatter, decay }) => {
+                [Some(error), Some(torque), Some(chatter), decay].map(|x| x.map_or(NONE.to_owned(), factor))
+            }
+            None => ["unstable", NONE, NONE, NONE].map(str::to_owned),
         };
+        let numbers = numbers.map(right);
         table.add_row(std::iter::once(Cell::new(&trade.gain)).chain(numbers).collect::<Vec<_>>());
     }
     laid_out(&table, 1, width)

@@ -21,8 +21,8 @@ struct Price {
 
 const EFFORT: Price = Price {
     title: "Error against effort",
-    subtitle: "one mark a law, with the gains that the search found; lower left is better; dotted: what the reference itself \
-               takes, by the model",
+    subtitle: "one mark a law, with the gains that the search found, side by side where they would cover each other; lower left \
+               is better; dotted: what the reference itself takes, by the model",
     label: "rms motor torque [N m]",
     of: |score| score.rms_torque,
     line: |task| task.needed_torque,

@@ -19,6 +19,8 @@ pub struct FigureOptions {
     pub title: String,
     /// Second line; may be empty.
     pub subtitle: String,
+    /// Names of the joints; those that are missing are numbered.
+    pub joints: Vec<String>,
 }
 
 const WIDTH: f64 = 1200.0;
@@ -41,6 +43,7 @@ pub fn four_panel(trace: &Trace, options: &FigureOptions) -> Scene {
             quantity: "position",
             unit: units::ANGLE.raised,
             scale: Scale::Linear,
+            window: None,
             curves: positions,
         },
         Panel {
@@ -48,6 +51,7 @@ pub fn four_panel(trace: &Trace, options: &FigureOptions) -> Scene {
             quantity: "|error|",
             unit: units::ANGLE.raised,
             scale: Scale::Decades,
+            window: None,
             curves: over(motor("e_m"), link("e_l")),
         },
         Panel {
@@ -55,6 +59,7 @@ pub fn four_panel(trace: &Trace, options: &FigureOptions) -> Scene {
             quantity: "|momentum error|",
             unit: units::MOMENTUM.raised,
             scale: Scale::Decades,
+            window: None,
             curves: over(motor("sigma_m"), link("sigma_l")),
         },
         Panel {
@@ -62,10 +67,11 @@ pub fn four_panel(trace: &Trace, options: &FigureOptions) -> Scene {
             quantity: "torque",
             unit: units::TORQUE.raised,
             scale: Scale::Linear,
+            window: None,
             curves: link("u_m"),
         },
     ];
-    four(t, &panels, options, &legend(joints))
+    four(t, &panels, options, &legend(joints, &options.joints))
 }
 
 /// Four panels over the times `t` on one page, with a title and one legend.
@@ -113,8 +119,11 @@ fn divergence(t: &[f64], panels: &[Panel]) -> Option<f64> {
 }
 
 /// Hue names the joint, line style the side: one legend serves all panels.
-fn legend(joints: usize) -> Vec<(String, Stroke)> {
-    let joint = |joint| (format!("joint {}", joint + 1), Stroke::swatch(joint, joints));
+fn legend(joints: usize, names: &[String]) -> Vec<(String, Stroke)> {
+    let joint = |joint| {
+        let name = names.get(joint).map_or_else(|| format!("joint {}", joint + 1), Clone::clone);
+        (name, Stroke::swatch(joint, joints))
+    };
     let side = |name: &str, stroke: Stroke| (name.to_owned(), Stroke { color: INK, ..stroke });
     let sides = [
         side("link side", Stroke::link(0, 1)),

@@ -42,6 +42,8 @@ pub(super) struct Panel {
     pub quantity: &'static str,
     pub unit: &'static str,
     pub scale: Scale,
+    /// The part of the time that is shown, where all of it would be too dense; of linear axes.
+    pub window: Option<Range>,
     pub curves: Vec<Curve>,
 }
 
@@ -86,6 +88,9 @@ impl Panel {
 
     /// Draws a linear axis, with a second frame for a short excursion. Returns what the frame cuts.
     fn linear(&self, scene: &mut Scene, place: [f64; 4], view: &View) -> Option<String> {
+        if let Some(window) = self.window {
+            return Some(self.detail(scene, place, view, window));
+        }
         let range = if view.diverged.is_some() { Linear::of_diverged } else { Linear::of };
         let Linear { range, clipped } = range(&mut self.values());
         let excursion = clipped.then(|| self.excursion(range));
@@ -95,6 +100,17 @@ impl Panel {
         }
         draw(scene, &over_time(place, LEFT, view.t, TIME, linear(range, &self.label())), &self.curves, view);
         clipped.then(|| format!("{} outside the frame", self.peak()))
+    }
+
+    /// Draws what is inside of `window` alone. Returns which part of the run that is.
+    fn detail(&self, scene: &mut Scene, place: [f64; 4], view: &View, window: Range) -> String {
+        let inside: Vec<Curve> = self.curves.iter().map(|curve| curve.within(window)).collect();
+        let range = Linear::whole(inside.iter().flat_map(|curve| curve.values.iter().copied()));
+        let label = self.label();
+        let axes = over_time(place, LEFT, window, TIME, linear(range, &label));
+        draw(scene, &axes, &inside, &View { t: window, diverged: None, buckets: view.buckets });
+        let [from, to, end] = [window.low, window.high, view.t.high].map(|t| short(t, 4));
+        format!("detail: {from} to {to} s of {end} s")
     }
 
     /// The excursion on the left on its own scale, the whole run on the right. Returns what that cuts.

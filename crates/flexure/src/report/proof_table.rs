@@ -205,7 +205,7 @@ fn bounds(along: &Along) -> Vec<String> {
         ),
         format!("along        |q_m − q_l| {}", bounded(&along.deflection.bound, "rad")),
         format!(
-            "along        |u_m| {}, {} N m without disturbance",
+            "along        |u_m| {}, {} N m on the reference with the numbers of the file",
             bounded(&along.torque.bound, "N m"),
             list(&along.torque.nominal)
         ),

@@ -7,7 +7,8 @@ use comfy_table::{Cell, Row};
 use super::curve::Curve;
 use super::figure::{FigureOptions, curves, four, over};
 use super::outputs::write_figure;
-use super::panel::{Panel, Scale};
+use super::panel::{Panel, Scale, span};
+use super::range::Range;
 use super::scene::Scene;
 use super::style::{INK, Stroke};
 use super::table::{headed, right};
@@ -25,7 +26,8 @@ pub fn replay_figure(replay: &Replay) -> Scene {
     let side = if trace.joints("q_l").is_empty() { "q_m" } else { "q_l" };
     let logged = |name: &str| curves(trace, name, Stroke::link);
     let predicted = |name: &str| curves(trace, &format!("{name}_predicted"), Stroke::motor);
-    let closed = |name: &str| curves(trace, &format!("{name}_loop"), |_, _| Stroke::reference());
+    let closed = |name: &str| curves(trace, &format!("{name}_loop"), Stroke::dotted);
+    let window = detail(t, &trace.joints("u_m"));
     let panels = [
         Panel {
             title: if side == "q_l" {
@@ -36,6 +38,7 @@ pub fn replay_figure(replay: &Replay) -> Scene {
             quantity: "position",
             unit: units::ANGLE.raised,
             scale: Scale::Linear,
+            window: None,
             curves: centred(over(over(logged(side), predicted(side)), closed(side)), trace, side),
         },
         Panel {
@@ -43,6 +46,7 @@ pub fn replay_figure(replay: &Replay) -> Scene {
             quantity: "deflection",
             unit: units::ANGLE.raised,
             scale: Scale::Linear,
+            window,
             curves: over(over(logged("deflection"), predicted("deflection")), closed("deflection")),
         },
         Panel {
@@ -50,17 +54,20 @@ pub fn replay_figure(replay: &Replay) -> Scene {
             quantity: "torque",
             unit: units::TORQUE.raised,
             scale: Scale::Linear,
+            window,
             curves: over(logged("u_m"), closed("u_m")),
         },
         Panel {
-            title: "(d) what the prediction misses, links and motors",
+            title: if side == "q_l" {
+                "(d) prediction − log, link positions qₗ"
+            } else {
+                "(d) prediction − log, motor positions qₘ"
+            },
             quantity: "|prediction − log|",
             unit: units::ANGLE.raised,
             scale: Scale::Decades,
-            curves: over(
-                residuals(trace, "q_m_residual", Stroke::motor),
-                residuals(trace, "q_l_residual", Stroke::link),
-            ),
+            window: None,
+            curves: residuals(trace, &format!("{side}_residual"), Stroke::link),
         },
     ];
     let options = FigureOptions {
@@ -69,6 +76,7 @@ pub fn replay_figure(replay: &Replay) -> Scene {
             "log, closed loop of the scenario, and the robot under the logged torque predicted {} ahead at most",
             duration(replay.horizon)
         ),
+        joints: Vec::new(),
     };
     four(t, &panels, &options, &legend(&replay.joints, joints))
 }
@@ -103,19 +111,42 @@ fn residuals(trace: &Trace, prefix: &str, stroke: impl Fn(usize, usize) -> Strok
     signals.iter().enumerate().map(curve).collect()
 }
 
+/// Times that a signal may pass its mean and still be legible whole, and as often it passes it in a detail, about.
+const LEGIBLE: usize = 60;
+const DETAIL: f64 = 24.0;
+
+/// Where to look closer: around the largest of `signals` over the times `t`; none where the whole is legible.
+fn detail(t: &[f64], signals: &[&[f64]]) -> Option<Range> {
+    let passes = |values: &&[f64]| {
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        values.windows(2).filter(|pair| (pair[0] < mean) != (pair[1] < mean)).count()
+    };
+    let most = signals.iter().map(passes).max().filter(|most| *most > LEGIBLE)?;
+    let samples = signals.iter().flat_map(|values| t.iter().zip(values.iter()));
+    let (peak, _) = samples.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+    let whole = span(t);
+    // 1, 2 or 5 times a power of ten, in s.
+    let about = whole.span() * DETAIL / most as f64;
+    let decade = 10f64.powf(about.log10().floor());
+    let width = decade * [5.0, 2.0].into_iter().find(|k| k * decade <= about).unwrap_or(1.0);
+    let begin = (peak - 0.5 * width).clamp(whole.low, whole.high - width);
+    let low = 0.1 * width * (10.0 * begin / width).floor();
+    Some(Range { low, high: low + width })
+}
+
 /// Joints with what the prediction misses of them, then line styles.
 fn legend(found: &[JointResiduals], joints: usize) -> Vec<(String, Stroke)> {
     let joint = |(i, joint): (usize, &JointResiduals)| {
         let residual = joint.predicted_q_l.or(joint.predicted_q_m);
-        let rms =
-            residual.map_or(String::new(), |residual| format!(": {} rad rms", engineering(residual.rms)));
+        let rms = residual
+            .map_or(String::new(), |residual| format!(": rms in (d) {} rad", engineering(residual.rms)));
         (format!("{}{rms}", joint.name), Stroke::swatch(i, joints))
     };
     let side = |name: &str, stroke: Stroke| (name.to_owned(), Stroke { color: INK, ..stroke });
     let styles = [
-        side("log; in (d) links", Stroke::link(0, 1)),
-        side("prediction; in (d) motors", Stroke::motor(0, 1)),
-        side("closed loop", Stroke::reference()),
+        side("log", Stroke::link(0, 1)),
+        side("prediction", Stroke::motor(0, 1)),
+        side("closed loop", Stroke::dotted(0, 1)),
     ];
     found.iter().enumerate().map(joint).chain(styles).collect()
 }
@@ -165,4 +196,22 @@ pub fn write_replay(folder: &Path, replay: &Replay) -> Result<Vec<PathBuf>, Writ
     write_trace(&table, &replay.trace)?;
     let [svg, png] = write_figure(folder, &name, &replay_figure(replay))?;
     Ok(vec![table, svg, png])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::detail;
+
+    #[test]
+    fn what_swings_often_is_shown_in_detail() {
+        let t: Vec<f64> = (0..20_001).map(|k| 1e-3 * f64::from(k)).collect();
+        let swing = |hertz: f64| t.iter().map(|t| (1.0 + 0.1 * t) * (hertz * t).sin()).collect::<Vec<_>>();
+        let (slow, fast) = (swing(3.0), swing(60.0));
+        assert!(detail(&t, &[&slow]).is_none() && detail(&t, &[]).is_none() && detail(&[], &[]).is_none());
+        let window = detail(&t, &[&slow, &fast]).expect("a detail");
+        assert!(
+            (window.span() - 1.0).abs() < 1e-9 && window.low >= 18.5 && window.high <= 20.0 + 1e-9,
+            "{window:?}"
+        );
+    }
 }

@@ -60,14 +60,14 @@ impl Scatter<'_> {
         self.draw_points(scene, &axes);
     }
 
-    /// Points that lie on each other are drawn smaller and smaller, so that all of them show.
+    /// Marks that would cover each other stand side by side.
     fn draw_points(&self, scene: &mut Scene, axes: &Axes) {
         let mut drawn: Vec<Point> = Vec::new();
         for Item { x, y, marker } in &self.points {
             // What has no logarithm lies on the lower end.
             let at = axes.place(x.log10().max(axes.x.range.low), y.log10().max(axes.y.range.low));
-            let below = drawn.iter().filter(|[x, y]| (x - at[0]).hypot(y - at[1]) < 0.5 * RADIUS).count();
-            marker.draw(scene, at, RADIUS * 0.72_f64.powi(i32::try_from(below).unwrap_or(i32::MAX)));
+            let at = beside(at, &drawn);
+            marker.draw(scene, at, RADIUS);
             drawn.push(at);
         }
     }
@@ -86,6 +86,17 @@ impl Scatter<'_> {
             marker.draw(scene, [start + STEP * (i as f64 + 0.5), top + 17.0], 0.8 * RADIUS);
         }
     }
+}
+
+/// The place closest to `at`, to its right or left, at which a mark covers none of those at `drawn`.
+fn beside([x, y]: Point, drawn: &[Point]) -> Point {
+    /// Between the middles of two marks, in radii, and the step of the search.
+    const APART: f64 = 2.0;
+    const STEP: f64 = 0.25;
+    let free = |at: &Point| drawn.iter().all(|[x, y]| (x - at[0]).hypot(y - at[1]) >= APART * RADIUS);
+    let steps = (0..).map(|k: u32| STEP * RADIUS * f64::from(k));
+    let mut places = steps.flat_map(|step| [[x + step, y], [x - step, y]]);
+    places.find(free).unwrap_or([x, y])
 }
 
 /// A row or more of marks with their names from `y` down. Returns the height of the rows.
@@ -120,7 +131,19 @@ fn exponents(values: impl Iterator<Item = f64>) -> Range {
 
 #[cfg(test)]
 mod tests {
-    use super::exponents;
+    use super::{RADIUS, beside, exponents};
+
+    #[test]
+    fn marks_on_one_place_all_show() {
+        let mut drawn = Vec::new();
+        for _ in 0..9 {
+            drawn.push(beside([50.0, 20.0], &drawn));
+        }
+        assert!(drawn.iter().all(|[x, y]| (*y - 20.0).abs() < 1e-9 && (x - 50.0).abs() <= 8.5 * RADIUS));
+        let apart = |a: f64, b: f64| (a - b).abs() >= 2.0 * RADIUS;
+        assert!((0..9).all(|i| (0..i).all(|j| apart(drawn[i][0], drawn[j][0]))), "{drawn:?}");
+        assert_eq!(beside([50.0, 90.0], &drawn).map(f64::to_bits), [50.0, 90.0].map(f64::to_bits));
+    }
 
     #[test]
     fn axes_hold_their_values_and_nothing_gives_an_axis() {

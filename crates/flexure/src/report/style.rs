@@ -80,6 +80,11 @@ impl Stroke {
         Self { color: hue(joint), width: 1.7 - 0.5 * thinning(joint, joints), dash: &[6.0, 3.0] }
     }
 
+    /// A third line beside link and motor, in the joint's colour: dotted.
+    pub(super) fn dotted(joint: usize, joints: usize) -> Self {
+        Self { color: hue(joint), width: 1.5 - 0.4 * thinning(joint, joints), dash: &[1.5, 2.5] }
+    }
+
     /// The reference: dark and dotted, on top of what follows it.
     pub(super) fn reference() -> Self {
         Self { color: INK, width: 1.3, dash: &[2.0, 4.0] }

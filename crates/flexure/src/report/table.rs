@@ -8,6 +8,7 @@ use crate::files::number::{NONE, engineering, short};
 use crate::report::columns::laid_out;
 use crate::robot::JointRow;
 use crate::simulate::Summary;
+use crate::units::{self, Unit};
 
 /// A column of numbers: three lines of heading, and what stands in it.
 type Column = (&'static str, fn(&Summary) -> String);
@@ -118,8 +119,9 @@ pub fn usage_table(joints: &[String], usages: &[Usage], width: usize) -> String 
     let mut table = headed(["joint", "limit", "", "reference", "share", "t [s]"].into_iter());
     for usage in usages {
         let name = joints.get(usage.joint).map_or(NONE, String::as_str);
-        let numbers =
-            [short(usage.limit, 5), short(usage.value, 5), short(usage.share, 3), short(usage.time, 5)];
+        let unit = Unit::of_key(usage.key).unwrap_or(units::NONE).plain;
+        let amount = |x: f64| format!("{} {unit}", short(x, 5)).trim_end().to_owned();
+        let numbers = [amount(usage.limit), amount(usage.value), short(usage.share, 3), short(usage.time, 5)];
         let words = [name, usage.key].map(Cell::new);
         table.add_row(Row::from(words.into_iter().chain(numbers.map(right)).collect::<Vec<_>>()));
     }

@@ -59,7 +59,8 @@ impl Experiment {
             (None, None) => String::new(),
         };
         let subtitle = describe(&scenario) + &ended;
-        let options = FigureOptions { title: scenario.name.clone(), subtitle };
+        let joints = scenario.robot.joints.iter().map(|joint| joint.name.clone()).collect();
+        let options = FigureOptions { title: scenario.name.clone(), subtitle, joints };
         let figure = four_panel(&run.trace, &options);
         Ok(Self { scenario, run, sampled, figure })
     }
@@ -114,9 +115,11 @@ pub fn certificates() -> Result<Vec<Certified>, Problems> {
 
 /// One line about a scenario.
 fn describe(scenario: &Scenario) -> String {
-    let start = match scenario.smooth_start {
-        Some(start) => format!("smooth start over {} s", start.duration),
-        None => "no smooth start".to_owned(),
+    let rise = scenario.time_scaling.and_then(|scaling| scaling.rise);
+    let start = match (scenario.smooth_start, rise) {
+        (Some(start), _) => format!("smooth start over {} s", start.duration),
+        (None, Some(rise)) => format!("from rest, up to speed in {rise} s"),
+        (None, None) => "no smooth start".to_owned(),
     };
     let hold = match scenario.hold {
         Hold::ZeroOrder => format!("torque held for {} ms", 1e3 * scenario.control_period),

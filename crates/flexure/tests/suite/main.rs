@@ -15,6 +15,7 @@ mod common;
 mod compare;
 mod controllers;
 mod design;
+mod deviation;
 mod direct;
 mod docs;
 mod enclosures;

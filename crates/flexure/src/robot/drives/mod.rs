@@ -112,9 +112,7 @@ impl DriveClass {
             gear_ratio: rounded(self.gear_ratio.value / radius),
         }
     }
-}
 
-impl DriveClass {
     /// Whether such drives are made for a joint with the largest torque `torque` [N m], or force \[N\] where it slides.
     pub fn is_made_for(&self, kind: JointKind, torque: f64) -> bool {
         let [least, most] = self.torques;

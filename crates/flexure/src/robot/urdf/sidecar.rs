@@ -13,7 +13,7 @@ use crate::robot::DriveClass;
 use crate::robot::document::DAMPING;
 use crate::robot::drives::rounded;
 use crate::robot::joints::wanted;
-use crate::robot::links::{Assembled, DriveDefaults, MovingJoint};
+use crate::robot::links::{Assembled, DriveDefaults, JointKind, MovingJoint};
 use crate::robot::urdf::drive_table::Drafted;
 use crate::robot::urdf::{LIMIT, Locks, Urdf, effort};
 
@@ -139,7 +139,8 @@ const SUSPICIOUS: usize = 3;
 fn doubts(class: &DriveClass, joints: &[MovingJoint]) -> Vec<(String, &'static str)> {
     const HELP: &str = "what is assumed follows from the torque limit: write the drive's own into the URDF's effort, then import again";
     let torque = |joint: &MovingJoint| joint.drive.torque_limit.unwrap_or_default();
-    let said = |joint: &&MovingJoint| format!("{} ({})", joint.name, short(torque(joint), 4));
+    let unit = |joint: &MovingJoint| if joint.kind == JointKind::Prismatic { "N" } else { "N m" };
+    let said = |joint: &&MovingJoint| format!("{} ({} {})", joint.name, short(torque(joint), 4), unit(joint));
     let odd: Vec<_> = joints.iter().filter(|joint| !class.is_made_for(joint.kind, torque(joint))).collect();
     let mut doubts = Vec::new();
     if !odd.is_empty() {
@@ -156,11 +157,12 @@ fn doubts(class: &DriveClass, joints: &[MovingJoint]) -> Vec<(String, &'static s
     }
     let same = |x: f64| joints.iter().filter(|joint| torque(joint).to_bits() == x.to_bits()).count();
     let placeholder = PLACEHOLDERS.iter().find(|&&x| same(x) >= SUSPICIOUS && same(x) == joints.len());
-    if let Some(x) = placeholder {
+    if let (Some(x), Some(first)) = (placeholder, joints.first()) {
         doubts.push((
             format!(
-                "all {} joints have a torque limit of {x}: it may stand for one that nobody knew",
-                joints.len()
+                "all {} joints have a torque limit of {x} {}: it may stand for one that nobody knew",
+                joints.len(),
+                unit(first)
             ),
             HELP,
         ));

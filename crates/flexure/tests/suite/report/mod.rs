@@ -16,7 +16,11 @@ use flexure::simulate::{Summary, Trace};
 use roxmltree::Document;
 
 fn figure(trace: &Trace) -> String {
-    let options = FigureOptions { title: "tanh, 1 kHz".to_owned(), subtitle: "quanser-2dof".to_owned() };
+    let options = FigureOptions {
+        title: "tanh, 1 kHz".to_owned(),
+        subtitle: "quanser-2dof".to_owned(),
+        joints: vec!["shoulder".to_owned()],
+    };
     four_panel(trace, &options).svg()
 }
 
@@ -54,7 +58,9 @@ fn every_joint_count_draws_every_signal_with_each_label_once() {
         for label in ["link side", "motor side", "reference"] {
             assert_eq!(count(label), 1, "{label}");
         }
-        for joint in 1..=8 {
+        // By its name where there is one.
+        assert_eq!((count("shoulder"), count("joint 1")), (1, 0));
+        for joint in 2..=8 {
             assert_eq!(count(&format!("joint {joint}")), usize::from(joint <= joints));
         }
     }
@@ -149,7 +155,11 @@ fn extremes(values: impl Iterator<Item = f64>) -> (Option<u64>, Option<u64>) {
 fn titles_are_text() {
     let trace = fake::trace(1, 100, 6.0);
     let title = "<script>alert(1)</script> & $\\frac{1}{2}$ \u{0}".repeat(3);
-    let svg = four_panel(&trace, &FigureOptions { title: title.clone(), subtitle: title.clone() }).svg();
+    let svg = four_panel(
+        &trace,
+        &FigureOptions { title: title.clone(), subtitle: title.clone(), joints: Vec::new() },
+    )
+    .svg();
     check(&svg);
     assert!(!svg.contains("<script") && texts(&svg)[0].contains("$\\frac{1}{2}$"));
     check(&comparison(&[("<script>", &trace)]).svg());

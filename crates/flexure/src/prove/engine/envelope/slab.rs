@@ -163,7 +163,7 @@ pub(super) struct Way<'a> {
 }
 
 /// Numbers in all views.
-pub(super) struct Spread {
+pub(super) struct Views {
     middle: Vec<Slope>,
     pub(super) track: Vec<Slope>,
     /// Their ranges over slab and tube.
@@ -194,7 +194,7 @@ impl<'a> Way<'a> {
     }
 
     /// Positions and velocities of the motors.
-    pub(super) fn motors(&self, system: &dyn TrackingLoop) -> Option<(Spread, Spread)> {
+    pub(super) fn motors(&self, system: &dyn TrackingLoop) -> Option<(Views, Views)> {
         // The law wants motor positions and velocities where it tells what they should be: what it tells does not depend
         // on them, so that any will do.
         let nothing = vec![Slope::ZERO; self.n];
@@ -233,7 +233,7 @@ impl<'a> Way<'a> {
     }
 
     /// The numbers that `f` makes, over the tube and the slab; none if nobody waits for them.
-    pub(super) fn along(&self, f: &dyn Fn(&Seeded) -> Vec<Slope>) -> Option<Spread> {
+    pub(super) fn along(&self, f: &dyn Fn(&Seeded) -> Vec<Slope>) -> Option<Views> {
         let middle = f(&self.seeded(View::Middle));
         let track: Vec<_> = f(&self.seeded(View::Track));
         let track: Vec<_> =
@@ -247,7 +247,7 @@ impl<'a> Way<'a> {
             mean.intersection(passes[0][k].coefficient(0)).unwrap_or(mean)
         };
         let ranges = gradients.rows().enumerate().map(range).collect();
-        Some(Spread { middle, track, ranges, gradients })
+        Some(Views { middle, track, ranges, gradients })
     }
 
     /// A number on the reference over the slab: what its evaluation there says, and what follows from the middle.
@@ -271,7 +271,7 @@ impl<'a> Way<'a> {
     }
 }
 
-impl Spread {
+impl Views {
     /// The numbers in the view of `seed`.
     pub(super) fn at(&self, seed: &Seeded) -> Vec<Slope> {
         match seed.view {
