@@ -99,7 +99,7 @@ pub fn identify(
     let found = search.run(start, progress)?;
     let (information, _) = search.with_prior(&found.total, &found.values);
     let mut evidence = Evidence::new(&information, &found.total, &prior).ok_or_else(unsolvable)?;
-    if let Some(doubting) = &found.doubting {
+    for doubting in &found.doubting {
         evidence.doubted(&found.values.apart(doubting));
     }
     Ok(judged(robot, &search, &found, &evidence, settings))

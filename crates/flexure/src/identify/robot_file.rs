@@ -147,13 +147,15 @@ fn note_gaps(value: &DeValue<'_>, gaps: &mut Vec<(Parameter, Range<usize>)>) {
     }
 }
 
-/// Where `text` has the comment with dry friction, and nothing that is not of it.
+/// Where `text` has the comment with dry friction and the blank line before it, and nothing that is not of it.
 fn friction_comment(text: &str) -> Option<Range<usize>> {
     let start = text.find(FRICTION)?;
     let own = ["# [[imperfection]]", "# kind = \"friction\"", "# side = ", "# coulomb = ["];
     let lines = text[start..].split_inclusive('\n').enumerate();
     let of_it = lines.take_while(|(k, line)| *k == 0 || own.iter().any(|own| line.starts_with(own)));
-    Some(start..start + of_it.map(|(_, line)| line.len()).sum::<usize>())
+    let end = start + of_it.map(|(_, line)| line.len()).sum::<usize>();
+    let blank = usize::from(text[..start].ends_with("\n\n"));
+    Some(start - blank..end)
 }
 
 /// What is to be changed in a text.

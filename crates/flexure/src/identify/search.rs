@@ -33,8 +33,8 @@ pub(crate) struct Search<'a> {
 /// What was found.
 pub(crate) struct Found {
     pub values: Values,
-    /// What is found from there with a gain that believes the model less; none where links are seen.
-    pub doubting: Option<Values>,
+    /// What is found from there with gains that believe the model less and more; none where links are seen.
+    pub doubting: Vec<Values>,
     pub weighing: Weighing,
     /// Per joint the torque noise that makes the innovations likeliest [N m].
     pub torque_noise: Vec<f64>,
@@ -47,6 +47,9 @@ pub(crate) struct Found {
 /// motors alone. Where nothing disturbs, less would be likelier still; but then what a model never has, the instants at which
 /// friction turns among it, would be believed to a part in ten thousand.
 const LEVELS: [RangeInclusive<i32>; 2] = [1..=3, 3..=4];
+
+/// Other levels that an estimate without link encoders is held against.
+const DOUBTING: [i32; 2] = [3, 5];
 
 /// Rounds of noise and values before the last, looks beyond the minimum after it, and Gauss–Newton steps in each, at most.
 const ROUNDS: usize = 3;
@@ -70,7 +73,8 @@ impl Search<'_> {
         let mut levels = vec![self.first(); n];
         let mut weighing = self.weighed(&values, &levels);
         let told = |round: usize, step: usize| {
-            let fraction = (round as f64 + step as f64 / STEPS as f64) / (ROUNDS + LOOKS + 1) as f64;
+            let fraction =
+                (round as f64 + step as f64 / STEPS as f64) / (ROUNDS + LOOKS + DOUBTING.len()) as f64;
             if progress(fraction).is_break() { Err(Problems::interrupted()) } else { Ok(()) }
         };
         for round in 0..ROUNDS {
@@ -83,25 +87,26 @@ impl Search<'_> {
         }
         let mut converged = false;
         for look in 0..LOOKS {
+            let before = values.clone();
             (values, converged) =
                 self.climb(values, &mut weighing, ENOUGH, &|step| told(ROUNDS + look, step))?;
             let (there, better) = scanned(&values, |there| {
                 told(ROUNDS + look, STEPS - 1)?;
                 Ok::<_, Problems>(self.cost(&self.total(there, &weighing, false), there))
             })?;
-            if better < ROUGH {
+            if better >= ROUGH {
+                (values, converged) = (there, false);
+            } else if converged || values == before {
                 break;
             }
-            (values, converged) = (there, false);
         }
         let total = self.total(&values, &weighing, true);
-        let doubting = if self.of_links() {
-            None
-        } else {
-            let mut doubting = self.weighed(&values, &vec![*LEVELS[1].start(); n]);
-            let told = |step| told(ROUNDS + LOOKS, step);
-            Some(self.climb(values.clone(), &mut doubting, ENOUGH, &told)?.0)
-        };
+        let mut doubting = Vec::new();
+        for (k, level) in DOUBTING.into_iter().enumerate().filter(|_| !self.of_links()) {
+            let mut weighing = self.weighed(&values, &vec![level; n]);
+            let told = |step| told(ROUNDS + LOOKS + k, step);
+            doubting.push(self.climb(values.clone(), &mut weighing, ENOUGH, &told)?.0);
+        }
         let torque_noise = (0..n).map(|i| self.torque_noise(i, levels[i])).collect();
         Ok(Found { values, doubting, weighing, torque_noise, total, converged })
     }

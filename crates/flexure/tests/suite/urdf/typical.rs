@@ -120,7 +120,7 @@ fn torque_limits_that_can_be_none_are_said() {
     assert!(warnings(panda, "harmonic-drive").is_empty(), "{:?}", warnings(panda, "harmonic-drive"));
     // Wrists of 12 N m, and a hand that slides: 100 N on a pinion of 50 mm are 5 N m.
     let [heavy] = warnings(panda, "cycloidal").try_into().unwrap();
-    assert!(heavy.contains("100 to 12000 N m") && heavy.contains("panda_joint7 (12)"), "{heavy}");
+    assert!(heavy.contains("100 to 12000 N m") && heavy.contains("panda_joint7 (12 N m)"), "{heavy}");
     let unknown = ["87.0", "12.0", "100"].iter().fold(panda.to_owned(), |urdf, effort| {
         urdf.replace(&format!("effort=\"{effort}\""), "effort=\"300\"")
     });
