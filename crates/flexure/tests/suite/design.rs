@@ -72,18 +72,17 @@ fn a_rate_that_is_lost_with_what_shall_be_borne_is_not_called_feasible() {
     assert!(!problem.hint().contains("is feasible"), "{}", problem.hint());
 }
 
-/// Loops that are late by more than is looked at, and diverge: a no that says so, and nothing of a spectral radius of 0.
+/// Loops that are late by more than is looked at, and do not follow: a no that says so, and nothing of a spectral radius of 0.
 #[test]
-fn loops_that_diverge_are_a_no() {
-    let spec = "delay = 0.3";
+fn loops_that_are_far_too_late_are_a_no() {
+    let spec = "delay = 0.15";
     let file = SpecFile::from_text("spec.toml", spec).unwrap();
     let specified = Specified::load("two-link-tanh-smooth", Reading::default(), &file).unwrap();
     let found = design(&specified, &file, 4, 0, &unwatched).unwrap_or_else(|problems| panic!("{problems}"));
     let problem = objection(&specified, spec, &found);
-    assert!(problem.to_string().contains("diverges at t = "), "{problem}");
     assert!(problem.hint().contains("less delay (delay of the SPEC"), "{}", problem.hint());
-    let whats: Vec<_> = found.constraints.iter().map(|constraint| constraint.what.as_str()).collect();
-    assert_eq!(whats, ["the run comes to its end"]);
+    let mut whats = found.constraints.iter().map(|constraint| constraint.what.as_str());
+    assert!(!whats.any(|what| what.contains("small errors shrink")), "{:?}", found.constraints);
 }
 
 fn objection(specified: &Specified, spec: &str, found: &Design) -> Problem {
@@ -255,7 +254,7 @@ fn what_does_not_follow_at_all_names_no_figure() {
         let measured = measured.expect("an error");
         (measured.value, measured.slack) = (error, 1.0 - error / measured.limit);
         found.feasible = false;
-        format!("{}", objection(&specified, "", found))
+        objection(&specified, "", found).hint().to_owned()
     };
     assert!(size > 0.01, "{size}");
     let lost = way_out(&mut found, 0.6 * size);
