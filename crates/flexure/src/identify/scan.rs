@@ -12,6 +12,9 @@ use super::parameters::{Parameter, Values};
 pub(crate) enum Along {
     /// Stiffness.
     Stiffness,
+    /// Stiffness, with the other numbers as the log likes them best then, as far as it is quadratic: joints about nearly the same axis
+    /// trade their compliances.
+    Valley,
     /// The link's part of both dampings, whose sum stays.
     Damping,
     /// The link's part of both frictions, whose sum stays.
@@ -20,23 +23,28 @@ pub(crate) enum Along {
 
 impl Along {
     /// All of a joint.
-    pub const ALL: [Self; 3] = [Self::Stiffness, Self::Damping, Self::Friction];
+    pub const ALL: [Self; 4] = [Self::Stiffness, Self::Valley, Self::Damping, Self::Friction];
 
     /// Steps to either side, at most: to more than twice the stiffness and less than half of it, and to 98 % on one side.
     fn most(self) -> i32 {
         match self {
-            Self::Stiffness => 20,
+            Self::Stiffness | Self::Valley => 20,
             Self::Damping | Self::Friction => 6,
         }
     }
 
     /// `values` with the numbers of `joint` `steps` steps away: 4 % of a stiffness each, or a factor of 2 in the ratio of link to
-    /// motor.
-    pub fn walked(self, values: &Values, joint: usize, steps: i32) -> Values {
+    /// motor. `valley` is what all unknowns change by, as in [`Values::moved`], for a compliance of the joint that changes by 1.
+    pub fn walked(self, values: &Values, joint: usize, steps: i32, valley: &[f64]) -> Values {
+        if self == Self::Valley {
+            let less = 1.0 - 1.04_f64.powi(-steps);
+            let step: Vec<f64> = valley.iter().map(|x| (less * x).clamp(-0.8, 0.8)).collect();
+            return values.moved(&step);
+        }
         let mut walked = values.clone();
         let numbers = &mut walked.joints[joint];
         let sides = match self {
-            Self::Stiffness => {
+            Self::Stiffness | Self::Valley => {
                 numbers[Parameter::Stiffness.place()] *= 1.04_f64.powi(steps);
                 return walked;
             }
@@ -54,22 +62,23 @@ impl Along {
 /// Where the logarithm of the likelihood is worse by this than the best, a walk ends.
 const HOPELESS: f64 = 1000.0;
 
-/// From `values`, joint by joint, to the least `cost` on these walks; with how much less it is there.
+/// From `values`, joint by joint, to the least `cost` on these walks, with a valley for each joint; with how much less it is there.
 ///
 /// # Errors
 /// Those of `cost`.
 pub(crate) fn scanned<E>(
     values: &Values,
+    valleys: &[Vec<f64>],
     cost: impl Fn(&Values) -> Result<f64, E>,
 ) -> Result<(Values, f64), E> {
     let here = cost(values)?;
     let mut best = (values.clone(), here);
-    for joint in 0..values.joints.len() {
+    for (joint, valley) in valleys.iter().enumerate() {
         for along in Along::ALL {
             let from = best.0.clone();
             for side in [-1, 1] {
                 for steps in 1..=along.most() {
-                    let there = along.walked(&from, joint, side * steps);
+                    let there = along.walked(&from, joint, side * steps, valley);
                     let cost = cost(&there)?;
                     if cost < best.1 {
                         best = (there, cost);
@@ -91,12 +100,17 @@ mod tests {
         Values { joints: vec![[1000.0, 0.1, 0.2, 0.6, 0.1, 0.3]; 2], offsets: vec![0.0] }
     }
 
+    /// Only the compliance of the second joint.
+    fn valley() -> Vec<f64> {
+        (0..13).map(|i| f64::from(i == 6)).collect()
+    }
+
     #[test]
     fn walks_keep_sums_and_come_back() {
         let from = values();
-        for along in Along::ALL {
-            let there = along.walked(&from, 1, 3);
-            let back = along.walked(&there, 1, -3);
+        for along in [Along::Stiffness, Along::Damping, Along::Friction] {
+            let there = along.walked(&from, 1, 3, &valley());
+            let back = along.walked(&there, 1, -3, &valley());
             let moved = |joint: usize| {
                 there.joints[joint].iter().zip(&from.joints[joint]).any(|(x, y)| (x - y).abs() > 0.0)
             };
@@ -111,11 +125,32 @@ mod tests {
         }
     }
 
+    /// Two compliances whose sum is known well: only both together lead to the better dent.
+    #[test]
+    fn compliances_are_traded() {
+        let mut valley = vec![0.0; 13];
+        (valley[0], valley[6]) = (1.0, -1.0);
+        let found = scanned(&values(), &[valley.clone(), valley.iter().map(|x| -x).collect()], |at| {
+            let [first, second] = [1000.0 / at.joints[0][0], 1000.0 / at.joints[1][0]];
+            let apart = first - second;
+            Ok::<_, ()>(
+                1e7 * (first + second - 2.0).powi(2)
+                    + (apart - 0.4).powi(2)
+                    + 0.2 * (1.0 - (20.0 * apart).cos()),
+            )
+        });
+        let (found, better) = found.unwrap();
+        assert!(
+            better > 0.05 && found.joints[0][0] < 900.0 && found.joints[1][0] > 1100.0,
+            "{found:?} {better}"
+        );
+    }
+
     /// A stiffness behind a ridge, and one where a step costs too much: only the first is walked to.
     #[test]
     fn the_likeliest_dent_is_found() {
         let looks = std::cell::Cell::new(0);
-        let found = scanned(&values(), |at| {
+        let found = scanned(&values(), &[vec![0.0; 13], valley()], |at| {
             looks.set(looks.get() + 1);
             let [first, second] = [at.joints[0], at.joints[1]];
             let dent = |x: f64| 50.0 * x * x + 20.0 * (1.0 - (30.0 * x).cos());
@@ -125,6 +160,6 @@ mod tests {
         assert!((found.joints[0][0] / 1260.0 - 1.0).abs() < 0.03 && better > 1.0, "{found:?} {better}");
         assert!((found.joints[1][0] - 1000.0).abs() < 1e-9);
         // Whole walks along what the cost does not know; one step to each side along what it knows well; and the first look.
-        assert_eq!(looks.get(), 1 + 40 + 12 + 12 + 2 + 12 + 12);
+        assert_eq!(looks.get(), 1 + 40 + 40 + 12 + 12 + 2 + 2 + 12 + 12);
     }
 }

@@ -8,13 +8,13 @@ use rayon::prelude::*;
 use super::bounded::{bounds, damped};
 use super::gain::{Noise, Posture};
 use super::layer::{Layer, Total, total};
-use super::parameters::{Parameter, Values};
+use super::parameters::{Parameter, Values, unknown};
 use super::predictor::{Piece, Weighing};
 use super::prior::Prior;
 use super::scan::scanned;
 use super::step::Pace;
 use crate::files::Problems;
-use crate::linalg::{Dense, Symmetric};
+use crate::linalg::{Dense, Symmetric, cholesky, solved};
 use crate::logs::Log;
 use crate::progress::Progress;
 
@@ -90,7 +90,8 @@ impl Search<'_> {
             let before = values.clone();
             (values, converged) =
                 self.climb(values, &mut weighing, ENOUGH, &|step| told(ROUNDS + look, step))?;
-            let (there, better) = scanned(&values, |there| {
+            let (information, _) = self.with_prior(&self.total(&values, &weighing, true), &values);
+            let (there, better) = scanned(&values, &valleys(&information, n), |there| {
                 told(ROUNDS + look, STEPS - 1)?;
                 Ok::<_, Problems>(self.cost(&self.total(there, &weighing, false), there))
             })?;
@@ -299,6 +300,23 @@ impl Search<'_> {
         let score = score.iter().zip(pull.iter().zip(spread)).map(|(score, (x, spread))| score - x / spread);
         (information, score.collect())
     }
+}
+
+/// For each joint what all unknowns change by where its compliance changes by 1 and the others make the best of it.
+fn valleys(information: &Symmetric<f64>, joints: usize) -> Vec<Vec<f64>> {
+    let size = information.size();
+    let scale: Vec<f64> = (0..size).map(|i| information.at(i, i).sqrt().recip()).collect();
+    let scaled = Symmetric::from_fn(size, |i, j| information.at(i, j) * scale[i] * scale[j]);
+    let alone = |at: usize| (0..size).map(|i| f64::from(u8::from(i == at))).collect::<Vec<_>>();
+    let lower = cholesky(&scaled);
+    (0..joints)
+        .map(|joint| {
+            let at = unknown(joint, Parameter::Stiffness);
+            let Some(lower) = &lower else { return alone(at) };
+            let column = solved(lower, &alone(at));
+            (0..size).map(|i| column[i] * scale[i] / (column[at] * scale[at])).collect()
+        })
+        .collect()
 }
 
 /// Determinant of a covariance of link and motor; of the one that is measured if the other is not.

@@ -31,22 +31,27 @@ fn covered<const N: usize>(robot: &Robot, seeds: u64, seconds: f64, of_links: bo
     (0..seeds).into_par_iter().map(of).reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1))
 }
 
-/// Seven joints and two: `IDENTIFY_SEEDS=200 cargo test --release -p flexure --test suite -- --ignored coverage --nocapture`.
-#[test]
-#[ignore = "hours of processor time for seven joints"]
-fn three_standard_deviations_hold_97_percent() {
+/// Prints and asserts the share with encoders of both sides and with those of the motors alone.
+fn hold_97_percent<const N: usize>(robot: &Robot, seconds: f64) {
     let seeds = std::env::var("IDENTIFY_SEEDS").ok().and_then(|text| text.parse().ok()).unwrap_or(200);
-    for (name, (inside, all)) in [
-        ("two joints, 12 s", covered::<4>(&arm(), seeds, 12.0, true)),
-        ("two joints, 12 s, motor encoders", covered::<4>(&arm(), seeds, 12.0, false)),
-        ("seven joints, 20 s", covered::<8>(&Robot::load("panda").unwrap(), seeds, 20.0, true)),
-        (
-            "seven joints, 20 s, motor encoders",
-            covered::<8>(&Robot::load("panda").unwrap(), seeds, 20.0, false),
-        ),
-    ] {
+    for (encoders, of_links) in [("both", true), ("motors", false)] {
+        let (inside, all) = covered::<N>(robot, seeds, seconds, of_links);
         let share = inside as f64 / all as f64;
-        println!("{name}: {inside} of {all}, {:.2} %", 100.0 * share);
-        assert!(share >= 0.97, "{name}: {share}");
+        println!("{}, {encoders}, {seeds} seeds: {inside} of {all}, {:.2} %", robot.name, 100.0 * share);
+        assert!(share >= 0.97, "{}, {encoders}: {share}", robot.name);
     }
+}
+
+/// `IDENTIFY_SEEDS=200 cargo test --release -p flexure --test suite -- --ignored coverage::of_two --nocapture`.
+#[test]
+#[ignore = "a quarter of an hour of processor time"]
+fn of_two_joints() {
+    hold_97_percent::<4>(&arm(), 12.0);
+}
+
+/// `IDENTIFY_SEEDS=200 cargo test --release -p flexure --test suite -- --ignored coverage::of_seven --nocapture`.
+#[test]
+#[ignore = "hours of processor time"]
+fn of_seven_joints() {
+    hold_97_percent::<8>(&Robot::load("panda").unwrap(), 20.0);
 }
