@@ -355,10 +355,16 @@ fn rounded(x: f64, digits: usize) -> String {
     format!("{rounded:?}")
 }
 
-/// Dry friction as a comment that can be copied into a scenario.
+/// Dry friction as a comment that can be copied into a scenario; nothing of a side of which no joint's is known.
 fn friction(found: &Identified) -> String {
+    let is_known = |parameter| (0..found.joints.len()).any(|joint| found.estimate(joint, parameter).known);
+    let sides = [("link", Parameter::LinkFriction), ("motor", Parameter::MotorFriction)];
+    let known: Vec<_> = sides.into_iter().filter(|(_, parameter)| is_known(*parameter)).collect();
+    if known.is_empty() {
+        return String::new();
+    }
     let mut text = format!("\n{FRICTION}\n");
-    for (side, parameter) in [("link", Parameter::LinkFriction), ("motor", Parameter::MotorFriction)] {
+    for (side, parameter) in known {
         let of = |number: &dyn Fn(&Estimate) -> String| {
             let numbers: Vec<_> =
                 (0..found.joints.len()).map(|joint| number(found.estimate(joint, parameter))).collect();

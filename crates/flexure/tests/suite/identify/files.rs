@@ -126,6 +126,17 @@ fn what_was_written_behind_the_friction_stays() {
     assert_eq!(robot.tolerances.stiffness, [0.51, 0.51]);
 }
 
+/// Zeros are not written as if they had been found.
+#[test]
+fn friction_that_is_not_known_is_not_said() {
+    let of_links = [(0, Parameter::LinkFriction), (1, Parameter::LinkFriction)];
+    let text = completed(ARM, &found(&of_links));
+    assert!(!text.contains("side = \"link\"") && text.contains("side = \"motor\""), "{text}");
+    let of_motors = [(0, Parameter::MotorFriction), (1, Parameter::MotorFriction)];
+    let text = completed(ARM, &found(&[of_links, of_motors].concat()));
+    assert!(!text.contains("Dry friction"), "{text}");
+}
+
 /// Error bars come along, around what is written, and replace what an earlier log said; what is not known keeps what it had.
 #[test]
 fn error_bars_are_tolerances() {
