@@ -327,6 +327,9 @@ pub struct Identify {
     /// Which column is what: a TOML file, or q_l=link_pos_{},q_l.unit=deg,u_m=tau_{} and so on.
     #[arg(long, value_name = "MAP")]
     pub columns: Option<String>,
+    /// Use nothing of the links, as if only the motors had encoders: a trace has the links' positions even so.
+    #[arg(long)]
+    pub motor_only: bool,
     /// Part of each log, at its end, that is kept from the fit to judge it by.
     #[arg(long, value_name = "PART", default_value_t = 0.2, allow_negative_numbers = true)]
     pub hold_out: f64,

@@ -18,7 +18,7 @@ use crate::progress::Progress;
 struct Outcome<'a> {
     #[serde(flatten)]
     found: &'a Identified,
-    /// The robot file; none if none was asked for.
+    /// The robot file; none if none was asked for, or the logs know nothing.
     file: Option<&'a Path>,
 }
 
@@ -28,8 +28,11 @@ pub fn identify(options: &Identify, outside: Outside, json: bool) -> Result<(), 
     let columns = log::columns(options.columns.as_deref(), &file.robot)?;
     let mut logs = Vec::new();
     for path in &options.logs {
-        let (log, warnings) = read_log(path, &columns, &file.robot)?;
+        let (mut log, warnings) = read_log(path, &columns, &file.robot)?;
         say(&warnings);
+        if options.motor_only {
+            (log.q_l, log.dq_l) = (None, None);
+        }
         logs.push(log);
     }
     if let Some(out) = &options.out {
@@ -43,15 +46,17 @@ pub fn identify(options: &Identify, outside: Outside, json: bool) -> Result<(), 
         let progress = Progress::of_one(&file.robot.name);
         identified(&file.robot, &logs, &settings, &|fraction| progress.set(0, fraction))?
     };
-    if let Some(out) = &options.out {
+    // A file with nothing new in it is not written.
+    let out = options.out.as_ref().filter(|_| found.knows_something());
+    if let Some(out) = out {
         let names: Vec<_> = options.logs.iter().map(|path| name(path)).collect();
         let text = file.completed(&found, &names, out, outside)?;
         write_atomic(out, |to| to.write_all(text.as_bytes()))?;
     }
     if json {
-        print::json(&Outcome { found: &found, file: options.out.as_deref() })?;
+        print::json(&Outcome { found: &found, file: out.map(PathBuf::as_path) })?;
     } else {
-        tell(&found, options.out.as_ref())?;
+        tell(&found, out)?;
     }
     ending(&found)
 }
@@ -110,14 +115,15 @@ fn tell(found: &Identified, out: Option<&PathBuf>) -> Result<(), Failure> {
 /// inertia is not known.
 fn ending(found: &Identified) -> Result<(), Failure> {
     if !found.converged {
-        let message = "the search did not come to its end: no number counts as known".to_owned();
+        let message = "the search did not come to its end: no number counts as known, and nothing is written"
+            .to_owned();
         let hint = "start from better guesses in the robot file, or log both sides; is there play, or something else that the model \
                     has not?";
         return Err(Failure::no("unknown", message, hint));
     }
     if let Some(offset) = found.offsets.iter().find(|offset| !offset.is_known()) {
         let message = format!(
-            "{} does not tell when torques act, but to {} ms: no number counts as known",
+            "{} does not tell when torques act, but to {} ms: no number counts as known, and nothing is written",
             offset.log,
             significant(1e3 * offset.error, 2)
         );

@@ -103,6 +103,11 @@ impl Identified {
             .collect()
     }
 
+    /// Whether the logs know any number.
+    pub fn knows_something(&self) -> bool {
+        self.joints.iter().flat_map(|joint| &joint.parameters).any(|estimate| estimate.known)
+    }
+
     /// The estimate of a parameter of joint `joint`.
     pub fn estimate(&self, joint: usize, parameter: Parameter) -> &Estimate {
         &self.joints[joint].parameters[parameter.place()]

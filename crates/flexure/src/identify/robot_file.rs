@@ -370,12 +370,13 @@ fn friction(found: &Identified) -> String {
                 (0..found.joints.len()).map(|joint| number(found.estimate(joint, parameter))).collect();
             numbers.join(", ")
         };
-        // What the log does not know is no more than its error.
         let values = of(&|estimate| if estimate.known { written(estimate) } else { "0.0".to_owned() });
         let errors = of(&|estimate| two_digits(estimate.error));
+        let all = (0..found.joints.len()).all(|joint| found.estimate(joint, parameter).known);
+        let unknown = if all { "" } else { "; 0.0 where the log does not know it" };
         let _ = write!(
             text,
-            "# [[imperfection]]\n# kind = \"friction\"\n# side = \"{side}\"\n# coulomb = [{values}]  # ± [{errors}], 3 sigma\n"
+            "# [[imperfection]]\n# kind = \"friction\"\n# side = \"{side}\"\n# coulomb = [{values}]  # ± [{errors}], 3 sigma{unknown}\n"
         );
     }
     text

@@ -135,6 +135,18 @@ fn friction_that_is_not_known_is_not_said() {
     let of_motors = [(0, Parameter::MotorFriction), (1, Parameter::MotorFriction)];
     let text = completed(ARM, &found(&[of_links, of_motors].concat()));
     assert!(!text.contains("Dry friction"), "{text}");
+    let text = completed(ARM, &found(&of_links[1..]));
+    assert_eq!(text.matches("0.0 where the log does not know it").count(), 1, "{text}");
+    assert!(text.contains("# coulomb = [1234.57, 0.0]"), "{text}");
+}
+
+/// Then there is nothing to write.
+#[test]
+fn logs_may_know_nothing() {
+    let all = |joint: usize| Parameter::ALL.map(|parameter| (joint, parameter));
+    let nothing = found(&[all(0), all(1)].concat());
+    assert!(!nothing.knows_something() && completed(ARM, &nothing) == ARM);
+    assert!(found(&[&all(0)[..], &all(1)[1..]].concat()).knows_something());
 }
 
 /// Error bars come along, around what is written, and replace what an earlier log said; what is not known keeps what it had.
