@@ -327,7 +327,7 @@ pub struct Identify {
     /// Which column is what: a TOML file, or q_l=link_pos_{},q_l.unit=deg,u_m=tau_{} and so on.
     #[arg(long, value_name = "MAP")]
     pub columns: Option<String>,
-    /// Use nothing of the links, as if only the motors had encoders: a trace has the links' positions even so.
+    /// Fit nothing of the links, as if only the motors had encoders: a trace has the links' positions even so.
     #[arg(long)]
     pub motor_only: bool,
     /// Part of each log, at its end, that is kept from the fit to judge it by.

@@ -29,6 +29,12 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
     let scenario = load_scenario_with(&options.scenario, reading)?;
     say(&scenario.warnings);
     let question = question(options, &scenario)?;
+    let path = options
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from(format!("out/{}.certificate.json", scenario.name)));
+    // Said before minutes of proof, not after.
+    spare(&path, "certificate", |text| text.contains("flexure-certificate"), &[])?;
     let proof = {
         let progress = Progress::of_one(&scenario.name);
         prove_watched(&scenario, &question, &|fraction| progress.set(0, fraction))?
@@ -38,11 +44,6 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
     let file = match proof.verdict.proved().filter(|_| !proof.broken_off) {
         None => None,
         Some(certificate) => {
-            let path = options
-                .out
-                .clone()
-                .unwrap_or_else(|| PathBuf::from(format!("out/{}.certificate.json", scenario.name)));
-            spare(&path, "certificate", |text| text.contains("flexure-certificate"), &[])?;
             write_certificate(&path, certificate)?;
             Some(path)
         }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use flexure::files::number::significant;
 use flexure::files::{Outside, Problem, folder_of, prepare, spare, write_atomic};
-use flexure::identify::{Identified, RobotFile, Settings, identify as identified};
+use flexure::identify::{Identified, Offset, RobotFile, Settings, identify as identified};
 use flexure::logs::read_log;
 use flexure::report::identified_table;
 use serde::Serialize;
@@ -123,20 +123,23 @@ fn ending(found: &Identified) -> Result<(), Failure> {
     }
     if let Some(offset) = found.offsets.iter().find(|offset| !offset.is_known()) {
         let message = format!(
-            "{} does not tell when torques act, but to {} ms: no number counts as known, and nothing is written",
+            "{} tells when torques act only to ± {} ms, and {} ms are needed: no number counts as known, and nothing is written",
             offset.log,
-            significant(1e3 * offset.error, 2)
+            significant(1e3 * offset.error, 2),
+            1e3 * Offset::TIMED
         );
         return Err(Failure::no("unknown", message, EXCITE));
     }
     let missing: Vec<_> =
         found.missing().iter().map(|(joint, what)| format!("{} of {joint}", what.key)).collect();
     if !missing.is_empty() {
-        return Err(Failure::no("unknown", format!("the logs do not know {}", missing.join(", ")), EXCITE));
+        let nothing = if found.knows_something() { "" } else { ": nothing is written" };
+        let message = format!("the logs do not know {}{nothing}", missing.join(", "));
+        return Err(Failure::no("unknown", message, EXCITE));
     }
     Ok(())
 }
 
 /// What helps where a log does not know enough.
-const EXCITE: &str = "excite the springs more: `flexure excite` designs such a motion; a longer log, a finer encoder; --accuracy says \
-                      how well a number must be known";
+const EXCITE: &str = "excite the springs more: `flexure excite` designs such a motion (with --motor-only if links have no encoders); a \
+                      longer log, a finer encoder; --accuracy says how well a number must be known";

@@ -18,7 +18,7 @@ pub struct Constraint {
     pub limit: f64,
     /// Unit of both; nothing for pure numbers.
     pub unit: &'static str,
-    /// Part of the limit that is left; negative where it is broken.
+    /// Part of the limit that is left; of spectral radii, parts of the instants and stops what is left of it. Negative where it is broken.
     pub slack: f64,
     /// Whether it must be kept; else it is wished for, and what keeps it is preferred.
     pub asked: bool,
@@ -36,6 +36,8 @@ pub enum Kind {
     Radius,
     /// A run that comes to its end.
     Whole,
+    /// A run that the guard does not stop.
+    Stopped,
     /// Something that a run is held to.
     Run(Measure),
     /// A loop with something to bear that does not follow.
@@ -97,7 +99,7 @@ impl Constraint {
         let limits = Measure::ALL.into_iter().filter(|measure| *measure != Measure::AtLimit);
         let share = runs.iter().map(|run| run.summary.saturated_fraction).fold(0.0, f64::max);
         let stopped = runs.iter().any(|run| run.summary.stops > 0);
-        let constraint = |what: &str, value: f64, limit: f64| Self {
+        let constraint = |what: &str, value: f64, limit: f64, kind: Kind| Self {
             what: what.to_owned(),
             joint: None,
             value,
@@ -105,11 +107,16 @@ impl Constraint {
             unit: "",
             slack: limit - value,
             asked: true,
-            kind: Kind::Run(Measure::AtLimit),
+            kind,
             note: None,
         };
-        let share = constraint("part of the instants at a torque limit", share, at_limit);
-        let stops = stopped.then(|| constraint("stops by the guard", 1.0, 0.0));
+        let share = constraint(
+            "part of the instants at a torque limit",
+            share,
+            at_limit,
+            Kind::Run(Measure::AtLimit),
+        );
+        let stops = stopped.then(|| constraint("stops by the guard", 1.0, 0.0, Kind::Stopped));
         limits.filter_map(of).chain([share]).chain(stops).collect()
     }
 

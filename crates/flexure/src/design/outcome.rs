@@ -127,7 +127,7 @@ pub fn design(
     watch.reach(searched);
     let mut instead = None;
     if let (Some(asked), false, false) = (asked, chosen.keeps(), chosen.broken_off) {
-        // The search for the largest rate knows nothing of what is asked: what it finds, it finds again.
+        // This search does not know the rate that is asked: who asks for what it finds gets the same gains.
         let (other, more) = judged(search(Pace::Proved).run(&[], budget.div_ceil(2), seed)?)?;
         runs += more;
         if other.keeps() {
@@ -295,6 +295,7 @@ impl Design {
                 };
                 format!("{}{less}", quicker(scenario, file))
             }
+            Kind::Stopped => "a slower reference, or limits of [guard] that are farther off".to_owned(),
             Kind::Run(_) if self.is_lost() => format!(
                 "the loop does not follow at all with any gains that were tried, so that no limit can be named: {}; or a slower \
                  reference",

@@ -51,8 +51,8 @@ pub(super) struct Found {
 }
 
 impl Search<'_> {
-    /// The best gains among the starting ones, or slower ones, which are tried first so that there is something to keep, those of
-    /// at most `budget` runs, and `given` ones.
+    /// The best of at most `budget` gains that are tried, `given` ones among them, and the starting ones, slower where these do not hold:
+    /// they are tried first, so that there is something to keep.
     ///
     /// # Errors
     /// As [`Scenario::open`](crate::Scenario::open), and [`Problems::interrupted`] if it was broken off before anything was tried.

@@ -61,7 +61,7 @@ impl Specified {
         let read = |document: &DocumentMut, reference: &str| {
             let origin = |key: &str| {
                 let spec = spec.places.as_ref();
-                let of_spec = || spec?.origin(&named_in_spec(key, reference, &replaced));
+                let of_spec = || spec?.origin(&named_in_spec(key, reference, &replaced)?);
                 of_spec().or_else(|| own.places.origin(key))
             };
             let source = traced(&source.name, &document.to_string(), origin);
@@ -135,17 +135,22 @@ fn stand(table: &mut Table, position: Option<isize>) {
 }
 
 /// What the `key` of a scenario that comes from a SPEC is called there; `reference` is the name of its reference, and `imperfections`
-/// are indices of those that were replaced, with their names.
-fn named_in_spec(key: &str, reference: &str, imperfections: &[(usize, String)]) -> String {
+/// are indices of those that were replaced, with their names. None of what only the scenario has.
+fn named_in_spec(key: &str, reference: &str, imperfections: &[(usize, String)]) -> Option<String> {
     if let Some(rest) = key.strip_prefix("reference") {
-        return format!("{reference}{rest}");
+        return Some(format!("{reference}{rest}"));
     }
     let of_imperfection = |(index, name): &(usize, String)| {
         let rest = key.strip_prefix(&format!("imperfection[{index}]"))?;
         // A delay is one number there.
         Some(if name == "delay" { name.clone() } else { format!("{name}{rest}") })
     };
-    imperfections.iter().find_map(of_imperfection).unwrap_or_else(|| key.to_owned())
+    match imperfections.iter().find_map(of_imperfection) {
+        Some(name) => Some(name),
+        // The scenario's own: in the SPEC that number is another one.
+        None if key.starts_with("imperfection[") => None,
+        None => Some(key.to_owned()),
+    }
 }
 
 impl SpecFile {
@@ -214,4 +219,21 @@ fn replace(document: &mut DocumentMut, mut imperfection: Table) -> Option<usize>
     }
     entries.push(imperfection);
     Some(entries.len() - 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::named_in_spec;
+
+    /// Numbers of the scenario are not looked up in the SPEC, where other imperfections have the same indices.
+    #[test]
+    fn what_is_the_scenarios_own_has_no_name_in_the_spec() {
+        let replaced = [(2, "delay".to_owned()), (3, "imperfection[0]".to_owned())];
+        let named = |key| named_in_spec(key, "reference[1]", &replaced);
+        assert_eq!(named("imperfection[0].resolution"), None);
+        assert_eq!(named("imperfection[3].resolution").as_deref(), Some("imperfection[0].resolution"));
+        assert_eq!(named("imperfection[2].computation").as_deref(), Some("delay"));
+        assert_eq!(named("reference.amplitude").as_deref(), Some("reference[1].amplitude"));
+        assert_eq!(named("accept.error").as_deref(), Some("accept.error"));
+    }
 }

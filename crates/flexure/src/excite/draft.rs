@@ -329,8 +329,20 @@ fn between(lower: f64, upper: f64) -> f64 {
     (1e6 * found.clamp(lower, upper)).round() / 1e6
 }
 
-/// Numbers as an array of TOML, in full.
+/// Numbers as an array of TOML, in full; what rounding leaves of zero is zero.
 fn array(numbers: &[f64]) -> String {
-    let numbers: Vec<String> = numbers.iter().map(|number| format!("{:?}", number + 0.0)).collect();
+    let number = |x: f64| if x.abs() < 1e-15 { 0.0 } else { x };
+    let numbers: Vec<String> = numbers.iter().map(|x| format!("{:?}", number(*x))).collect();
     format!("[{}]", numbers.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::array;
+
+    /// Weights that cancel leave sums that no file may hold: magnitudes below 1e-30.
+    #[test]
+    fn what_rounding_leaves_of_zero_is_zero() {
+        assert_eq!(array(&[-3.9e-31, 0.0, -0.5]), "[0.0, 0.0, -0.5]");
+    }
 }

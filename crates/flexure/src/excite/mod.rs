@@ -24,7 +24,7 @@ use serde::Serialize;
 use crate::feasible::{self, Usage};
 use crate::files::base::Base;
 use crate::files::source::{self, Source};
-use crate::files::{Outside, Problem, Problems, builtin, spare};
+use crate::files::{Outside, Problem, Problems, builtin, folder_of, spare};
 use crate::progress::Progress;
 use crate::robot::{Robot, load_robot_with};
 use crate::scenario::{Scenario, document};
@@ -202,7 +202,7 @@ fn named(robot: &str, out: &Path) -> Result<String, Problem> {
     if builtin::is_name(robot) {
         return Ok(robot.to_owned());
     }
-    let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = folder_of(out);
     let unreadable = |error| source::unreadable(Path::new(robot), &error);
     let real = Path::new(robot).canonicalize().map_err(unreadable)?;
     let beside = folder.canonicalize().ok().and_then(|folder| real.strip_prefix(folder).ok());

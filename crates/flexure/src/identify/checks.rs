@@ -35,9 +35,13 @@ pub(crate) fn check(robot: &Robot, logs: &[Log], settings: &Settings) -> Result<
         return Err(Problem::new("log", "there is no log", "name at least one with --log").into());
     };
     let mut problems = Vec::new();
-    if let Some(gap) = settings.gaps.iter().find(|gap| first.q_l.is_none() && gap.is_needed()) {
-        let message =
-            format!("{} leaves {} open, and the links have no encoders in the log", robot.name, gap.name());
+    if let Some((joint, gap)) = settings.gaps.iter().find(|(_, gap)| first.q_l.is_none() && gap.is_needed()) {
+        let joint = robot.joints.get(*joint).map_or("", |joint| &joint.name);
+        let message = format!(
+            "{} leaves {} of {joint} open, and the links have no encoders in the log",
+            robot.name,
+            gap.name()
+        );
         let help =
             "with motor encoders alone the search starts from the robot file: give a guess, 30 % off will do";
         problems.push(Problem::new("log", message, help));
@@ -130,6 +134,12 @@ fn of_joint(robot: &Robot, log: &Log, i: usize) -> Option<Problem> {
     }
     let torques = || log.u_m.iter().skip(i).step_by(n).map(|u| u.abs());
     let most = torques().fold(0.0, f64::max);
+    if let (low, high) = range(&log.u_m)
+        && low >= high
+    {
+        let message = format!("{name}: the torque of {joint} is {low} N m in all samples");
+        return Some(Problem::new("log", message, "is it the right column?"));
+    }
     let limit = robot.limits.torque[i];
     let at_most = torques().filter(|u| *u >= most * (1.0 - 1e-9)).count() as f64 / log.samples() as f64;
     let saturated = torques().filter(|u| *u >= limit * (1.0 - 1e-6)).count() as f64 / log.samples() as f64;
@@ -156,7 +166,7 @@ pub(crate) fn explained(robot: &Robot, log: &Log, started: &Started) -> Result<(
         let (seen, is_positive) = match &log.q_l {
             Some(_) => (
                 format!(
-                    "{:.0} % of the spring torque and {:.0} % of the motor torque",
+                    "{:.0} % of the torque on the link's side of the spring and {:.0} % on the motor's",
                     100.0 * link,
                     100.0 * motor
                 ),
@@ -172,8 +182,8 @@ pub(crate) fn explained(robot: &Robot, log: &Log, started: &Started) -> Result<(
             problems.push(Problem::new("log-mismatch", message, help));
         } else if *link > UNEXPLAINED || *motor > UNEXPLAINED {
             let message = format!(
-                "{}: {joint} does not move as the robot does: its equations leave {seen} ({} N m rms) unexplained, whatever its \
-                 numbers are",
+                "{}: {joint} does not move as the robot does: its equations leave {seen} unexplained, whatever its numbers are \
+                 (its motor gives {} N m rms)",
                 log.name,
                 significant(torque, 3)
             );

@@ -69,6 +69,11 @@ impl Evidence {
             .zip(apart)
             .for_each(|(deviation, apart)| *deviation = deviation.max(*apart));
     }
+
+    /// An unknown is known no better than to `deviation`.
+    pub fn no_better(&mut self, unknown: usize, deviation: f64) {
+        self.deviations[unknown] = self.deviations[unknown].max(deviation);
+    }
 }
 
 /// Least and largest eigenvalue, and the vector of the largest.

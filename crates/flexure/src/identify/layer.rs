@@ -62,8 +62,6 @@ pub(crate) struct Total {
     pub samples: usize,
     /// Per joint of e_l², e_l e_m, e_m² [rad²].
     pub squares: Vec<[f64; 3]>,
-    /// Half the weighed sum of squares.
-    pub cost: f64,
     /// Information by all unknowns, row by row, a full square.
     pub information: Vec<f64>,
     /// −gradients of the cost, batch after batch.
@@ -104,12 +102,10 @@ pub(crate) fn total<'p>(
     let mut total = Total {
         samples: 0,
         squares: vec![[0.0; 3]; joints],
-        cost: 0.0,
         information: vec![0.0; if informed { unknowns * unknowns } else { 0 }],
         scores: Vec::new(),
     };
     for (piece, sums) in pieces.iter().zip(sums) {
-        total.cost += sums.cost(&weighing.weights);
         total.samples += sums.samples;
         for (all, own) in total.squares.iter_mut().zip(&sums.squares) {
             all.iter_mut().zip(own).for_each(|(all, own)| *all += own);

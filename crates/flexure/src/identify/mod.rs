@@ -7,8 +7,10 @@
 
 mod bounded;
 mod checks;
+mod encoders;
 mod evidence;
 mod gain;
+mod gaps;
 mod layer;
 mod outcome;
 mod parameters;
@@ -27,11 +29,12 @@ pub use outcome::{Estimate, Identified, IdentifiedJoint, NoiseRatio, Offset};
 pub use parameters::Parameter;
 pub use robot_file::RobotFile;
 
-use crate::logs::smooth::{rms, whiteness};
+use crate::logs::smooth::rms;
+use encoders::{hidden, position_noise};
 use evidence::Evidence;
 use parameters::Values;
 use predictor::Piece;
-use prior::Prior;
+use prior::{Prior, SHEET};
 use search::{Found, Search};
 
 use crate::files::{Problem, Problems};
@@ -47,8 +50,8 @@ pub struct Settings {
     /// Largest error (three standard deviations) of a stiffness or a motor inertia, as a part of it, for the number to count as
     /// known.
     pub accuracy: f64,
-    /// Parameters of which the robot has no number worth believing, as [`RobotFile::gaps`].
-    pub gaps: Vec<Parameter>,
+    /// Numbers of the robot that are not worth believing, as [`RobotFile::gaps`]: joint, parameter.
+    pub gaps: Vec<(usize, Parameter)>,
 }
 
 impl Default for Settings {
@@ -84,10 +87,19 @@ pub fn identify(
     let torque_size: Vec<f64> =
         (0..n).map(|i| logs.iter().map(|log| rms(&log.u_m, n, i)).fold(0.0, f64::max)).collect();
     let written = from_file(robot, &torque_size, logs.len());
-    let start = started(robot, logs, &written)?;
-    let prior = Prior::new(prior_mean(&written, &start), |parameter| !settings.gaps.contains(&parameter));
+    let start = started(robot, logs, &written, &settings.gaps)?;
+    let mut prior = Prior::new(prior_mean(&written, &start), &settings.gaps);
     let pieces = pieces(logs, settings.hold_out);
     let noise = position_noise(logs, n);
+    let hidden = hidden(logs, &noise);
+    let stiffness = |joint: usize| parameters::unknown(joint, Parameter::Stiffness);
+    // A stiffness that is not seen would go where what is rounded drives it, and take others along.
+    let is_held = |part: f64| part > settings.accuracy;
+    hidden
+        .iter()
+        .enumerate()
+        .filter(|(_, part)| is_held(**part))
+        .for_each(|(joint, _)| prior.hold(stiffness(joint)));
     let search = Search {
         layer: &*layer,
         logs,
@@ -101,6 +113,9 @@ pub fn identify(
     let mut evidence = Evidence::new(&information, &found.total, &prior).ok_or_else(unsolvable)?;
     for doubting in &found.doubting {
         evidence.doubted(&found.values.apart(doubting));
+    }
+    for (joint, part) in hidden.into_iter().enumerate() {
+        evidence.no_better(stiffness(joint), if is_held(part) { SHEET } else { part / SIGMAS });
     }
     Ok(judged(robot, &search, &found, &evidence, settings))
 }
@@ -153,8 +168,13 @@ fn from_file(robot: &Robot, torque_size: &[f64], logs: usize) -> Values {
 /// Smallest part of what is written that a search starts from, and its inverse.
 const FAR: f64 = 0.02;
 
-/// Where the search starts: by regression, with the stiffness of the file where only motors are measured.
-fn started(robot: &Robot, logs: &[Log], written: &Values) -> Result<Values, Problems> {
+/// Where the search starts: by regression; where only motors are measured, about the stiffness of the file.
+fn started(
+    robot: &Robot,
+    logs: &[Log],
+    written: &Values,
+    gaps: &[(usize, Parameter)],
+) -> Result<Values, Problems> {
     let mut values = written.clone();
     let arm = robot.arm()?;
     for (k, log) in logs.iter().enumerate() {
@@ -168,11 +188,11 @@ fn started(robot: &Robot, logs: &[Log], written: &Values) -> Result<Values, Prob
         checks::explained(robot, log, &started)?;
         values.offsets[k] = started.offset;
         if k == 0 {
-            for ((value, found), written) in
-                values.joints.iter_mut().zip(&started.joints).zip(&written.joints)
-            {
-                for ((value, found), written) in value.iter_mut().zip(found).zip(written) {
-                    *value = found.clamp(FAR * written, written / FAR);
+            for (joint, found) in started.joints.iter().enumerate() {
+                for (parameter, found) in Parameter::ALL.into_iter().zip(*found) {
+                    let value = &mut values.joints[joint][parameter.place()];
+                    let is_open = gaps.contains(&(joint, parameter)) && found > 0.0;
+                    *value = if is_open { found } else { found.clamp(FAR * *value, *value / FAR) };
                 }
             }
         }
@@ -218,14 +238,6 @@ fn pieces(logs: &[Log], hold_out: f64) -> Vec<Piece> {
         }
     }
     pieces
-}
-
-/// Per joint the white noise of the encoders of link and motor, infinite where there is none \[rad\].
-fn position_noise(logs: &[Log], n: usize) -> Vec<[f64; 2]> {
-    let of = |signal: Option<&Vec<f64>>, i: usize| {
-        signal.map_or(f64::INFINITY, |signal| whiteness(signal, n, i).max(1e-9))
-    };
-    (0..n).map(|i| [of(logs[0].q_l.as_ref(), i), of(logs[0].q_m.as_ref(), i)]).collect()
 }
 
 fn judged(
@@ -299,6 +311,7 @@ fn estimate(
     let value = values.joints[joint][parameter.place()];
     let share = SIGMAS * evidence.deviations[parameters::unknown(joint, parameter)];
     let before = match parameter {
+        _ if settings.gaps.contains(&(joint, parameter)) => None,
         Parameter::Stiffness => Some(robot.stiffness[joint]),
         Parameter::MotorInertia => Some(robot.motor_inertia[joint]),
         Parameter::LinkDamping => Some(robot.link_damping[joint]),

@@ -13,7 +13,7 @@ pub struct Identified {
     pub joints: Vec<IdentifiedJoint>,
     /// How much later than each log says the torques act.
     pub offsets: Vec<Offset>,
-    /// Samples that were fitted, and kept from the fit.
+    /// Samples that were fitted.
     pub samples: usize,
     /// Samples that were kept from the fit.
     pub held_out: usize,
@@ -39,8 +39,8 @@ pub struct IdentifiedJoint {
     pub noise_ratio: NoiseRatio,
     /// Torque noise that makes the prediction errors likeliest [N m rms].
     pub torque_noise: f64,
-    /// Mean of the weighed squares of prediction errors that were kept from the fit, one if they are as those that were fitted;
-    /// null if nothing was kept.
+    /// Mean of the weighed squares of prediction errors over the part that was kept from the fit, over that of the fitted part; null if
+    /// nothing was kept.
     pub held_out: Option<f64>,
 }
 
@@ -66,7 +66,7 @@ pub struct Estimate {
     pub error: f64,
     /// What the robot file says; null for friction and for what it leaves open.
     pub before: Option<f64>,
-    /// Whether the log knows it, and the search came to its end: if not, the number stays as it was.
+    /// Whether the log knows it, the search came to its end, and every log tells when torques act: if not, the number stays as it was.
     pub known: bool,
 }
 
@@ -81,14 +81,14 @@ pub struct Offset {
     pub error: f64,
 }
 
-/// Largest error (three standard deviations) of the time at which torques act for anything to count as known \[s\]: a log that does not
-/// tell that within a few samples has no motion in it that a spring or a motor would show.
-const TIMED: f64 = 0.005;
-
 impl Offset {
+    /// Largest error (three standard deviations) of the time at which torques act for anything to count as known \[s\]: a log that does
+    /// not tell that within a few samples has no motion in it that a spring or a motor would show.
+    pub const TIMED: f64 = 0.005;
+
     /// Whether the log tells when torques act; where it does not, no number of it counts as known.
     pub fn is_known(&self) -> bool {
-        self.error <= TIMED
+        self.error <= Self::TIMED
     }
 }
 

@@ -45,11 +45,6 @@ impl Parameter {
         }
     }
 
-    /// Whether it stands in robot files; friction stands in scenarios.
-    pub fn is_of_the_robot(self) -> bool {
-        !matches!(self, Self::LinkFriction | Self::MotorFriction)
-    }
-
     /// Whether nothing can be done without it: there is no controller without stiffness and motor inertia.
     pub fn is_needed(self) -> bool {
         matches!(self, Self::Stiffness | Self::MotorInertia)
@@ -81,7 +76,7 @@ pub struct Values {
 }
 
 impl Values {
-    /// Number of unknowns: logarithms of the parameters, joint by joint, then the offsets.
+    /// Number of unknowns: the parameters, joint by joint, then the offsets.
     pub(crate) fn unknowns(&self) -> usize {
         self.joints.len() * Parameter::COUNT + self.offsets.len()
     }

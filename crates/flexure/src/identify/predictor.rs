@@ -60,6 +60,7 @@ pub(crate) struct Information {
 /// Length of a batch of scores \[s\]: innovations that far apart have forgotten each other.
 const BATCH: f64 = 0.2;
 
+#[cfg(test)]
 impl Sums {
     /// Half the weighed sum of squares.
     pub fn cost(&self, weights: &[[f64; 3]]) -> f64 {

@@ -12,7 +12,10 @@ pub(crate) struct Prior {
 }
 
 /// Of a data sheet's stiffness and inertia: a factor of 1.6 either way.
-const SHEET: f64 = 0.5;
+pub(crate) const SHEET: f64 = 0.5;
+
+/// Of what the log cannot see, and what is held near the file's number for that.
+const HELD: f64 = 0.02;
 
 /// Of what is a guess: a factor of 20.
 const GUESS: f64 = 3.0;
@@ -21,15 +24,20 @@ const GUESS: f64 = 3.0;
 const OFFSET: f64 = 0.02;
 
 impl Prior {
-    /// About `mean`; `known` says of which parameters the robot file has numbers.
-    pub fn new(mean: Values, known: impl Fn(Parameter) -> bool) -> Self {
-        let spread_of = |parameter: Parameter| match parameter {
-            parameter if parameter.is_needed() && known(parameter) => SHEET,
-            _ => GUESS,
+    /// About `mean`; of the `gaps` (joint, parameter) the robot file has no numbers.
+    pub fn new(mean: Values, gaps: &[(usize, Parameter)]) -> Self {
+        let spread_of = |joint: usize, parameter: Parameter| {
+            if parameter.is_needed() && !gaps.contains(&(joint, parameter)) { SHEET } else { GUESS }
         };
-        let parameters = mean.joints.iter().flat_map(|_| Parameter::ALL.map(spread_of));
+        let joints = 0..mean.joints.len();
+        let parameters = joints.flat_map(|joint| Parameter::ALL.map(|parameter| spread_of(joint, parameter)));
         let spread = parameters.chain(mean.offsets.iter().map(|_| OFFSET)).collect();
         Self { mean, spread }
+    }
+
+    /// Holds `unknown` near its mean.
+    pub fn hold(&mut self, unknown: usize) {
+        self.spread[unknown] = HELD;
     }
 
     /// How far `values` are from the mean, in standard deviations.

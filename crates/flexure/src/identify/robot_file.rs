@@ -4,9 +4,7 @@ use std::fmt::Write as _;
 use std::ops::Range;
 use std::path::Path;
 
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
-
+use super::gaps::{GAP, KEPT, filled, gaps};
 use super::outcome::{Estimate, Identified};
 use super::parameters::Parameter;
 use crate::files::base::Base;
@@ -17,28 +15,12 @@ use crate::robot::{Robot, document};
 /// A robot file with its text.
 #[derive(Clone, Debug)]
 pub struct RobotFile {
-    /// The robot, with something in the place of every `nan`.
+    /// The robot, with a number of the usual size in the place of every `nan`.
     pub robot: Robot,
-    /// Numbers that the file leaves open, for some joint.
-    pub gaps: Vec<Parameter>,
-    /// The text, with something of the same length in the place of every `nan`.
+    /// Numbers that the file leaves open: joint, parameter.
+    pub gaps: Vec<(usize, Parameter)>,
+    /// The text as it is.
     text: String,
-}
-
-/// The parameters that stand in robot files.
-const KEPT: [Parameter; 4] =
-    [Parameter::Stiffness, Parameter::MotorInertia, Parameter::LinkDamping, Parameter::MotorDamping];
-
-/// What a file has in the place of a number that is still to be supplied.
-const GAP: &str = "nan";
-
-/// A number of the right size for a robot's joint, as long as [`GAP`]: the regression starts without it.
-fn stand_in(parameter: Parameter) -> &'static str {
-    match parameter {
-        Parameter::Stiffness => "4e3",
-        Parameter::MotorInertia => "0.3",
-        _ => "0.5",
-    }
 }
 
 /// The first line of the comment that holds dry friction.
@@ -56,9 +38,9 @@ impl RobotFile {
             let path = Path::new(path_or_name);
             (source::read(path, bounds::LIMIT)?, Base::of(path, outside))
         };
-        let (text, gaps) = filled(&source.text);
-        let robot = document::read(&Source::new(&source.name, &text), &base, &[])?;
-        Ok(Self { robot, gaps, text })
+        let robot = document::read(&Source::new(&source.name, &filled(&source.text)), &base, &[])?;
+        let gaps = gaps(&source.text, robot.joints.iter().map(|joint| &*joint.name));
+        Ok(Self { robot, gaps, text: source.text.to_string() })
     }
 
     /// Whether the robot could be read from a file at `path`: files that it names are found from there.
@@ -99,52 +81,15 @@ impl RobotFile {
 }
 
 fn readable(text: &str, path: &Path, outside: Outside) -> Result<Robot, Problems> {
-    document::read(&Source::new(&path.display().to_string(), text), &Base::of(path, outside), &[]).map_err(
-        |problems| {
-            if problems.iter().any(|problem| matches!(problem.code_word(), "unreadable" | "outside")) {
-                let message = format!("{} could not be read where it is to be written", path.display());
-                let help = "the robot's file names another: write the result into the folder of that one";
-                return Problem::new("unreadable", message, help).into();
-            }
-            problems
-        },
-    )
-}
-
-/// `text` with its gaps filled, and which parameters have some.
-fn filled(text: &str) -> (String, Vec<Parameter>) {
-    let (root, _) = DeTable::parse_recoverable(text);
-    let mut gaps = Vec::new();
-    if let Some(joints) = root.get_ref().get("joints") {
-        note_gaps(joints.get_ref(), &mut gaps);
-    }
-    let mut text = text.to_owned();
-    for (parameter, span) in &gaps {
-        text.replace_range(span.clone(), stand_in(*parameter));
-    }
-    let mut parameters: Vec<_> = gaps.into_iter().map(|(parameter, _)| parameter).collect();
-    parameters.sort_unstable();
-    parameters.dedup();
-    (text, parameters)
-}
-
-/// Where in `[joints]`, or in a joint's own table there, a parameter is [`GAP`], alone or in a list.
-fn note_gaps(value: &DeValue<'_>, gaps: &mut Vec<(Parameter, Range<usize>)>) {
-    let DeValue::Table(table) = value else { return };
-    for (key, value) in table {
-        let Some(parameter) = KEPT.into_iter().find(|parameter| parameter.name() == key.get_ref().as_ref())
-        else {
-            note_gaps(value.get_ref(), gaps);
-            continue;
-        };
-        let entries: Vec<_> = match value.get_ref() {
-            DeValue::Array(entries) => entries.iter().collect(),
-            _ => vec![value],
-        };
-        let is_gap =
-            |entry: &&Spanned<DeValue<'_>>| matches!(entry.get_ref(), DeValue::Float(x) if x.as_str() == GAP);
-        gaps.extend(entries.into_iter().filter(is_gap).map(|entry| (parameter, entry.span())));
-    }
+    let source = Source::new(&path.display().to_string(), &filled(text));
+    document::read(&source, &Base::of(path, outside), &[]).map_err(|problems| {
+        if problems.iter().any(|problem| matches!(problem.code_word(), "unreadable" | "outside")) {
+            let message = format!("{} could not be read where it is to be written", path.display());
+            let help = "the robot's file names another: write the result into the folder of that one";
+            return Problem::new("unreadable", message, help).into();
+        }
+        problems
+    })
 }
 
 /// Where `text` has the comment with dry friction and the blank line before it, and nothing that is not of it.
@@ -184,12 +129,12 @@ impl Edits<'_> {
             }
         }
         if of_all {
-            let before = before(robot, parameter);
-            let value = |estimate: Option<&Estimate>, before: f64| {
-                estimate.map_or_else(|| format!("{before:?}"), written)
-            };
+            let before = before(robot, parameter).iter().enumerate().map(|(joint, before)| {
+                let is_open = self.file.gaps.contains(&(joint, parameter));
+                if is_open { GAP.to_owned() } else { format!("{before:?}") }
+            });
             let values: Vec<_> =
-                known.iter().zip(before).map(|(estimate, before)| value(*estimate, *before)).collect();
+                known.iter().zip(before).map(|(estimate, before)| estimate.map_or(before, written)).collect();
             let values = format!("[{}]", values.join(", "));
             match robot.places.span(&format!("joints.{key}")) {
                 Some(span) => self.edits.push((span, values)),
@@ -244,6 +189,19 @@ impl Edits<'_> {
         logs: &str,
     ) -> Result<(), Problem> {
         let (key, places) = (parameter.name(), &self.file.robot.places);
+        // Joints whose number has a source of its own.
+        let mut of_joints = Vec::new();
+        for (joint, estimate) in found.joints.iter().zip(known) {
+            let Some(span) = places.span(&format!("sources.joints.{}.{key}", joint.name)) else { continue };
+            of_joints.push(&joint.name);
+            if let Some(estimate) = estimate {
+                let number = format!("{} ± {}", written(estimate), two_digits(estimate.error));
+                self.edits.push((span, quoted(&format!("identified: {number} (3 sigma) from {logs}"))));
+            }
+        }
+        if found.joints.iter().all(|joint| of_joints.contains(&&joint.name)) {
+            return Ok(());
+        }
         let spans = [format!("sources.{key}"), format!("sources.joints.{key}")];
         let span = spans.iter().find_map(|key| places.span(key));
         let earlier = span.clone().and_then(|span| self.file.text.get(span)).unwrap_or_default();
@@ -264,7 +222,7 @@ impl Edits<'_> {
                 None => source,
             };
         }
-        let quoted = format!("\"{}\"", source.replace(['"', '\\'], "'"));
+        let quoted = quoted(&source);
         match span {
             Some(span) => self.edits.push((span, quoted)),
             None if places.has("sources") => self.insert("sources", &format!("{key} = {quoted}"))?,
@@ -314,6 +272,11 @@ impl Edits<'_> {
         }
         text
     }
+}
+
+/// `source` as a TOML string.
+fn quoted(source: &str) -> String {
+    format!("\"{}\"", source.replace(['"', '\\'], "'"))
 }
 
 /// What the robot has of a parameter.

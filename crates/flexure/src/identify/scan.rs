@@ -34,7 +34,7 @@ impl Along {
     }
 
     /// `values` with the numbers of `joint` `steps` steps away: 4 % of a stiffness each, or a factor of 2 in the ratio of link to
-    /// motor. `valley` is what all unknowns change by, as in [`Values::moved`], for a compliance of the joint that changes by 1.
+    /// motor. `valley` is the step, as of [`Values::moved`], along which the compliance of the joint falls to nothing.
     pub fn walked(self, values: &Values, joint: usize, steps: i32, valley: &[f64]) -> Values {
         if self == Self::Valley {
             let less = 1.0 - 1.04_f64.powi(-steps);

@@ -28,14 +28,8 @@ pub(super) struct Times {
     samples: Vec<(f64, usize)>,
 }
 
-/// The one period of all samples.
-pub(super) struct Even {
-    /// In s.
-    pub period: f64,
-}
-
 impl Times {
-    /// Adds the time that `cell` says, which is the finite number `value`. Returns the one before if that is not earlier.
+    /// Adds the time that `cell` says, which is the finite number `value`. If the time before is not earlier, the step from it, <= 0.
     pub fn push(&mut self, cell: &str, value: f64, line: usize) -> Result<(), f64> {
         let whole = cell.parse::<i64>().ok();
         let origin = *self.origin.get_or_insert(whole.map_or(Origin::Real(value), Origin::Whole));
@@ -56,9 +50,9 @@ impl Times {
         self.samples.len()
     }
 
-    /// The period, if the samples of the log `name` have one; one unit of its times is `scale` s, and `said` whether that was said.
+    /// The period in s, if the samples of the log `name` have one; one unit of its times is `scale` s, and `said` whether that was said.
     /// There are at least two samples.
-    pub fn even(&self, name: &str, scale: f64, said: bool) -> Result<Even, Problem> {
+    pub fn even(&self, name: &str, scale: f64, said: bool) -> Result<f64, Problem> {
         let steps: Vec<f64> = self.samples.windows(2).map(|pair| scale * (pair[1].0 - pair[0].0)).collect();
         let mut sorted = steps.clone();
         sorted.sort_unstable_by(f64::total_cmp);
@@ -106,6 +100,6 @@ impl Times {
             );
         }
         let span: f64 = self.samples.last().map_or(0.0, |(last, _)| scale * last);
-        Ok(Even { period: span / steps.len() as f64 })
+        Ok(span / steps.len() as f64)
     }
 }

@@ -90,7 +90,7 @@ impl Line<'_> {
     /// What its cells are separated by: what there is most of.
     pub fn separator(&self) -> char {
         let count = |separator: &char| self.text.matches(*separator).count();
-        // Of equals the first.
+        // Of equals the comma.
         ['\t', ';', ','].into_iter().max_by_key(count).unwrap_or(',')
     }
 

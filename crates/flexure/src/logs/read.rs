@@ -7,7 +7,7 @@ use std::path::Path;
 
 use crate::files::{Problem, Problems, source, suggest};
 use crate::logs::channel::Channel;
-use crate::logs::clock::{Even, Times};
+use crate::logs::clock::Times;
 use crate::logs::columns::{Columns, Signal, Time, expanded};
 use crate::logs::lines::{Line, Lines};
 use crate::logs::log::Log;
@@ -72,7 +72,7 @@ fn finish(
         let message = format!("{name} has {} samples, must be at least {FEWEST}", times.len());
         return Err(Problem::new("length", message, "a longer log; a second at 1 kHz has 1000"));
     }
-    let Even { period } = times.even(name, layout.time.scale, layout.time.unit)?;
+    let period = times.even(name, layout.time.scale, layout.time.unit)?;
     let mut signals =
         signals.into_iter().zip(&layout.signals).map(|(values, there)| there.as_ref().map(|_| values));
     let mut next = || signals.next().flatten();
@@ -148,8 +148,19 @@ impl Layout {
         }
         if times.len() == 1 && self.lenient {
             let is_nan = |&(column, _): &(usize, f64)| cells[column].1.parse().is_ok_and(f64::is_nan);
-            for there in &mut self.signals {
-                *there = there.take().filter(|columns| !columns.iter().all(is_nan));
+            // What a trace has no numbers of was not measured. Nothing can be done without torques.
+            for (there, channel) in self.signals.iter_mut().zip(Channel::ALL) {
+                let is_kept =
+                    |columns: &Vec<_>| channel == Channel::MotorTorque || !columns.iter().all(is_nan);
+                *there = there.take().filter(is_kept);
+            }
+            if self.signals[..2].iter().all(Option::is_none) {
+                let message = "no positions of links or motors: all are nan in the first row";
+                return Err(line.whole(
+                    "number",
+                    message,
+                    "cut off what was logged before the encoders spoke",
+                ));
             }
         }
         for (values, columns) in signals.iter_mut().zip(&self.signals) {

@@ -55,8 +55,8 @@ pub(super) fn check(robot: &Robot, log: &Log) -> Result<Vec<Problem>, Problems> 
             problems.push(Problem::new("log-mismatch", message, help));
         }
     };
-    if let (Some(stands), Some(other)) =
-        (stands.carried(), as_read(SWAPPED).and_then(|swapped| swapped.carried()))
+    if let Some(stands) = stands.carried()
+        && let Some(other) = as_read(SWAPPED).and_then(|swapped| swapped.carried())
     {
         refuse(
             &stands,
@@ -96,7 +96,7 @@ struct Match {
 }
 
 impl Match {
-    /// Of `done` and `wanted`, both about their means; no number where one of them does not change.
+    /// Of `done` and `wanted`, both about their means; no numbers that are finite where one of them does not change.
     fn of(done: &[f64], wanted: &[f64]) -> Self {
         let [done, wanted] = [done, wanted].map(|torque| {
             let mean = torque.iter().sum::<f64>() / torque.len() as f64;
@@ -115,8 +115,9 @@ impl Match {
         self.correlation <= APART || self.off()
     }
 
+    /// Nothing is said of torques that do not change.
     fn off(self) -> bool {
-        self.times > WRONG
+        self.times > WRONG && self.times.is_finite()
     }
 
     fn odd(self) -> bool {

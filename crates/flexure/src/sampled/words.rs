@@ -72,7 +72,7 @@ impl Sampled {
         {
             ways.push(
                 "less delay, faster filters and estimators, softer gains on both sides: neither one gain, nor the starting gains, nor \
-                 a shorter period makes it stable"
+                 a shorter period makes it stable; `flexure tune` searches for gains that do"
                     .to_owned(),
             );
         }

@@ -27,7 +27,7 @@ pub struct Tuned {
     pub start_cost: f64,
     /// Its [penalised error](penalised_error); NaN if it diverges.
     pub start_error: f64,
-    /// Runs that were simulated.
+    /// Gains whose cost the search asked for.
     pub evaluations: usize,
 }
 
@@ -138,7 +138,7 @@ fn judged(scenario: &Scenario, run: &Run) -> f64 {
     cost(run) + if unstable { LOST } else { 0.0 }
 }
 
-/// What it costs not to follow, or not for long: more than loops that do can, whose logarithm lies between those of 10⁻¹² and 10¹² rad.
+/// Added where a loop does not follow: more than the logarithms of any two errors from 1e-12 to 1e12 rad differ by.
 const LOST: f64 = 100.0;
 
 /// What it costs to diverge: more than any logarithm of finite numbers, which are below 710, and [`LOST`].

@@ -15,8 +15,8 @@ pub(crate) struct Started {
     pub joints: Vec<[f64; Parameter::COUNT]>,
     /// \[s\].
     pub offset: f64,
-    /// Per joint what is not explained of the torques of links and of motors, as a part of the larger, and of that of motors (rms over
-    /// rms); zero for an equation that is not seen.
+    /// Per joint the rms that the link's equation leaves over the larger rms of link torque and motor torque, and the rms that the
+    /// motor's equation leaves over that of the motor torque; 0 for an equation that is not seen.
     pub unexplained: Vec<[f64; 2]>,
 }
 

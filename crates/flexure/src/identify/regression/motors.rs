@@ -47,28 +47,26 @@ pub(crate) fn start(arm: &dyn Arm, log: &Log, q_m: &[f64], stiffness: &[f64]) ->
     let rows = Rows::new(arm, log, q_m);
     let scales: Vec<_> = (0..n).map(|i| rms(&log.u_m, n, i).max(f64::MIN_POSITIVE)).collect();
     let mut compliance: Vec<f64> = stiffness.iter().map(|K| K.recip()).collect();
-    let mut started = None;
+    let (mut x, mut misfits, mut halves) = (vec![0.0; (OWN + 1) * n], vec![0.0; n], 0);
     for _ in 0..STEPS {
         let linear = rows.linear(&compliance);
-        let halves = likeliest(|halves| {
+        halves = likeliest(|halves| {
             (0..n).map(|i| (rows.alone(i, &rows.left(&linear, i, halves)) / scales[i]).powi(2)).sum()
         });
-        let (x, misfits) = rows.solved(&linear, halves, &compliance, stiffness);
-        let (own, softer) = x.split_at(OWN * n);
-        for (compliance, softer) in compliance.iter_mut().zip(softer) {
+        (x, misfits) = rows.solved(&linear, halves, &compliance, stiffness);
+        for (compliance, softer) in compliance.iter_mut().zip(&x[OWN * n..]) {
             *compliance *= 1.0 + softer.clamp(-SPREAD, SPREAD);
         }
-        let of_joint = |i: usize| {
-            let (damping, friction) = (0.5 * own[OWN * i + 1], 0.5 * own[OWN * i + 2]);
-            [compliance[i].recip(), own[OWN * i], damping, damping, friction, friction]
-        };
-        started = Some(Started {
-            joints: (0..n).map(of_joint).collect(),
-            offset: f64::from(halves) * 0.5 * log.period,
-            unexplained: misfits.iter().zip(&scales).map(|(misfit, scale)| [0.0, misfit / scale]).collect(),
-        });
     }
-    started.expect("at least one step")
+    let of_joint = |i: usize| {
+        let (damping, friction) = (0.5 * x[OWN * i + 1], 0.5 * x[OWN * i + 2]);
+        [compliance[i].recip(), x[OWN * i], damping, damping, friction, friction]
+    };
+    Started {
+        joints: (0..n).map(of_joint).collect(),
+        offset: f64::from(halves) * 0.5 * log.period,
+        unexplained: misfits.iter().zip(&scales).map(|(misfit, scale)| [0.0, misfit / scale]).collect(),
+    }
 }
 
 impl<'a> Rows<'a> {
@@ -189,7 +187,7 @@ mod tests {
         let motion = |i: usize, t: f64, rates: i32| -> f64 {
             let line = |k: usize| {
                 let (omega, phase) = ([3.0, 5.0, 8.0][k] * [1.0, 1.13][i], [0.3, 1.1, 2.0][k]);
-                let wave = [f64::sin, f64::cos][rates as usize % 2](omega * t + phase);
+                let wave = if rates == 1 { f64::cos } else { f64::sin }(omega * t + phase);
                 0.05 * omega.powi(rates) * wave * if rates == 2 { -1.0 } else { 1.0 }
             };
             (0..3).map(line).sum()

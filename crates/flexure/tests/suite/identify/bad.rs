@@ -57,6 +57,10 @@ fn what_cannot_be_used_is_refused() {
         code_of(Log { u_m: changed(&|k, u| if k == 77 { f64::NAN } else { u }), ..log.clone() }),
         "not-finite"
     );
+    let refused =
+        |log: Log| identify(&arm(), &[log], &Settings::default(), &unwatched).unwrap_err().to_string();
+    let constant = refused(Log { u_m: changed(&|_, _| 0.0), ..log.clone() });
+    assert!(constant.contains("is 0 N m in all samples"), "{constant}");
     // Samples that are too few or too far apart, logs that do not fit together.
     let short = |signal: &[f64]| signal[..800].to_vec();
     let cut = Log {
@@ -72,7 +76,7 @@ fn what_cannot_be_used_is_refused() {
     let other = Log { q_l: None, ..log.clone() };
     assert_eq!(code(&[log.clone(), other.clone()], &Settings::default()), "log");
     // Motors alone want a guess.
-    let open = Settings { gaps: vec![Parameter::Stiffness], ..Settings::default() };
+    let open = Settings { gaps: vec![(1, Parameter::Stiffness)], ..Settings::default() };
     assert_eq!(code(&[other], &open), "log");
 }
 

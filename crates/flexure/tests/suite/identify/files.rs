@@ -90,8 +90,38 @@ fn gaps_are_read_and_filled() {
     let path = folder.path().join("arm.toml");
     fs::write(&path, &open).unwrap();
     let file = RobotFile::load(path.to_str().unwrap(), Outside::Refused).unwrap();
-    assert_eq!(file.gaps, [Parameter::Stiffness, Parameter::MotorInertia]);
+    assert_eq!(
+        file.gaps,
+        [(0, Parameter::Stiffness), (0, Parameter::MotorInertia), (1, Parameter::MotorInertia)]
+    );
     assert_eq!(read(&completed(&open, &found(&[]))).motor_inertia, [1234.57, 2469.14]);
+}
+
+/// What the log does not know either is no number afterwards.
+#[test]
+fn gaps_that_stay_unknown_stay_gaps() {
+    let open = ARM
+        .replace("stiffness = [9000.0, 4000.0]", "stiffness = [nan, nan]")
+        .replace("motor_damping = [1.0, 0.5]", "motor_damping = nan");
+    let dampings = [(0, Parameter::MotorDamping), (1, Parameter::MotorDamping)];
+    let text = completed(&open, &found(&[&[(1, Parameter::Stiffness)], &dampings[..]].concat()));
+    assert!(text.contains("stiffness = [1234.57, nan] "), "{text}");
+    assert!(text.contains("\nmotor_damping = nan\n"), "{text}");
+}
+
+/// Joints may have sources of their own.
+#[test]
+fn sources_of_single_joints_are_replaced() {
+    let (head, _) = ARM.split_once("[joints]").unwrap();
+    let drive = "stiffness = 4000.0\nmotor_inertia = 0.2\nmotor_damping = 0.5\nlink_damping = 0.1\n";
+    let sources =
+        "[sources]\nstiffness = \"assumed: typical\"\n\"joints.elbow.stiffness\" = \"data sheet\"\n";
+    let text = format!("{head}[joints.shoulder]\n{drive}[joints.elbow]\n{drive}{sources}");
+    let of_both = completed(&text, &found(&[]));
+    let source = "\"joints.elbow.stiffness\" = \"identified: 2469.14 ± 0.5 (3 sigma) from run.csv\"";
+    assert!(of_both.contains(source) && of_both.contains("\nstiffness = \"identified: 1234.57"), "{of_both}");
+    let of_one = completed(&text, &found(&[(1, Parameter::Stiffness)]));
+    assert!(of_one.contains("\"joints.elbow.stiffness\" = \"data sheet\""), "{of_one}");
 }
 
 /// Only numbers are gaps: not what is said of them, not what is a tolerance; lists may take several lines.
@@ -105,7 +135,7 @@ fn gaps_are_numbers() {
     fs::write(&path, &open).unwrap();
     let file = RobotFile::load(path.to_str().unwrap(), Outside::Refused)
         .unwrap_or_else(|problems| panic!("{problems}"));
-    assert_eq!(file.gaps, [Parameter::Stiffness]);
+    assert_eq!(file.gaps, [(0, Parameter::Stiffness)]);
     let unknown = [(0, Parameter::MotorInertia), (1, Parameter::MotorInertia)];
     assert!(completed(&open, &found(&unknown)).contains("\"Brennan 1998\""));
 }

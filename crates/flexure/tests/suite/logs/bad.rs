@@ -81,6 +81,22 @@ fn rows_and_headers() {
     refused("<robot>\n</robot>\n", None, &["header", "no column 't'"]);
 }
 
+/// A trace leaves out what was not measured, but torques and one side's positions must be there from the first row on.
+#[test]
+fn nothing_in_the_first_row() {
+    let without = |columns: std::ops::Range<usize>| {
+        changed(2, |line| {
+            let cells = line.split(',').enumerate();
+            cells
+                .map(|(i, cell)| if columns.contains(&i) { "nan" } else { cell })
+                .collect::<Vec<_>>()
+                .join(",")
+        })
+    };
+    refused(&without(5..7), None, &["number 2:", "u_m1"]);
+    refused(&without(1..5), None, &["number 2:", "no positions of links or motors"]);
+}
+
 #[test]
 fn times() {
     let time = |with: &str| changed(90, |line| format!("{with},{}", line.split_once(',').unwrap().1));
