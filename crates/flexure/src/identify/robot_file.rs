@@ -123,7 +123,10 @@ impl Edits<'_> {
         let mut of_all = false;
         for (joint, estimate) in robot.joints.iter().zip(&known) {
             match (robot.places.span(&format!("joints.{}.{key}", joint.name)), estimate) {
-                (Some(span), Some(estimate)) => self.edits.push((span, written(estimate))),
+                (Some(span), Some(estimate)) => {
+                    self.remark(span.end);
+                    self.edits.push((span, written(estimate)));
+                }
                 (None, Some(_)) => of_all = true,
                 (_, None) => {}
             }
@@ -137,11 +140,28 @@ impl Edits<'_> {
                 known.iter().zip(before).map(|(estimate, before)| estimate.map_or(before, written)).collect();
             let values = format!("[{}]", values.join(", "));
             match robot.places.span(&format!("joints.{key}")) {
-                Some(span) => self.edits.push((span, values)),
+                Some(span) => {
+                    if known.iter().all(Option::is_some) {
+                        self.remark(span.end);
+                    }
+                    self.edits.push((span, values));
+                }
                 None => self.insert("joints", &format!("{key} = {values}"))?,
             }
         }
         self.source(found, parameter, &known, logs)
+    }
+
+    /// Says `identified` where the comment behind a number that ends at `end` says `assumed`.
+    fn remark(&mut self, end: usize) {
+        const ASSUMED: &str = "assumed";
+        let rest = self.file.text[end..].lines().next().unwrap_or_default();
+        let Some(comment) = rest.find('#') else { return };
+        let Some(at) = rest[comment..].find(ASSUMED).map(|at| end + comment + at) else { return };
+        let edit = (at..at + ASSUMED.len(), "identified".to_owned());
+        if !self.edits.contains(&edit) {
+            self.edits.push(edit);
+        }
     }
 
     /// How far the numbers of a parameter that are known may be off: their error bars. Others keep what the file says of them.

@@ -209,12 +209,13 @@ fn error_bars_are_tolerances() {
 #[test]
 fn tables_by_joint_are_filled_in_place() {
     let (head, _) = ARM.split_once("[joints]").unwrap();
-    let drive = "stiffness = nan # here\nmotor_inertia = nan\nmotor_damping = nan\nlink_damping = 0.1\n";
+    let drive = "stiffness = nan # here\nmotor_inertia = nan # kg m², assumed\nmotor_damping = nan\nlink_damping = 0.1\n";
     let text = format!("{head}[joints.shoulder]\n{drive}[joints.elbow]\n{drive}");
     let completed = completed(&text, &found(&[]));
     let robot = read(&completed);
     assert_eq!(robot.stiffness, [1234.57, 2469.14]);
     assert!(completed.contains("stiffness = 1234.57 # here"), "{completed}");
+    assert!(completed.contains("motor_inertia = 2469.14 # kg m², identified"), "{completed}");
     assert!(completed.contains("[sources]"), "{completed}");
 }
 
