@@ -1,7 +1,9 @@
 //! What encoders add to positions, and what they hide.
 
 use crate::logs::Log;
-use crate::logs::smooth::whiteness;
+use crate::logs::smooth::{REACH, rates, rms, smoothed, whiteness, window};
+
+use super::parameters::Parameter;
 
 /// Per joint the white noise of the encoders of link and motor, infinite where there is none \[rad\].
 pub(crate) fn position_noise(logs: &[Log], n: usize) -> Vec<[f64; 2]> {
@@ -11,35 +13,69 @@ pub(crate) fn position_noise(logs: &[Log], n: usize) -> Vec<[f64; 2]> {
     (0..n).map(|i| [of(logs[0].q_l.as_ref(), i), of(logs[0].q_m.as_ref(), i)]).collect()
 }
 
-/// Part of what a regression on rounded deflections would be off by that a stiffness may be off by: simulated springs that bend by 0.2 to
-/// 0.6 counts were up to an eighth of it off.
+/// Part of what a regression on rounded deflections would be off by that a stiffness may be off by: those of simulated springs that bend
+/// by 0.2 to 0.6 counts were up to an eighth of it off.
 const HIDDEN: f64 = 1.0 / 6.0;
 
-/// Per joint the part of the stiffness that encoders of both sides may hide. Where a spring bends by less than a few counts, what is
-/// rounded goes with what bends it and is no white noise. A regression on such deflections is off by the mean square of the noise over
-/// that of the deflections (Sheppard, *Proc. London Math. Soc.* 29, 1897); predictions, which know what the torques do, by [less](HIDDEN).
-/// Zero where links are not seen.
-pub(crate) fn hidden(logs: &[Log], noise: &[[f64; 2]]) -> Vec<f64> {
-    let bent = |i: usize| {
-        let squares = logs.iter().filter_map(|log| {
-            let (q_l, q_m) = (log.q_l.as_ref()?, log.q_m.as_ref()?);
-            let deflections = q_l.iter().zip(q_m).skip(i).step_by(log.joints).map(|(q_l, q_m)| q_m - q_l);
-            Some(deflections.map(|deflection| deflection * deflection).sum::<f64>())
-        });
-        squares.reduce(|a, b| a + b)
-    };
-    let samples: usize = logs.iter().map(Log::samples).sum();
-    let of = |(i, [link, motor]): (usize, &[f64; 2])| {
-        bent(i).map_or(0.0, |bent| {
-            HIDDEN * (link * link + motor * motor) * samples as f64 / bent.max(f64::MIN_POSITIVE)
-        })
-    };
-    noise.iter().enumerate().map(of).collect()
+/// Part of what the encoders' noise would make of the spring's torque that may be taken for damping or friction of either side: those of
+/// simulated arms were up to a twenty-fifth of it off.
+const HIDDEN_TORQUE: f64 = 1.0 / 20.0;
+
+/// What encoders of both sides may hide of a joint.
+///
+/// Where a spring bends by less than a few counts, what is rounded goes with how it bends and is no white noise. A regression on such
+/// deflections is off by the mean square of the noise over that of the deflections (Sheppard, *Proc. London Math. Soc.* 29, 1897);
+/// predictions, which know what the torques do, by [less](HIDDEN). What is rounded where joints turn back is no white noise either, and
+/// the dampings and frictions of both sides, whose sums are known well, are told apart by a [small torque](HIDDEN_TORQUE) of the spring.
+pub(crate) struct Hidden {
+    /// Noise of the deflection of the spring \[rad\].
+    noise: f64,
+    /// Deflection, root mean square \[rad\].
+    bent: f64,
+    /// Root mean square of the link's velocity [rad/s].
+    speed: f64,
+}
+
+impl Hidden {
+    /// Joint by joint, of encoders with `noise` \[rad\]; none where links are not seen.
+    pub fn all(logs: &[Log], noise: &[[f64; 2]]) -> Option<Vec<Self>> {
+        let sides: Vec<_> = logs
+            .iter()
+            .map(|log| Some((log, log.q_l.as_ref()?, log.q_m.as_ref()?)))
+            .collect::<Option<_>>()?;
+        let samples = logs.iter().map(Log::samples).sum::<usize>() as f64;
+        let joint = |(i, [link, motor]): (usize, &[f64; 2])| {
+            let (mut bent, mut speed) = (0.0, 0.0);
+            for &(log, q_l, q_m) in &sides {
+                let deflection: Vec<f64> = q_m.iter().zip(q_l).map(|(q_m, q_l)| q_m - q_l).collect();
+                let [v, _] = rates(&smoothed(q_l, log.joints, i, &window(REACH, log.period)), log.period);
+                bent += rms(&deflection, log.joints, i).powi(2) * log.samples() as f64;
+                speed += rms(&v, 1, 0).powi(2) * log.samples() as f64;
+            }
+            Self { noise: link.hypot(*motor), bent: (bent / samples).sqrt(), speed: (speed / samples).sqrt() }
+        };
+        Some(noise.iter().enumerate().map(joint).collect())
+    }
+
+    /// Of the stiffness, as a part of it.
+    pub fn stiffness(&self) -> f64 {
+        HIDDEN * self.noise.powi(2) / self.bent.powi(2).max(f64::MIN_POSITIVE)
+    }
+
+    /// Of the dampings and frictions of a joint whose numbers are given, as parts of them.
+    pub fn sides(&self, joint: &[f64; Parameter::COUNT]) -> [(Parameter, f64); 4] {
+        use Parameter::{LinkDamping, LinkFriction, MotorDamping, MotorFriction, Stiffness};
+        let torque = HIDDEN_TORQUE * joint[Stiffness.place()] * self.noise;
+        [(LinkDamping, self.speed), (MotorDamping, self.speed), (LinkFriction, 1.0), (MotorFriction, 1.0)]
+            .map(|(parameter, speed)| {
+                (parameter, torque / (joint[parameter.place()] * speed).max(f64::MIN_POSITIVE))
+            })
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{HIDDEN, Log, hidden, position_noise};
+    use super::{HIDDEN, HIDDEN_TORQUE, Hidden, Log, position_noise};
 
     /// Positions that are rounded to counts, behind a spring that bends by a sine of `counts`: their noise is that of rounding,
     /// 1/12 of a squared count, and hides stiffness as the mean squares say.
@@ -72,10 +108,18 @@ mod tests {
             }
             // The mean square of what is seen: half the amplitude's, and the noise itself.
             let bent = 0.5 * counts * counts + 1.0 / 6.0;
-            let part = hidden(&logs, &noise)[0];
+            let hidden = &Hidden::all(&logs, &noise).unwrap()[0];
+            let part = hidden.stiffness();
             assert!((part / (HIDDEN / 6.0 / bent) - 1.0).abs() < 0.2, "{counts}: {part}");
+            // Sides are off by one torque, as parts the less the larger they are.
+            let speed = (0.5 * ((0.05_f64 * 1.7).powi(2) + (0.02_f64 * 5.3).powi(2))).sqrt();
+            let torque = HIDDEN_TORQUE * 1000.0 * count / 6.0_f64.sqrt();
+            let sides = hidden.sides(&[1000.0, 0.1, 0.4, 0.8, 1.0, 2.0]);
+            for ((_, part), expected) in sides.iter().zip([0.4 * speed, 0.8 * speed, 1.0, 2.0]) {
+                assert!((part * expected / torque - 1.0).abs() < 0.1, "{counts}: {sides:?}");
+            }
         }
         let motors = [Log { q_l: None, ..log(0.1) }];
-        assert_eq!(hidden(&motors, &position_noise(&motors, 1)), [0.0]);
+        assert!(Hidden::all(&motors, &position_noise(&motors, 1)).is_none());
     }
 }

@@ -30,7 +30,7 @@ pub use parameters::Parameter;
 pub use robot_file::RobotFile;
 
 use crate::logs::smooth::rms;
-use encoders::{hidden, position_noise};
+use encoders::{Hidden, position_noise};
 use evidence::Evidence;
 use parameters::Values;
 use predictor::Piece;
@@ -91,15 +91,13 @@ pub fn identify(
     let mut prior = Prior::new(prior_mean(&written, &start), &settings.gaps);
     let pieces = pieces(logs, settings.hold_out);
     let noise = position_noise(logs, n);
-    let hidden = hidden(logs, &noise);
+    let hidden = Hidden::all(logs, &noise).unwrap_or_default();
     let stiffness = |joint: usize| parameters::unknown(joint, Parameter::Stiffness);
     // A stiffness that is not seen would go where what is rounded drives it, and take others along.
-    let is_held = |part: f64| part > settings.accuracy;
-    hidden
-        .iter()
-        .enumerate()
-        .filter(|(_, part)| is_held(**part))
-        .for_each(|(joint, _)| prior.hold(stiffness(joint)));
+    let is_held = |hidden: &Hidden| hidden.stiffness() > settings.accuracy;
+    for (joint, _) in hidden.iter().enumerate().filter(|(_, hidden)| is_held(hidden)) {
+        prior.hold(stiffness(joint));
+    }
     let search = Search {
         layer: &*layer,
         logs,
@@ -114,8 +112,12 @@ pub fn identify(
     for doubting in &found.doubting {
         evidence.doubted(&found.values.apart(doubting));
     }
-    for (joint, part) in hidden.into_iter().enumerate() {
-        evidence.no_better(stiffness(joint), if is_held(part) { SHEET } else { part / SIGMAS });
+    for (joint, (hidden, values)) in hidden.iter().zip(&found.values.joints).enumerate() {
+        let part = if is_held(hidden) { SIGMAS * SHEET } else { hidden.stiffness() };
+        evidence.no_better(stiffness(joint), part / SIGMAS);
+        for (parameter, part) in hidden.sides(values) {
+            evidence.no_better(parameters::unknown(joint, parameter), part / SIGMAS);
+        }
     }
     Ok(judged(robot, &search, &found, &evidence, settings))
 }
