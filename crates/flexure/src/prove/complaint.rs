@@ -1,9 +1,11 @@
 //! What to say of a proof that is none, or not of everything that was asked.
 
+use crate::files::number::short;
 use crate::files::{INTERRUPTED, Problem};
 use crate::prove::along::Limit;
 use crate::prove::engine::verdict::Verdict;
 use crate::prove::question::Proof;
+use crate::prove::within::Closer;
 use crate::scenario::Scenario;
 
 impl Proof {
@@ -70,9 +72,24 @@ impl Proof {
         let Some(Err(open)) = &self.within else { return None };
         let message =
             format!("{}: the robots within its tolerances are not decided: {}", scenario.name, open.at);
-        let help = "the certificate is about the numbers of the file. Identify them more closely, take gains that ask less of the \
-                    model, a slower reference, or a smooth start";
-        Some((scenario.robot.places.problem("tolerances", "undecided", message, help), false))
+        let (place, first) = match &open.closer {
+            Some(Closer { factor, key, joint, share, .. }) => (
+                format!("tolerances.{key}"),
+                format!(
+                    "with all tolerances times {} it is proved; most of that is {key} of {}, which alone makes {:.0} % of the errors there: \
+                     identify it more closely",
+                    short(*factor, 4),
+                    scenario.robot.joints[*joint].name,
+                    100.0 * share
+                ),
+            ),
+            None => ("tolerances".to_owned(), "identify them more closely".to_owned()),
+        };
+        let help = format!(
+            "the certificate is about the numbers of the file. {first}, take gains that ask less of the model, a slower reference, or a \
+             smooth start"
+        );
+        Some((scenario.robot.places.problem(&place, "undecided", message, help), false))
     }
 
     /// What to say of the robot's limits where the tube may exceed them; one that it does exceed comes first.

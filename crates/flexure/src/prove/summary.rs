@@ -13,7 +13,7 @@ use crate::prove::engine::witness::WitnessState;
 use crate::prove::question::{Proof, inside};
 use crate::prove::sampling;
 use crate::prove::standing::Standing;
-use crate::prove::within::{Open, Within};
+use crate::prove::within::{Closer, Open, Within};
 use crate::sampled::Sampled;
 use crate::scenario::Scenario;
 
@@ -153,6 +153,8 @@ pub struct WithinSummary {
     pub error: Option<Vec<f64>>,
     /// Why nothing was shown.
     pub at: Option<String>,
+    /// Smaller tolerances of which something was shown, where nothing was of those of the file.
+    pub closer: Option<Closer>,
 }
 
 /// An error tube.
@@ -286,6 +288,7 @@ fn within(found: &Result<Within, Open>) -> WithinSummary {
             settles: Some(found.settles),
             error: Some(found.error.clone()),
             at: None,
+            closer: None,
         },
         Err(open) => WithinSummary {
             verdict: "undecided",
@@ -294,6 +297,7 @@ fn within(found: &Result<Within, Open>) -> WithinSummary {
             settles: None,
             error: None,
             at: Some(open.at.clone()),
+            closer: open.closer.clone(),
         },
     }
 }

@@ -47,7 +47,27 @@ pub struct Open {
     pub at: String,
     /// Slabs of time that were looked at.
     pub slabs: usize,
+    /// Smaller tolerances of which something was shown.
+    pub closer: Option<Closer>,
 }
+
+/// What holds of robots within smaller tolerances, and what counts most among them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Closer {
+    /// All tolerances times this, a power of one half.
+    pub factor: f64,
+    /// μ [1/s] there.
+    pub rate: f64,
+    /// Key in `[tolerances]` of the one that alone makes the largest errors.
+    pub key: &'static str,
+    /// Its joint, from 0.
+    pub joint: usize,
+    /// √W that it alone makes errors settle at, over that of all together.
+    pub share: f64,
+}
+
+/// Tolerances are halved as often as this to find some of which something is shown.
+const HALVINGS: i32 = 10;
 
 /// Levels to try, one after the other.
 const LEVELS: usize = 24;
@@ -104,46 +124,38 @@ pub fn within(
         duration: scenario.bounds(scenario.duration).hi(),
         budget,
     };
-    let open = |at: String, slabs: usize| Ok(Some(Err(Open { at, slabs })));
     let largest = certificate.region.level.as_ref().map_or(f64::INFINITY, |level| level.bounds().lo());
     let Some(start) = start.filter(|&start| start <= largest) else {
-        return open("the start is not known to lie in the certificate's invariant set".to_owned(), 0);
+        let at = "the start is not known to lie in the certificate's invariant set".to_owned();
+        return Ok(Some(Err(Open { at, slabs: 0, closer: None })));
     };
-    let (mut level, mut slabs) = (start.next_up().max(LEAST), 0);
-    for tried in 0..LEVELS {
-        // Nobody knows how many it takes: each is half of what is left.
-        let watched = |fraction: f64| progress(1.0 - 0.5_f64.powf(tried as f64 + fraction));
-        let Some((found, spent)) = search.at(level, &watched) else { return Ok(None) };
-        slabs += spent;
-        let Some(Bound { rate, length }) = found else {
-            return open(
-                format!(
-                    "where W ≤ {} J it was not shown that every robot within the tolerances comes back to the reference",
-                    engineering(level)
-                ),
-                slabs,
-            );
-        };
-        let needed = Interval::point(length).square() * Interval::point(0.5);
-        if needed.hi() <= level {
-            let [link, motor, _] = system.metrics();
-            let error = |metric: &Interval| (Interval::point(2.0) * needed / *metric).sqrt().hi();
-            let error = link.iter().chain(&motor).map(error).collect();
-            return Ok(Some(Ok(Within { rate, level, settles: needed.hi(), error, slabs })));
-        }
-        level = (ROOM * needed.hi()).max(level);
-        if level > largest {
-            return open(
-                format!(
-                    "for all that was shown the differences push W to {} J, beyond the region's level of {} J",
-                    engineering(needed.hi()),
-                    engineering(largest)
-                ),
-                slabs,
-            );
+    // Most of it if it succeeds; what is smaller is looked at only where it does not.
+    let Some(found) = search.from(start, largest, &|fraction| progress(0.5 * fraction)) else {
+        return Ok(None);
+    };
+    let Err(mut open) = found else { return Ok(Some(found)) };
+    for halved in 1..=HALVINGS {
+        let closer = Search { spread: search.spread.times(0.5_f64.powi(halved)), ..search };
+        let watched =
+            |fraction: f64| progress(0.5 + 0.5 * (f64::from(halved - 1) + fraction) / f64::from(HALVINGS));
+        // Broken off: what was not shown stands without it.
+        let Some(found) = closer.from(start, largest, &watched) else { break };
+        match found {
+            Ok(within) => {
+                open.slabs += within.slabs;
+                open.closer = closer.counts_most(within.level, &watched).map(|(key, joint, share)| Closer {
+                    factor: 0.5_f64.powi(halved),
+                    rate: within.rate,
+                    key,
+                    joint,
+                    share,
+                });
+                break;
+            }
+            Err(still) => open.slabs += still.slabs,
         }
     }
-    open(format!("no level of W up to {} J was found that holds the motion", engineering(level)), slabs)
+    Ok(Some(Err(open)))
 }
 
 /// Convergence rates of the blocks of W in the order of the errors [1/s].
@@ -155,6 +167,7 @@ fn rates(certificate: &Certificate) -> [Interval; 4] {
 }
 
 /// What stays the same from level to level.
+#[derive(Clone)]
 struct Search<'a> {
     system: &'a dyn TrackingLoop,
     spread: Spread,
@@ -164,6 +177,64 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
+    /// What holds from W ≤ `start` on, in levels up to `largest`, in J. None where `progress` breaks it off.
+    fn from(&self, start: f64, largest: f64, progress: Progress<'_>) -> Option<Result<Within, Open>> {
+        let open = |at: String, slabs: usize| Some(Err(Open { at, slabs, closer: None }));
+        let (mut level, mut slabs) = (start.next_up().max(LEAST), 0);
+        for tried in 0..LEVELS {
+            // Nobody knows how many it takes: each is half of what is left.
+            let watched = |fraction: f64| progress(1.0 - 0.5_f64.powf(tried as f64 + fraction));
+            let (found, spent) = self.at(level, &watched)?;
+            slabs += spent;
+            let Some(Bound { rate, length }) = found else {
+                return open(
+                    format!(
+                        "where W ≤ {} J it was not shown that every robot within the tolerances comes back to the reference",
+                        engineering(level)
+                    ),
+                    slabs,
+                );
+            };
+            let needed = Interval::point(length).square() * Interval::point(0.5);
+            if needed.hi() <= level {
+                let [link, motor, _] = self.system.metrics();
+                let error = |metric: &Interval| (Interval::point(2.0) * needed / *metric).sqrt().hi();
+                let error = link.iter().chain(&motor).map(error).collect();
+                return Some(Ok(Within { rate, level, settles: needed.hi(), error, slabs }));
+            }
+            level = (ROOM * needed.hi()).max(level);
+            if level > largest {
+                return open(
+                    format!(
+                        "for all that was shown the differences push W to {} J, beyond the region's level of {} J",
+                        engineering(needed.hi()),
+                        engineering(largest)
+                    ),
+                    slabs,
+                );
+            }
+        }
+        open(format!("no level of W up to {} J was found that holds the motion", engineering(level)), slabs)
+    }
+
+    /// Of the tolerances the one that alone makes the largest errors where W ≤ `level` \[J\]: its key, its joint, and √W that errors
+    /// settle at with it alone, over that with all. None where `progress` breaks it off.
+    fn counts_most(&self, level: f64, progress: Progress<'_>) -> Option<(&'static str, usize, f64)> {
+        let length = |spread: Spread| {
+            let alone = Search { spread, ..*self };
+            Some(alone.at(level, progress)?.0.map_or(f64::INFINITY, |bound| bound.length))
+        };
+        let all = length(self.spread.clone())?;
+        let mut most: Option<(&'static str, usize, f64)> = None;
+        for (key, joint, spread) in self.spread.one_by_one() {
+            let share = length(spread)? / all;
+            if most.is_none_or(|(_, _, largest)| share > largest) {
+                most = Some((key, joint, share));
+            }
+        }
+        most
+    }
+
     /// The bound over {W ≤ `level`} and the whole run, none if there is none with a rate above 0; and slabs looked at.
     fn at(&self, level: f64, progress: Progress<'_>) -> Option<(Option<Bound>, usize)> {
         let looked_at = AtomicUsize::new(0);

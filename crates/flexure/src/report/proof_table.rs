@@ -179,7 +179,17 @@ fn tolerated(within: &WithinSummary) -> Vec<String> {
     let (Some(rate), Some(level), Some(settles), Some(error)) =
         (within.rate, within.level, within.settles, &within.error)
     else {
-        return vec![format!("tolerances   not decided: {}", within.at.as_deref().unwrap_or(NONE))];
+        let open = format!("tolerances   not decided: {}", within.at.as_deref().unwrap_or(NONE));
+        let closer = within.closer.as_ref().map(|closer| {
+            format!(
+                "tolerances   with all of them times {} every robot is proved to come back, at {} 1/s; what counts most is {} of joint {}",
+                short(closer.factor, 4),
+                significant(closer.rate, 6),
+                closer.key,
+                closer.joint + 1
+            )
+        });
+        return std::iter::once(open).chain(closer).collect();
     };
     vec![
         format!(

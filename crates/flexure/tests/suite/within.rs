@@ -94,6 +94,34 @@ fn certified(scenario: &Scenario) -> f64 {
     proof(scenario).verdict.proved().expect("proved").convergence_rate.approximate()
 }
 
+/// Where nothing is shown of the tolerances of the file: the largest of their halves, quarters and so on of which something is, and
+/// which tolerance counts most there.
+#[test]
+fn what_is_too_wide_to_prove_names_what_counts_most() {
+    let parts = IDENTIFIED.map(|part| 16.0 * part);
+    let wide = proof(&tolerant(scenario(), parts));
+    let Some(Err(open)) = &wide.within else { panic!("{:?}", wide.within) };
+    let closer = open.closer.as_ref().expect("something is shown of smaller ones");
+    let at = |factor: f64| proof(&tolerant(scenario(), parts.map(|part| factor * part))).within;
+    let Some(Ok(found)) = at(closer.factor) else { panic!("{closer:?}") };
+    assert!((found.rate / closer.rate - 1.0).abs() < 1e-6, "{closer:?}: {found:?}");
+    assert!(matches!(at(2.0 * closer.factor), Some(Err(_))), "{closer:?}");
+    // Errors by one tolerance alone are less than those by all, and to take it away helps.
+    assert!(closer.share > 0.0 && closer.share < 1.0, "{closer:?}");
+    let mut without = tolerant(scenario(), parts.map(|part| closer.factor * part));
+    let tolerances = &mut without.robot.tolerances;
+    let values = match closer.key {
+        "stiffness" => &mut tolerances.stiffness,
+        "motor_inertia" => &mut tolerances.motor_inertia,
+        "link_damping" => &mut tolerances.link_damping,
+        _ => &mut tolerances.motor_damping,
+    };
+    values[closer.joint] = 0.0;
+    assert!(within(&without).settles < found.settles, "{closer:?}");
+    let (problem, is_wrong) = wide.complaint(&tolerant(scenario(), parts)).unwrap();
+    assert!(!is_wrong && problem.hint().contains("with all tolerances times"), "{}", problem.hint());
+}
+
 /// By how much the accelerations of links and motors differ from the model's where its numbers are off by `off`.
 fn difference(arm: &Arm, off: &Numbers, x: &Motion<f64, 2>, u_m: &Vector<f64, 2>) -> [Vector<f64, 2>; 2] {
     let [stiffness, inertia, link_damping, motor_damping, torque] = off;

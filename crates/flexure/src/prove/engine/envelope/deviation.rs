@@ -52,6 +52,39 @@ pub struct Spread {
     pub motor_torque: Vec<Interval>,
 }
 
+impl Spread {
+    /// All tolerances times `factor`, the torque as it is.
+    pub fn times(&self, factor: f64) -> Self {
+        let times = |values: &[Interval]| values.iter().map(|&x| x * Interval::point(factor)).collect();
+        Self {
+            stiffness: times(&self.stiffness),
+            motor_inertia: times(&self.motor_inertia),
+            link_damping: times(&self.link_damping),
+            motor_damping: times(&self.motor_damping),
+            motor_torque: self.motor_torque.clone(),
+        }
+    }
+
+    /// Every tolerance that is not 0, with its key in robot files and its joint, from 0, and nothing beside it.
+    pub fn one_by_one(&self) -> Vec<(&'static str, usize, Self)> {
+        let none = Self { motor_torque: vec![Interval::ZERO; self.motor_torque.len()], ..self.times(0.0) };
+        let of = |key, values: fn(&mut Self) -> &mut Vec<Interval>| {
+            let all = values(&mut self.clone()).clone();
+            let none = none.clone();
+            all.into_iter().enumerate().filter(|(_, x)| x.magnitude() > 0.0).map(move |(joint, x)| {
+                let mut one = none.clone();
+                values(&mut one)[joint] = x;
+                (key, joint, one)
+            })
+        };
+        of("stiffness", |one| &mut one.stiffness)
+            .chain(of("motor_inertia", |one| &mut one.motor_inertia))
+            .chain(of("link_damping", |one| &mut one.link_damping))
+            .chain(of("motor_damping", |one| &mut one.motor_damping))
+            .collect()
+    }
+}
+
 /// An upper bound that is affine in the r_b: its value where all are 0, and its slopes.
 #[derive(Clone, Copy, Debug)]
 struct Affine([Interval; 1 + BLOCKS]);
