@@ -86,7 +86,7 @@ impl Proof {
             None => ("tolerances".to_owned(), "identify them more closely".to_owned()),
         };
         let help = format!(
-            "the certificate is about the numbers of the file. {first}, take gains that ask less of the model, a slower reference, or a \
+            "the certificate is about the numbers of the file; {first}, take gains that ask less of the model, a slower reference, or a \
              smooth start"
         );
         Some((scenario.robot.places.problem(&place, "undecided", message, help), false))

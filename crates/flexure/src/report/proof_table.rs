@@ -182,7 +182,7 @@ fn tolerated(within: &WithinSummary) -> Vec<String> {
         let open = format!("tolerances   not decided: {}", within.at.as_deref().unwrap_or(NONE));
         let closer = within.closer.as_ref().map(|closer| {
             format!(
-                "tolerances   with all of them times {} every robot is proved to come back, at {} 1/s; what counts most is {} of joint {}",
+                "tolerances   with all of them times {} that is proved of the ideal loop, at {} 1/s; what counts most is {} of joint {}",
                 short(closer.factor, 4),
                 significant(closer.rate, 6),
                 closer.key,
