@@ -76,17 +76,18 @@ impl Proof {
             Some(Closer { factor, key, joint, share, .. }) => (
                 format!("tolerances.{key}"),
                 format!(
-                    "with all tolerances times {} it is proved; most of that is {key} of {}, which alone makes {:.0} % of the errors there: \
-                     identify it more closely",
+                    "; with all tolerances times {} it is proved; most of that is {key} of {}, which alone makes {:.0} % of the errors \
+                     there: identify it more closely",
                     short(*factor, 4),
                     scenario.robot.joints[*joint].name,
                     100.0 * share
                 ),
             ),
-            None => ("tolerances".to_owned(), "identify them more closely".to_owned()),
+            // Smaller ones do not help, or the start is what is wrong.
+            None => ("tolerances".to_owned(), String::new()),
         };
         let help = format!(
-            "the certificate is about the numbers of the file; {first}, take gains that ask less of the model, a slower reference, or a \
+            "the certificate is about the numbers of the file{first}; take gains that ask less of the model, a slower reference, or a \
              smooth start"
         );
         Some((scenario.robot.places.problem(&place, "undecided", message, help), false))

@@ -152,7 +152,12 @@ pub fn within(
                 });
                 break;
             }
-            Err(still) => open.slabs += still.slabs,
+            Err(still) => {
+                open.slabs += still.slabs;
+                if halved == HALVINGS {
+                    open.at += "; nor was it of a thousandth of these tolerances";
+                }
+            }
         }
     }
     Ok(Some(Err(open)))
