@@ -8,6 +8,12 @@ use crate::prove::question::Proof;
 use crate::prove::within::Closer;
 use crate::scenario::Scenario;
 
+/// What may bring a proof about tolerances about.
+const ASK_LESS: &str = "take gains that ask less of the model, a slower reference, or a smooth start";
+
+/// Why none can be had.
+const MANY_JOINTS: &str = "bounds over a time and all joints at once are too wide where joints are many: `flexure margins` measures what the loop bears";
+
 impl Proof {
     /// What to say where not everything that was asked was proved, and whether that is because it is wrong.
     pub fn complaint(&self, scenario: &Scenario) -> Option<(Problem, bool)> {
@@ -72,24 +78,22 @@ impl Proof {
         let Some(Err(open)) = &self.within else { return None };
         let message =
             format!("{}: the robots within its tolerances are not decided: {}", scenario.name, open.at);
-        let (place, first) = match &open.closer {
+        let (place, way_out) = match &open.closer {
             Some(Closer { factor, key, joint, share, .. }) => (
                 format!("tolerances.{key}"),
                 format!(
-                    "; with all tolerances times {} it is proved; most of that is {key} of {}, which alone makes {:.0} % of the errors \
-                     there: identify it more closely",
+                    "with all tolerances times {} it is proved; most of that is {key} of {}, which alone makes {:.0} % of the errors \
+                     there: identify it more closely; {ASK_LESS}",
                     short(*factor, 4),
                     scenario.robot.joints[*joint].name,
                     100.0 * share
                 ),
             ),
+            None if open.unbounded => ("tolerances".to_owned(), MANY_JOINTS.to_owned()),
             // Smaller ones do not help, or the start is what is wrong.
-            None => ("tolerances".to_owned(), String::new()),
+            None => ("tolerances".to_owned(), ASK_LESS.to_owned()),
         };
-        let help = format!(
-            "the certificate is about the numbers of the file{first}; take gains that ask less of the model, a slower reference, or a \
-             smooth start"
-        );
+        let help = format!("the certificate is about the numbers of the file; {way_out}");
         Some((scenario.robot.places.problem(&place, "undecided", message, help), false))
     }
 

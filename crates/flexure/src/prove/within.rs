@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::files::Problems;
-use crate::files::number::engineering;
+use crate::files::number::{engineering, short};
 use crate::progress::Progress;
 use crate::prove::along::enclosed;
 use crate::prove::engine::certificate::{BlockName, Certificate};
@@ -47,6 +47,8 @@ pub struct Open {
     pub at: String,
     /// Slabs of time that were looked at.
     pub slabs: usize,
+    /// Whether the accelerations have no finite bounds where the run begins, so that smaller tolerances do not help.
+    pub unbounded: bool,
     /// Smaller tolerances of which something was shown.
     pub closer: Option<Closer>,
 }
@@ -127,13 +129,16 @@ pub fn within(
     let largest = certificate.region.level.as_ref().map_or(f64::INFINITY, |level| level.bounds().lo());
     let Some(start) = start.filter(|&start| start <= largest) else {
         let at = "the start is not known to lie in the certificate's invariant set".to_owned();
-        return Ok(Some(Err(Open { at, slabs: 0, closer: None })));
+        return Ok(Some(Err(Open { at, slabs: 0, unbounded: false, closer: None })));
     };
     // Most of it if it succeeds; what is smaller is looked at only where it does not.
     let Some(found) = search.from(start, largest, &|fraction| progress(0.5 * fraction)) else {
         return Ok(None);
     };
-    let Err(mut open) = found else { return Ok(Some(found)) };
+    let mut open = match found {
+        Err(open) if !open.unbounded => open,
+        found => return Ok(Some(found)),
+    };
     for halved in 1..=HALVINGS {
         let closer = Search { spread: search.spread.times(0.5_f64.powi(halved)), ..search };
         let watched =
@@ -171,6 +176,16 @@ fn rates(certificate: &Certificate) -> [Interval; 4] {
     })
 }
 
+/// What was found over {W ≤ c} and the whole run.
+struct Looked {
+    /// None if there is none with a rate above 0.
+    bound: Option<Bound>,
+    /// A slab over which the accelerations have no finite bounds, whatever the tolerances.
+    unbounded: Option<Interval>,
+    /// Slabs that were looked at.
+    slabs: usize,
+}
+
 /// What stays the same from level to level.
 #[derive(Clone)]
 struct Search<'a> {
@@ -184,21 +199,31 @@ struct Search<'a> {
 impl Search<'_> {
     /// What holds from W ≤ `start` on, in levels up to `largest`, in J. None where `progress` breaks it off.
     fn from(&self, start: f64, largest: f64, progress: Progress<'_>) -> Option<Result<Within, Open>> {
-        let open = |at: String, slabs: usize| Some(Err(Open { at, slabs, closer: None }));
+        let open = |at: String, slabs: usize, unbounded: bool| {
+            Some(Err(Open { at, slabs, unbounded, closer: None }))
+        };
         let (mut level, mut slabs) = (start.next_up().max(LEAST), 0);
         for tried in 0..LEVELS {
             // Nobody knows how many it takes: each is half of what is left.
             let watched = |fraction: f64| progress(1.0 - 0.5_f64.powf(tried as f64 + fraction));
-            let (found, spent) = self.at(level, &watched)?;
-            slabs += spent;
-            let Some(Bound { rate, length }) = found else {
-                return open(
-                    format!(
-                        "where W ≤ {} J it was not shown that every robot within the tolerances comes back to the reference",
-                        engineering(level)
-                    ),
-                    slabs,
+            let looked = self.at(level, &watched)?;
+            slabs += looked.slabs;
+            if let Some(time) = looked.unbounded.filter(|_| tried == 0) {
+                let at = format!(
+                    "where W ≤ {} J the accelerations that the law asks for were not bounded over {} s from t = {} s: no tolerances are \
+                     small enough for that",
+                    engineering(level),
+                    short(time.width(), 3),
+                    short(time.lo(), 4)
                 );
+                return open(at, slabs, true);
+            }
+            let Some(Bound { rate, length }) = looked.bound else {
+                let at = format!(
+                    "where W ≤ {} J it was not shown that every robot within the tolerances comes back to the reference",
+                    engineering(level)
+                );
+                return open(at, slabs, false);
             };
             let needed = Interval::point(length).square() * Interval::point(0.5);
             if needed.hi() <= level {
@@ -209,17 +234,16 @@ impl Search<'_> {
             }
             level = (ROOM * needed.hi()).max(level);
             if level > largest {
-                return open(
-                    format!(
-                        "for all that was shown the differences push W to {} J, beyond the region's level of {} J",
-                        engineering(needed.hi()),
-                        engineering(largest)
-                    ),
-                    slabs,
+                let at = format!(
+                    "for all that was shown the differences push W to {} J, beyond the region's level of {} J",
+                    engineering(needed.hi()),
+                    engineering(largest)
                 );
+                return open(at, slabs, false);
             }
         }
-        open(format!("no level of W up to {} J was found that holds the motion", engineering(level)), slabs)
+        let at = format!("no level of W up to {} J was found that holds the motion", engineering(level));
+        open(at, slabs, false)
     }
 
     /// Of the tolerances the one that alone makes the largest errors where W ≤ `level` \[J\]: its key, its joint, and √W that errors
@@ -227,7 +251,7 @@ impl Search<'_> {
     fn counts_most(&self, level: f64, progress: Progress<'_>) -> Option<(&'static str, usize, f64)> {
         let length = |spread: Spread| {
             let alone = Search { spread, ..*self };
-            Some(alone.at(level, progress)?.0.map_or(f64::INFINITY, |bound| bound.length))
+            Some(alone.at(level, progress)?.bound.map_or(f64::INFINITY, |bound| bound.length))
         };
         let all = length(self.spread.clone())?;
         let mut most: Option<(&'static str, usize, f64)> = None;
@@ -240,8 +264,8 @@ impl Search<'_> {
         most
     }
 
-    /// The bound over {W ≤ `level`} and the whole run, none if there is none with a rate above 0; and slabs looked at.
-    fn at(&self, level: f64, progress: Progress<'_>) -> Option<(Option<Bound>, usize)> {
+    /// What is so over {W ≤ `level`} and the whole run. None where `progress` breaks it off.
+    fn at(&self, level: f64, progress: Progress<'_>) -> Option<Looked> {
         let looked_at = AtomicUsize::new(0);
         let done = || looked_at.load(Ordering::Relaxed) as f64 / self.budget.max(1) as f64;
         let goes_on = || progress(done().min(1.0)).is_continue();
@@ -289,7 +313,11 @@ impl Search<'_> {
             let (a, b) = (a?, b?);
             Some(Bound { rate: a.rate.min(b.rate), length: a.length.max(b.length) })
         };
-        Some((slabs.iter().map(|slab| slab.bound(&self.rates)).reduce(slowest).flatten(), spent))
+        Some(Looked {
+            bound: slabs.iter().map(|slab| slab.bound(&self.rates)).reduce(slowest).flatten(),
+            unbounded: slabs.iter().find(|slab| !slab.is_bounded()).map(|slab| slab.time),
+            slabs: spent,
+        })
     }
 
     /// √(2 W) that the errors of a slab come to.

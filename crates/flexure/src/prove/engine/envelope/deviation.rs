@@ -217,6 +217,11 @@ impl Deviation {
         })
     }
 
+    /// Whether the differences have finite bounds over the slab.
+    pub fn is_bounded(&self) -> bool {
+        self.steady.iter().chain(self.slopes.as_flattened()).all(|x| x.is_finite())
+    }
+
     /// A, `rates` the β_b [1/s].
     fn decay(&self, rates: &[Interval; BLOCKS]) -> Symmetric<Interval> {
         let half = Interval::point(0.5);
