@@ -280,6 +280,9 @@ pub struct Excite {
     /// Control period of the robot, s.
     #[arg(long, value_name = "SECONDS", default_value_t = 0.001, allow_negative_numbers = true)]
     pub control_period: f64,
+    /// Link positions that the motion is about, rad or m, as 0,-0.5,1.2; default the middle of the limits.
+    #[arg(long, value_name = "Q1,Q2,…", value_delimiter = ',', allow_negative_numbers = true)]
+    pub posture: Option<Vec<f64>>,
     /// One count of the encoders on the links, rad; default 2π/2¹⁷, 47.9e-6.
     #[arg(long, value_name = "RAD", default_value_t = RESOLUTION, hide_default_value = true, allow_negative_numbers = true)]
     pub link_resolution: f64,

@@ -26,6 +26,7 @@ pub fn excite(options: &Excite, outside: Outside, json: bool) -> Result<(), Fail
         control_period: options.control_period,
         budget: options.budget,
         seed: options.seed,
+        posture: options.posture.clone(),
         link_resolution: (!options.motor_only).then_some(options.link_resolution),
         motor_resolution: options.motor_resolution,
     };
@@ -50,6 +51,10 @@ pub fn excite(options: &Excite, outside: Outside, json: bool) -> Result<(), Fail
              0.1 % of its limit; no gravity, no coupling, friction at the lines alone. A model that misses something has more",
             duration(found.period)
         ))?;
+        print::line(
+            "simulated with these encoders and exact torques, without delay and without friction: the loop that moves the robot may need\n\
+             other gains",
+        )?;
         print::line(&format!("wrote {}", out.display()))?;
     }
     if found.objections.is_empty() {

@@ -80,13 +80,11 @@ impl<'a> Plan<'a> {
     pub fn new(robot: &'a Robot, settings: &'a Settings) -> Result<Self, Problems> {
         let n = robot.joint_count();
         let arm = robot.arm()?;
-        let posture: Vec<f64> = robot
-            .limits
-            .lower
-            .iter()
-            .zip(&robot.limits.upper)
-            .map(|(lower, upper)| between(*lower, *upper))
-            .collect();
+        let middle = || {
+            let limits = robot.limits.lower.iter().zip(&robot.limits.upper);
+            limits.map(|(lower, upper)| between(*lower, *upper)).collect()
+        };
+        let posture = settings.posture.clone().unwrap_or_else(middle);
         let still = vec![0.0; n];
         let (mut mass, mut weight) = (vec![0.0; n * n], vec![0.0; n]);
         arm.mass_matrix(&posture, &mut mass).expect("n joints");
@@ -114,7 +112,7 @@ impl<'a> Plan<'a> {
                 "joint {name}: its weight takes {:.3} N m of a torque_limit of {limit} N m: too little is left for a motion",
                 weight.abs()
             );
-            let help = "the posture is the middle of the position limits: is the torque limit that of the motor without its gear?";
+            let help = "another --posture, as one that hangs, may take less; or is the torque limit that of the motor without its gear?";
             return Err(robot.places.problem("joints", "limits", message, help));
         }
         let joint = Joint {

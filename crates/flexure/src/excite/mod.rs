@@ -45,6 +45,8 @@ pub struct Settings {
     pub budget: usize,
     /// Seed of the phases.
     pub seed: u64,
+    /// Link positions that the motion is about, inside their limits \[rad, m for joints that slide\]; none for the middle of the limits.
+    pub posture: Option<Vec<f64>>,
     /// One count of the encoders of the links \[rad\]; none if only motors have encoders.
     pub link_resolution: Option<f64>,
     /// One count of the encoders of the motors, on the link side of the gear \[rad\].
@@ -234,11 +236,32 @@ fn check(robot: &Robot, settings: &Settings) -> Result<(), Problems> {
             "2π / counts per turn, on the link side of the gear",
         );
     }
+    if let Some(posture) = &settings.posture {
+        check_posture(robot, posture)?;
+    }
     let unlimited = robot.limits.torque.iter().position(|limit| limit.is_infinite());
     if let Some(joint) = unlimited.map(|i| &robot.joints[i]) {
         let message = format!("joint {} has no torque_limit: how hard may the motion drive it?", joint.name);
         let help = "add torque_limit to [joints] of the robot file, N m on the link side of the gear";
         return Err(robot.places.problem("joints", "missing-key", message, help).into());
+    }
+    Ok(())
+}
+
+fn check_posture(robot: &Robot, posture: &[f64]) -> Result<(), Problem> {
+    let help = "one link position per joint, rad or m, strictly inside its limits";
+    if posture.len() != robot.joint_count() {
+        let (given, joints) = (posture.len(), robot.joint_count());
+        let message = format!("--posture: {given} given, {} has {joints} joints", robot.name);
+        return Err(Problem::new("joints", message, help));
+    }
+    let limits = robot.limits.lower.iter().zip(&robot.limits.upper);
+    for ((joint, &position), (&lower, &upper)) in robot.joints.iter().zip(posture).zip(limits) {
+        if !(position.is_finite() && lower < position && position < upper) {
+            let message =
+                format!("--posture has {position} for joint {}, must be > {lower} and < {upper}", joint.name);
+            return Err(Problem::new("range", message, help));
+        }
     }
     Ok(())
 }

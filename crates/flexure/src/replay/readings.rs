@@ -24,6 +24,11 @@ const WRONG: f64 = 10.0;
 /// Correlation of torques below which one of them has the other sign.
 const AGAINST: f64 = -0.5;
 
+/// Torques that go together this closely, and of which one is the other to another factor than this, have another scale: friction that
+/// takes torque changes its course, too.
+const CLOSELY: f64 = 0.98;
+const SCALED: f64 = 1.5;
+
 /// Another way to read positions.
 #[derive(Clone, Copy)]
 struct Reading {
@@ -120,8 +125,14 @@ impl Match {
         self.times > WRONG && self.times.is_finite()
     }
 
+    /// Whether less is wanted than is done, or more, by a factor that friction does not explain.
+    fn scaled(self) -> bool {
+        let least = if self.times > 1.0 { TOGETHER } else { CLOSELY };
+        self.correlation >= least && !(SCALED.recip()..=SCALED).contains(&self.times)
+    }
+
     fn odd(self) -> bool {
-        self.correlation < AGAINST || self.off()
+        self.correlation < AGAINST || self.off() || self.scaled()
     }
 }
 

@@ -14,6 +14,7 @@ const SETTINGS: Settings = Settings {
     control_period: 0.002,
     budget: 20,
     seed: 1,
+    posture: None,
     link_resolution: Some(5e-5),
     motor_resolution: 2e-5,
 };
@@ -77,6 +78,19 @@ fn it_is_repeatable_and_more_phases_give_lower_peaks() {
     assert!(more.joints.iter().all(|joint| joint.error_bars.stiffness.is_finite()));
 }
 
+/// The motion is about the posture that is asked for, and begins there at rest.
+#[test]
+fn the_posture_is_the_one_that_is_asked_for() {
+    let about = |posture: &[f64]| good(&Settings { posture: Some(posture.to_vec()), ..SETTINGS });
+    let asked = [-0.75, 0.5];
+    let found = about(&asked);
+    let initial = scenario(&found).initial;
+    assert_eq!((initial.q_l, initial.q_m), (asked.to_vec(), asked.to_vec()), "no gravity bends its springs");
+    assert!(found.toml.contains("offset = [-0.75, 0.5]"), "{}", found.toml);
+    let usage = feasible::usage(&scenario(&found)).unwrap();
+    assert!(usage.iter().all(|usage| usage.share <= 0.81), "{usage:?}");
+}
+
 /// Error bars grow with the steps of the encoders, at most as these do: noise of the torque has its part.
 #[test]
 fn error_bars_grow_with_the_steps_of_encoders() {
@@ -109,10 +123,13 @@ fn what_cannot_be_moved_is_refused() {
         Settings { budget: 0, ..SETTINGS },
         Settings { motor_resolution: 0.0, ..SETTINGS },
         Settings { link_resolution: Some(f64::NAN), ..SETTINGS },
+        Settings { posture: Some(vec![0.0, f64::NAN]), ..SETTINGS },
+        Settings { posture: Some(vec![0.0, f64::INFINITY]), ..SETTINGS },
     ];
     for settings in &wrong {
         assert_eq!(code("two-link-plausible", settings), "range", "{settings:?}");
     }
+    assert_eq!(code("two-link-plausible", &Settings { posture: Some(vec![0.0]), ..SETTINGS }), "joints");
     assert_eq!(code("pendulum-1dof", &SETTINGS), "missing-key");
     assert_eq!(code("none.toml", &SETTINGS), "unreadable");
 }

@@ -195,6 +195,15 @@ fn logs_that_are_others_than_they_say_are_refused() {
         let as_it_is = laid(&scenario, &log, HORIZON).warnings;
         assert!(as_it_is.is_empty() && warnings.len() <= 1, "{name}: {as_it_is:?} {warnings:?}");
         doubted += warnings.len();
+        // So are torques of another scale: of one side of a gear, or in per cent of something.
+        for factor in [0.5, 2.0] {
+            let scaled = Log { u_m: log.u_m.iter().map(|u| factor * u).collect(), ..log.clone() };
+            let warnings = laid(&scenario, &scaled, HORIZON).warnings;
+            assert!(
+                warnings.iter().any(|warning| warning.to_string().contains("other torques move it")),
+                "{name}: {factor}"
+            );
+        }
     }
     assert!(doubted > 0);
 }
