@@ -218,13 +218,20 @@ impl Design {
         let rate = self.evidence.rate_certified.map_or_else(String::new, |rate| {
             format!(" Of the ideal loop a contraction rate of {} 1/s is proved.", short(rate, 4))
         });
+        let passing = self.evidence.sampled.as_ref().filter(|sampled| sampled.passes());
         format!(
-            "{}{}: rms error {} mrad, {} kept.{rate}\n\
+            "{}{}: rms error {} mrad, {} kept.{rate}{}\n\
              Gains follow from the robot, the reference and the imperfections below: tune again if they change.",
             TUNED,
             if self.broken_off { ", broken off" } else { "" },
             short(1e3 * rms, 3),
             if self.frail().is_some() { "what is asked is" } else { "every constraint is" },
+            passing.map_or_else(String::new, |sampled| {
+                format!(
+                    " Small errors shrink on the whole way; a robot that stood still {} would not be stable.",
+                    sampled.at()
+                )
+            }),
         )
     }
 

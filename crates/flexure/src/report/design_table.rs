@@ -36,13 +36,13 @@ pub fn trades_table(trades: &[Trade], width: usize) -> String {
     laid_out(&table, 1, width)
 }
 
-/// What the gains are held to, with what is left of each limit, in so many columns.
+/// What the gains are held to, with what is left of each limit, in so many columns; below it a line for each of which there is more to
+/// say.
 pub fn constraints_table(constraints: &[Constraint], width: usize) -> String {
     let mut table = headed(["constraint", "joint", "value", "limit", "left\n[%]"].into_iter());
     for constraint in constraints {
-        let Constraint { what, joint, value, limit, unit, slack, asked, note, .. } = constraint;
+        let Constraint { what, joint, value, limit, unit, slack, asked, .. } = constraint;
         let amount = |x: f64| right(format!("{} {unit}", short(x, 4)).trim_end().to_owned());
-        let what = note.as_ref().map_or_else(|| what.clone(), |note| format!("{what}: {note}"));
         let joint = joint.as_deref().unwrap_or(NONE);
         let left = match (*slack < 0.0, *asked) {
             (true, true) => "broken".to_owned(),
@@ -51,5 +51,8 @@ pub fn constraints_table(constraints: &[Constraint], width: usize) -> String {
         };
         table.add_row(vec![Cell::new(what), Cell::new(joint), amount(*value), amount(*limit), right(left)]);
     }
-    laid_out(&table, 2, width)
+    let noted =
+        constraints.iter().filter_map(|constraint| Some((&constraint.what, constraint.note.as_ref()?)));
+    let notes = noted.map(|(what, note)| format!("{what}: {note}"));
+    std::iter::once(laid_out(&table, 2, width)).chain(notes).collect::<Vec<_>>().join("\n")
 }

@@ -86,8 +86,9 @@ fn ranking(board: &Leaderboard) -> Markup {
              seeds with those of the best of a group, or are within 1 % of them, tie and share the mean of their ranks, and so do \
              laws that do not follow, at the end. Laws whose mean ranks with one seed overlap share a place with the first of them. \
              Median factor: a law's penalised error over the best law's; — if the law does not follow on half of the tasks. \
-             Spectral radius: of the loop that holds its torque for a control period, the largest over the tasks; loops that are \
-             unstable as sampled are not ranked, whether they follow until the run ends or not."
+             Spectral radius: of the loop that holds its torque for a control period, the largest over the tasks and over the \
+             instants that were looked at. Loops whose small errors do not shrink over the whole way are not ranked, whether they follow \
+             until the run ends or not; more than 1 at an instant that they pass is borne."
         }
     }
 }

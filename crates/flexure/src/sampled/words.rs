@@ -6,32 +6,39 @@ use crate::sampled::advice::{Advice, Move};
 use crate::sampled::{Place, Sampled};
 use crate::scenario::Scenario;
 
+/// What is to be said of a loop that [passes](Sampled::passes).
+const PASSING: &str = " on the whole way along the reference; a robot that stood there would not be stable";
+
 impl Sampled {
     /// In one line.
     pub fn line(&self) -> String {
-        let at = match self.place {
-            Place::Start => "at the start".to_owned(),
-            Place::Reference => format!("on the reference at t = {} s", short(self.time, 4)),
-        };
+        let at = self.at();
         let digits = if (self.spectral_radius - 1.0).abs() < 0.01 { 7 } else { 4 };
         let radius = short(self.spectral_radius, digits);
         match (self.stable, &self.joint) {
-            (true, _) => {
-                let whole = if self.spectral_radius < 1.0 {
-                    ""
-                } else {
-                    " on the whole way along the reference; a robot that stood there would not be stable"
-                };
-                format!(
-                    "sampled loop: spectral radius {radius} {at}; small errors shrink by {} 1/s{whole}",
-                    short(self.rate, 4)
-                )
-            }
+            (true, _) => format!(
+                "sampled loop: spectral radius {radius} {at}; small errors shrink by {} 1/s{}",
+                short(self.rate, 4),
+                if self.passes() { PASSING } else { "" }
+            ),
             (false, None) => format!("sampled loop: spectral radius {radius} {at}: unstable"),
             (false, Some(joint)) => {
                 format!("sampled loop: spectral radius {radius} {at}: unstable, in joint {joint} most")
             }
         }
+    }
+
+    /// Where the spectral radius is the largest.
+    pub(crate) fn at(&self) -> String {
+        match self.place {
+            Place::Start => "at the start".to_owned(),
+            Place::Reference => format!("on the reference at t = {} s", short(self.time, 4)),
+        }
+    }
+
+    /// Whether errors shrink on the whole way although they would grow if the robot stood at one place of it.
+    pub(crate) fn passes(&self) -> bool {
+        self.stable && self.spectral_radius >= 1.0
     }
 
     /// What makes it stable, where it is not.

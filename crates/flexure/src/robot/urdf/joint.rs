@@ -136,6 +136,9 @@ fn mimic<'a>(node: &Node<'a>) -> Option<Option<Mimic<'a>>> {
     Some(Some(Mimic { site: mimic.site.clone(), of, multiplier, offset }))
 }
 
+/// Limits of joint positions that no joint has \[rad\], but many have in degrees; what is beyond stands for none.
+const DEGREES: std::ops::RangeInclusive<f64> = 30.0..=720.0;
+
 /// What `<dynamics>` and `<limit>` say; limits under which the joint cannot move are apart.
 fn drive<'a>(node: &Node<'a>, has_stops: bool) -> Option<(DriveDefaults, Option<Standstill<'a>>)> {
     let mut drive = DriveDefaults::default();
@@ -162,6 +165,13 @@ fn drive<'a>(node: &Node<'a>, has_stops: bool) -> Option<(DriveDefaults, Option<
     if has_stops && (lower.is_some() || upper.is_some()) {
         // As the format has it: a missing one is zero.
         let (low, high) = (lower.unwrap_or(0.0), upper.unwrap_or(0.0));
+        if let Some(stop) = [low, high].into_iter().find(|stop| DEGREES.contains(&stop.abs())) {
+            limit.site.warn(
+                "suspicious",
+                format!("limit of the joint position is {stop}, is suspicious"),
+                "rad, or m for joints that slide: is it in degrees?",
+            );
+        }
         if low < high {
             (drive.position_lower, drive.position_upper) = (Some(low), Some(high));
         } else {

@@ -212,6 +212,22 @@ fn an_inertia_of_no_matter_is_a_warning() {
     );
 }
 
+/// Limits in degrees are doubted; what stands for no limit, as 1e16 does in some files, is not.
+#[test]
+fn limits_in_degrees_are_doubted() {
+    let warnings = |lower: &str, upper: &str| {
+        let urdf = ARM.replace("lower=\"-2\"", &format!("lower=\"{lower}\""));
+        let urdf = urdf.replace("upper=\"2.5\"", &format!("upper=\"{upper}\""));
+        assert!(urdf.contains(lower) && urdf.contains(upper));
+        Folder::with(&urdf).robot("", DRIVES).unwrap().warnings
+    };
+    let [warning] = <[_; 1]>::try_from(warnings("-180", "180")).unwrap();
+    assert!(warning.to_string().contains("limit of the joint position is -180"), "{warning}");
+    for (lower, upper) in [("-6.2832", "6.2832"), ("-12.57", "12.57"), ("-1e16", "1e16")] {
+        assert!(warnings(lower, upper).is_empty(), "{lower} to {upper}");
+    }
+}
+
 #[test]
 fn bad_robot_files_about_a_urdf() {
     let cases = [
