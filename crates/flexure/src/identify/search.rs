@@ -63,6 +63,10 @@ const ENOUGH: f64 = 0.02;
 /// A step that promises less than this and gains nothing ends a round, too.
 const ROUGH: f64 = 1.0;
 
+/// Where nothing is gained the search has come to its end if all that is promised is less than this for each unknown: they move by
+/// 0.4 standard deviations, an eighth of a printed error bar, on the average.
+const ROUGH_EACH: f64 = 0.08;
+
 impl Search<'_> {
     /// From `values`.
     ///
@@ -251,7 +255,8 @@ impl Search<'_> {
                     break;
                 }
                 if gain < ENOUGH || promised < ROUGH {
-                    return Ok((values, promised < ROUGH));
+                    let is_end = promised < ROUGH.max(ROUGH_EACH * values.unknowns() as f64);
+                    return Ok((values, is_end));
                 }
                 damping *= 10.0;
             }

@@ -17,12 +17,13 @@ use crate::simulate::controller::{Compensation, Controller, Feedback};
 use crate::simulate::guard_settings::{guarded, watchdog};
 use crate::simulate::signals::Columns;
 use crate::simulate::simulation::{Hold, Timing};
+use crate::simulate::stepping::Stepping;
 
 /// Tolerated local error of the plant integrator, relative to the joint speeds.
 pub const TOLERANCE: f64 = 1e-10;
 
 /// Longest step in s of the integrator of plants with dry friction, play or hysteresis.
-pub(crate) const LONGEST_STEP: f64 = 2.5e-4;
+pub(crate) const LONGEST_STEP: f64 = Stepping::<1>::STEP;
 
 /// Times and tolerances of the loop.
 pub(crate) fn timing(scenario: &Scenario) -> Timing {

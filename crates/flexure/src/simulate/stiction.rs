@@ -15,6 +15,9 @@ const ROUNDS: usize = 12;
 /// Sweeps of coordinate descent.
 const SWEEPS: usize = 300;
 
+/// A joint that turns back within this part of a step does so at its start.
+const AT_ONCE: f64 = 0.01;
+
 /// What holds does not let go for a rounding error in the torque.
 const ROUNDING: f64 = 1e-12;
 
@@ -64,6 +67,19 @@ impl<const N: usize> Stiction<N> {
         }
         let slides = self.descended();
         self.slid(slides, self.accelerations(&slides))
+    }
+
+    /// The part of the step until the first joint turns back that slides the other way at its end, if there is one and it is not at once. It
+    /// is slowed down until then by the friction that it has now, not by that at the end.
+    pub(crate) fn first_turn(&self, solved: &Slid<N>) -> Option<f64> {
+        let turn = |(side, i): (usize, usize)| {
+            let (v, most) = (self.speed[side][i], self.friction[side][i]);
+            let after = solved.slides[side][i].filter(|&after| after * v < 0.0)?;
+            let slower = solved.accelerations[side][i] - (toward(v, most) - after) / self.inertia(side, i);
+            Some(-v / (slower * self.h))
+        };
+        let joints = SIDES.into_iter().flat_map(|side| (0..self.joints).map(move |i| (side, i)));
+        joints.filter_map(turn).filter(|part| (AT_ONCE..1.0).contains(part)).min_by(f64::total_cmp)
     }
 
     fn slid(&self, slides: Slides<N>, accelerations: Sides<N>) -> Slid<N> {

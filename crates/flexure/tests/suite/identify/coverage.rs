@@ -52,6 +52,17 @@ fn known<const N: usize>(robot: &Robot, seed: u64, seconds: f64, encoders: Encod
         .collect()
 }
 
+/// How far a number may be off with encoders of both sides [%].
+fn wanted(of: &str) -> f64 {
+    match of {
+        "stiffness" => 0.5,
+        "motor_inertia" => 1.0,
+        "link_damping" | "motor_damping" => 10.0,
+        "link_friction" | "motor_friction" => 5.0,
+        _ => 100.0,
+    }
+}
+
 /// Prints how many numbers lie within their error bars and how far they are off, and asserts the share.
 fn hold_97_percent<const N: usize>(robot: &Robot, seconds: f64, encoders: Encoders) {
     let seeds = std::env::var("IDENTIFY_SEEDS").ok().and_then(|text| text.parse().ok()).unwrap_or(200_u64);
@@ -70,10 +81,16 @@ fn hold_97_percent<const N: usize>(robot: &Robot, seconds: f64, encoders: Encode
         off.sort_by(f64::total_cmp);
         let Some(last) = off.len().checked_sub(1) else { continue };
         let [half, most, largest] = [last / 2, 99 * last / 100, last].map(|i| 100.0 * off[i]);
+        let wanted = wanted(of);
+        let within = off.iter().filter(|off| 100.0 * **off <= wanted).count();
         println!(
-            "  {of}: {} known; off by {half:.3} % (median), {most:.3} % (99 of 100), {largest:.3} % (all)",
+            "  {of}: {} known, {within} off by {wanted} % at most; {half:.3} % (median), {most:.3} % (99 of 100), {largest:.3} % (all)",
             off.len()
         );
+    }
+    if let Encoders::Both = encoders {
+        let numbers = seeds as f64 * (1 + robot.joint_count() * Parameter::COUNT) as f64;
+        assert!(all.len() as f64 >= 0.97 * numbers, "{} of {numbers} are known", all.len());
     }
     assert!(share >= 0.97, "{}, {encoders:?}: {share}", robot.name);
 }

@@ -165,6 +165,34 @@ fn an_oscillation_dies_linearly() {
     assert!(errors[1] < errors[0] / 8.0, "{errors:?} rad");
 }
 
+/// A push of u turns a block back that slides against it: friction slows it down by (u + F)/M until t₁ = v₀ M/(u + F), and lets go by
+/// (u − F)/M from then on, wherever in a step that is.
+#[test]
+fn a_block_turns_back_within_a_step() {
+    let (inertia, torque, push) = (0.1, 2.0, 3.0);
+    for side in Side::BOTH {
+        for v0 in [0.11, 0.2003, 1.0, -0.2003] {
+            let u = -push * f64::signum(v0);
+            let (plant, u_m) = side.pushed(side.block(inertia, Friction::coulomb(Vector([torque]))), u);
+            let turn = v0.abs() * inertia / (push + torque);
+            let mut ride = Ride::new(&plant, side.moving(v0), STEP);
+            for k in 1..=40 {
+                let t = f64::from(k) * 1e-3;
+                let (_, speed) = side.position_and_speed(&ride.on(1e-3, u_m).x);
+                let expected = if t < turn {
+                    v0.abs() - (push + torque) / inertia * t
+                } else {
+                    -(push - torque) / inertia * (t - turn)
+                };
+                assert!(
+                    (speed - v0.signum() * expected).abs() < 1e-9,
+                    "{side:?}: {speed} at {t} s after {v0}"
+                );
+            }
+        }
+    }
+}
+
 /// A pendulum with less weight than friction stays where it is put; the motor behind its spring as well.
 #[test]
 fn a_held_link_does_not_sag() {

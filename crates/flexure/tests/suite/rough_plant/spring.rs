@@ -34,7 +34,8 @@ fn a_hysteresis_loop_has_its_area() {
         Stepper::Smooth(_) => panic!("hysteresis is not smooth"),
     };
     let mut area = 0.0;
-    for _ in 0..4000 {
+    // One second.
+    for _ in 0..10_000 {
         let (q, z) = (ride.x.q_m[0], torque(&ride));
         ride.on(STEP, [0.0]);
         area += 0.5 * (z + torque(&ride)) * (ride.x.q_m[0] - q);
