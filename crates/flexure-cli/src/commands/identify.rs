@@ -99,6 +99,9 @@ fn tell(found: &Identified, out: Option<&PathBuf>) -> Result<(), Failure> {
             joint.name,
             number(joint.noise_ratio.motor)
         ))?;
+        if let Some(doubt) = &joint.doubt {
+            print::line(&format!("{}: nothing of it counts as known: {doubt}", joint.name))?;
+        }
     }
     print::line(&format!(
         "known least: {}; condition {} (1: nothing hides behind anything else)",

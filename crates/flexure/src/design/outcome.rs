@@ -70,6 +70,9 @@ pub struct Feasible {
     pub rate: Option<f64>,
 }
 
+/// What is proved is rounded outward: gains are for a rate that is larger by this part than the one that is asked.
+const OUTWARD: f64 = 1e-6;
+
 /// Runs that margins take about.
 const MARGINS: usize = 75;
 
@@ -107,7 +110,7 @@ pub fn design(
     let watch = Watch::new(progress, all);
     let pace = match file.spec.rate {
         None => Pace::Free,
-        Some(Rate::AtLeast(rate)) => Pace::AtLeast(rate),
+        Some(Rate::AtLeast(rate)) => Pace::AtLeast(rate * (1.0 + OUTWARD)),
         Some(Rate::Largest) => Pace::Proved,
     };
     let search =
@@ -128,14 +131,16 @@ pub fn design(
     let mut instead = None;
     if let (Some(asked), false, false) = (asked, chosen.keeps(), chosen.broken_off) {
         // This search does not know the rate that is asked: who asks for what it finds gets the same gains.
-        let (other, more) = judged(search(Pace::Proved).run(&[], budget.div_ceil(2), seed)?)?;
-        runs += more;
-        if other.keeps() {
-            chosen = other;
-        } else {
-            chosen.broken_off |= other.broken_off;
-            let feasible = other.keeps_the_rest() && !other.broken_off;
-            instead = Some(Feasible { rate: other.rate().filter(|rate| feasible && *rate < asked) });
+        let other = search(Pace::Proved).run(&[], budget.div_ceil(2), seed).and_then(judged);
+        match unless_interrupted(other)? {
+            Some((other, more)) if other.keeps() => (chosen, runs) = (other, runs + more),
+            Some((other, more)) => {
+                runs += more;
+                chosen.broken_off |= other.broken_off;
+                let feasible = other.keeps_the_rest() && !other.broken_off;
+                instead = Some(Feasible { rate: other.rate().filter(|rate| feasible && *rate < asked) });
+            }
+            None => chosen.broken_off = true,
         }
     }
     watch.reach(borne);
@@ -156,9 +161,9 @@ pub fn design(
             watch.reach(traded + (all - traded) * fraction);
             watch.go_on()
         };
-        let found = margins(&tuned, &measured)?;
-        broken_off |= found.broken_off;
-        Some(found)
+        let found = unless_interrupted(margins(&tuned, &measured))?;
+        broken_off |= found.as_ref().is_none_or(|found| found.broken_off);
+        found
     } else {
         None
     };
@@ -179,6 +184,14 @@ pub fn design(
         runs,
         broken_off,
     })
+}
+
+/// What was found; none if it was broken off.
+fn unless_interrupted<T>(found: Result<T, Problems>) -> Result<Option<T>, Problems> {
+    match found {
+        Err(problems) if problems.is_interrupted() => Ok(None),
+        found => found.map(Some),
+    }
 }
 
 /// The law of `scenario` with its starting gains.
@@ -312,11 +325,12 @@ impl Design {
                 "drives with larger torque limits, a slower reference ([reference.time_scaling] margin), or accept.at_limit above 0".to_owned()
             }
             Kind::Run(measure) => format!(
-                "a {}{joint} of {} would have to be accepted, where {} are: by accept.{} or the limit in the robot file; or a slower reference",
+                "a {}{joint} of {} would have to be accepted, where {} are: by accept.{}{}; or a slower reference",
                 what,
                 amount(*value),
                 amount(*limit),
-                measure.key()
+                measure.key(),
+                if measure == Measure::Error { "" } else { " or the limit in the robot file" }
             ),
             Kind::Lost => "a SPEC that asks for less uncertainty and margin, or accept.error above what it leaves".to_owned(),
             Kind::Rate => "a lower rate".to_owned(),

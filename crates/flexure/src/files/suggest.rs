@@ -37,7 +37,7 @@ fn nearest<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a 
     let plain = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
     let (distance, name) = known
         .take(MOST_COMPARED)
-        .filter(|name| name.len() <= 4 * LONGEST_NAME)
+        .filter(|name| !name.is_empty() && name.len() <= 4 * LONGEST_NAME)
         .map(|name| (strsim::osa_distance(&plain(given), &plain(name)), name))
         .min_by_key(|&(distance, _)| distance)?;
     (distance <= (length / 3).max(1)).then_some(name)

@@ -24,7 +24,7 @@ const HIDDEN_TORQUE: f64 = 1.0 / 20.0;
 /// What encoders of both sides may hide of a joint.
 ///
 /// Where a spring bends by less than a few counts, what is rounded goes with how it bends and is no white noise. A regression on such
-/// deflections is off by the mean square of the noise over that of the deflections (Sheppard, *Proc. London Math. Soc.* 29, 1897);
+/// deflections is off by the mean square of the noise over that of the deflections without it (Sheppard, *Proc. London Math. Soc.* 29, 1897);
 /// predictions, which know what the torques do, by [less](HIDDEN). What is rounded where joints turn back is no white noise either, and
 /// the dampings and frictions of both sides, whose sums are known well, are told apart by a [small torque](HIDDEN_TORQUE) of the spring.
 pub(crate) struct Hidden {
@@ -59,7 +59,9 @@ impl Hidden {
 
     /// Of the stiffness, as a part of it.
     pub fn stiffness(&self) -> f64 {
-        HIDDEN * self.noise.powi(2) / self.bent.powi(2).max(f64::MIN_POSITIVE)
+        // Of what is measured the noise is part.
+        let seen = self.bent.powi(2) - self.noise.powi(2);
+        HIDDEN * self.noise.powi(2) / seen.max(f64::MIN_POSITIVE)
     }
 
     /// Of the dampings and frictions of a joint whose numbers are given, as parts of them.
@@ -106,8 +108,8 @@ mod tests {
             for side in noise[0] {
                 assert!((side / count * 12.0_f64.sqrt() - 1.0).abs() < 0.1, "{side}");
             }
-            // The mean square of what is seen: half the amplitude's, and the noise itself.
-            let bent = 0.5 * counts * counts + 1.0 / 6.0;
+            // The mean square of what bends: half the amplitude's.
+            let bent = 0.5 * counts * counts;
             let hidden = &Hidden::all(&logs, &noise).unwrap()[0];
             let part = hidden.stiffness();
             assert!((part / (HIDDEN / 6.0 / bent) - 1.0).abs() < 0.2, "{counts}: {part}");

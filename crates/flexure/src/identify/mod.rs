@@ -7,6 +7,7 @@
 
 mod bounded;
 mod checks;
+mod doubt;
 mod encoders;
 mod evidence;
 mod gain;
@@ -119,7 +120,8 @@ pub fn identify(
             evidence.no_better(parameters::unknown(joint, parameter), part / SIGMAS);
         }
     }
-    Ok(judged(robot, &search, &found, &evidence, settings))
+    let doubts = doubt::doubts(&*robot.arm()?, logs, &found.values, &written, &settings.gaps);
+    Ok(judged(robot, &search, &found, &evidence, settings, &doubts))
 }
 
 fn check_settings(settings: &Settings) -> Result<(), Problem> {
@@ -248,6 +250,7 @@ fn judged(
     found: &Found,
     evidence: &Evidence,
     settings: &Settings,
+    doubts: &[Option<String>],
 ) -> Identified {
     let values = &found.values;
     let kept: Vec<&Piece> = search.pieces.iter().filter(|piece| piece.held_out).collect();
@@ -273,9 +276,11 @@ fn judged(
                 .map(|&parameter| {
                     let estimate = estimate(robot, values, evidence, settings, i, parameter);
                     // Short of the end of the search error bars say nothing.
-                    Estimate { known: estimate.known && found.converged && is_timed, ..estimate }
+                    let is_sound = found.converged && is_timed && doubts[i].is_none();
+                    Estimate { known: estimate.known && is_sound, ..estimate }
                 })
                 .collect(),
+            doubt: doubts[i].clone(),
             noise_ratio: NoiseRatio { link, motor: root(m, of_motor) },
             torque_noise: found.torque_noise[i],
             held_out: (validation.samples > 0).then(|| {

@@ -34,6 +34,8 @@ pub struct IdentifiedJoint {
     pub name: String,
     /// In the order of [`Parameter::ALL`].
     pub parameters: Vec<Estimate>,
+    /// What speaks against its numbers, in words: then none counts as known. Null if nothing does.
+    pub doubt: Option<String>,
     /// Root mean square of one-step prediction errors of the positions over the noise of the encoders: 1 if nothing but they
     /// disturbs.
     pub noise_ratio: NoiseRatio,

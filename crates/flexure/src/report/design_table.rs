@@ -23,7 +23,8 @@ pub fn trades_table(trades: &[Trade], width: usize) -> String {
     let titles = ["a quarter more of", "rms\n|e_l|", "max\n|u_m|", "torque\nchange", "decay as\nsampled"];
     let mut table = headed(titles.into_iter());
     for trade in trades {
-        let factor = |x: f64| format!("×{}", significant(x, 3));
+        let factor =
+            |x: f64| if x.is_finite() { format!("×{}", significant(x, 3)) } else { NONE.to_owned() };
         let numbers = match trade.effect {
             Some(Effect { error, torque, chatter, decay }) => {
                 [Some(error), Some(torque), Some(chatter), decay].map(|x| x.map_or(NONE.to_owned(), factor))

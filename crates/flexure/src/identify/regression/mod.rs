@@ -2,6 +2,7 @@
 
 pub(crate) mod both_sides;
 pub(crate) mod motors;
+pub(crate) mod work;
 
 use super::parameters::Parameter;
 use crate::linalg::{Symmetric, cholesky, solved};

@@ -19,6 +19,7 @@ fn found(unknown: &[(usize, Parameter)]) -> Identified {
         known: !unknown.contains(&(joint, parameter)),
     };
     let joint = |joint: usize| IdentifiedJoint {
+        doubt: None,
         name: ["shoulder", "elbow"][joint].to_owned(),
         parameters: Parameter::ALL.map(|parameter| estimate(joint, parameter)).to_vec(),
         noise_ratio: NoiseRatio { link: None, motor: 1.0 },
