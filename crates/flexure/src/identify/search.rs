@@ -63,8 +63,8 @@ const ENOUGH: f64 = 0.02;
 /// A step that promises less than this and gains nothing ends a round, too.
 const ROUGH: f64 = 1.0;
 
-/// Where nothing is gained the search has come to its end if all that is promised is less than this for each unknown: they move by
-/// 0.4 standard deviations, an eighth of a printed error bar, on the average.
+/// Where links are seen and nothing is gained the search has come to its end if all that is promised is less than this for each unknown:
+/// they move by 0.4 standard deviations, an eighth of a printed error bar, on the average. Without link encoders valleys lead farther.
 const ROUGH_EACH: f64 = 0.08;
 
 impl Search<'_> {
@@ -255,7 +255,8 @@ impl Search<'_> {
                     break;
                 }
                 if gain < ENOUGH || promised < ROUGH {
-                    let is_end = promised < ROUGH.max(ROUGH_EACH * values.unknowns() as f64);
+                    let each = if self.of_links() { ROUGH_EACH } else { 0.0 };
+                    let is_end = promised < ROUGH.max(each * values.unknowns() as f64);
                     return Ok((values, is_end));
                 }
                 damping *= 10.0;
