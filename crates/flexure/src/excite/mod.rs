@@ -258,8 +258,12 @@ fn check_posture(robot: &Robot, posture: &[f64]) -> Result<(), Problem> {
     let limits = robot.limits.lower.iter().zip(&robot.limits.upper);
     for ((joint, &position), (&lower, &upper)) in robot.joints.iter().zip(posture).zip(limits) {
         if !(position.is_finite() && lower < position && position < upper) {
-            let message =
-                format!("--posture has {position} for joint {}, must be > {lower} and < {upper}", joint.name);
+            let wanted = if lower.is_finite() || upper.is_finite() {
+                format!("> {lower} and < {upper}")
+            } else {
+                "a finite number".to_owned()
+            };
+            let message = format!("--posture has {position} for joint {}, must be {wanted}", joint.name);
             return Err(Problem::new("range", message, help));
         }
     }

@@ -111,8 +111,8 @@ impl<const N: usize> Stepping<N> {
         torque: &dyn Fn(f64, &Motion<f64, N>) -> Vector<f64, N>,
         ledger: &mut Ledger,
     ) -> Motion<f64, N> {
-        let (mut x, mut done) = (*x, 0.0);
-        for turns in 0..=TURNS {
+        let (mut x, mut done, mut turns) = (*x, 0.0, 0);
+        loop {
             let left = h - done;
             let middle = self.middle(&x, left);
             let u_m = torque(t + done + 0.5 * left, &middle);
@@ -126,8 +126,8 @@ impl<const N: usize> Stepping<N> {
             let solved = self.stiction(plant, &x, &middle, &u_m, until).solve();
             x = self.moved(plant, &x, &u_m, until, &solved, ledger);
             done += until;
+            turns += 1;
         }
-        x
     }
 
     /// Where `solved` leads to from `x` in `h` s.
