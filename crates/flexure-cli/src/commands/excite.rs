@@ -51,6 +51,14 @@ pub fn excite(options: &Excite, outside: Outside, json: bool) -> Result<(), Fail
              0.1 % of its limit; no gravity, no coupling, friction at the lines alone. A model that misses something has more",
             duration(found.period)
         ))?;
+        if let Some(most) = found.usage.iter().max_by(|a, b| a.share.total_cmp(&b.share)) {
+            print::line(&format!(
+                "the whole arm takes {:.0} % of {} of {}, of no other limit more",
+                100.0 * most.share,
+                most.key,
+                found.joints[most.joint].name
+            ))?;
+        }
         print::line(
             "simulated with these encoders and exact torques, without delay and without friction: the loop that moves the robot may need\n\
              other gains",
