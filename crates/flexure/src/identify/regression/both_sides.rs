@@ -41,9 +41,7 @@ pub(crate) fn start(arm: &dyn Arm, log: &Log, q_l: &[f64], q_m: &[f64]) -> Start
     let input =
         |i: usize, halves: i32| -> Vec<f64> { at.iter().map(|&k| delayed(&inputs[i], k, halves)).collect() };
     let scales: Vec<_> = (0..n).map(|i| rms(&log.u_m, n, i).max(f64::MIN_POSITIVE)).collect();
-    let halves = likeliest(|halves| {
-        (0..n).map(|i| (motor_alone(&joints[i], &input(i, halves)).1 / scales[i]).powi(2)).sum()
-    });
+    let halves = likeliest(n, |i, halves| motor_alone(&joints[i], &input(i, halves)).1);
     let mut started =
         Started { joints: Vec::new(), offset: f64::from(halves) * 0.5 * log.period, unexplained: Vec::new() };
     for (rows, (i, scale)) in joints.iter().zip(scales.iter().enumerate()) {

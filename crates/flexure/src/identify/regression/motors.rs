@@ -50,9 +50,7 @@ pub(crate) fn start(arm: &dyn Arm, log: &Log, q_m: &[f64], stiffness: &[f64]) ->
     let (mut x, mut misfits, mut halves) = (vec![0.0; (OWN + 1) * n], vec![0.0; n], 0);
     for _ in 0..STEPS {
         let linear = rows.linear(&compliance);
-        halves = likeliest(|halves| {
-            (0..n).map(|i| (rows.alone(i, &rows.left(&linear, i, halves)) / scales[i]).powi(2)).sum()
-        });
+        halves = likeliest(n, |i, halves| rows.alone(i, &rows.left(&linear, i, halves)));
         (x, misfits) = rows.solved(&linear, halves, &compliance, stiffness);
         for (compliance, softer) in compliance.iter_mut().zip(&x[OWN * n..]) {
             *compliance *= 1.0 + softer.clamp(-SPREAD, SPREAD);
