@@ -16,16 +16,16 @@ pub fn unwatched(_: f64) -> ControlFlow<()> {
 
 /// Parts of a job that are done side by side and count the same: the fraction done of the whole is their mean.
 #[derive(Debug)]
-pub(crate) struct Parts(Vec<AtomicU64>);
+pub struct Parts(Vec<AtomicU64>);
 
 impl Parts {
     /// So many parts, of which nothing is done.
-    pub(crate) fn new(count: usize) -> Self {
+    pub fn new(count: usize) -> Self {
         Self((0..count).map(|_| AtomicU64::new(0.0_f64.to_bits())).collect())
     }
 
     /// The fraction done of the whole now that `fraction` of `part` is.
-    pub(crate) fn with(&self, part: usize, fraction: f64) -> f64 {
+    pub fn with(&self, part: usize, fraction: f64) -> f64 {
         self.0[part].store(fraction.to_bits(), Ordering::Relaxed);
         let done = self.0.iter().map(|part| f64::from_bits(part.load(Ordering::Relaxed)));
         done.sum::<f64>() / self.0.len() as f64

@@ -20,6 +20,7 @@ mod pinocchio;
 mod pipes;
 mod public_robots;
 mod pypi;
+mod python;
 mod reproduce;
 mod run;
 mod set;

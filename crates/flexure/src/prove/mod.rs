@@ -7,6 +7,7 @@ mod complaint;
 pub mod confirmation;
 mod decimals;
 pub mod engine;
+mod fitting;
 pub mod paper;
 pub mod question;
 pub mod sampling;

@@ -79,6 +79,11 @@ impl Robot {
     pub fn assumptions(&self) -> Vec<Assumption> {
         self.assumed.clone()
     }
+
+    /// SHA-256 of what its files say, in hexadecimal: the same for files that differ in comments and spaces only.
+    pub fn digest(&self) -> &str {
+        &self.digest
+    }
 }
 
 /// Reads a robot from `text`; `name` stands for the file in messages, relative paths in it start from `folder`

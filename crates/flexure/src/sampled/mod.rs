@@ -16,6 +16,7 @@ mod devices;
 mod exchange;
 mod growth;
 mod lifted;
+mod linearised;
 mod map;
 mod words;
 
@@ -31,6 +32,7 @@ use crate::sampled::map::Around;
 use crate::scenario::{Hold, Scenario};
 
 pub use advice::{Advice, Move};
+pub use linearised::Linearised;
 
 /// A radius is computed to about 1e-12; what grows by less than this in a period, no run shows.
 const ROUNDING: f64 = 1e-9;

@@ -49,6 +49,11 @@ impl Trace {
         &self.columns
     }
 
+    /// All columns, given away.
+    pub fn into_columns(self) -> Vec<Column> {
+        self.columns
+    }
+
     /// The column called `name`.
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         self.columns.iter().find(|column| column.name == name).map(|column| column.values.as_slice())

@@ -1,0 +1,38 @@
+"""Model, design, prove and simulate controllers for robots with elastic joints.
+
+A motion is (q_l, q_m, dq_l, dq_m): positions of links and motors in rad, then their rates in rad/s, 4n numbers for n joints, the order
+of the traces. Motors are seen from the link side of the gear. Arrays may have a batch of any shape before their last axis.
+
+    >>> import flexure
+    >>> scenario = flexure.Scenario("two-link-tanh-smooth")
+    >>> run = flexure.simulate(scenario)
+    >>> run.summary["follows"]
+    True
+    >>> flexure.certify(scenario)["verdict"]
+    'proved'
+"""
+
+from ._flexure import Controller, FlexureError, Loop, Robot, Scenario
+from ._jobs import certify, compare, identify, margins, simulate, tune, verify
+from ._motion import Motion, motion, views
+from ._run import Run, Trace
+
+__all__ = [
+    "Controller",
+    "FlexureError",
+    "Loop",
+    "Motion",
+    "Robot",
+    "Run",
+    "Scenario",
+    "Trace",
+    "certify",
+    "compare",
+    "identify",
+    "margins",
+    "motion",
+    "simulate",
+    "tune",
+    "verify",
+    "views",
+]

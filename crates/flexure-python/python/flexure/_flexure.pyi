@@ -1,0 +1,211 @@
+"""The compiled half of the package."""
+
+from collections.abc import Callable, Sequence
+from os import PathLike
+from typing import Any, TypedDict, final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__all__ = [
+    "Controller",
+    "FlexureError",
+    "Loop",
+    "Robot",
+    "Scenario",
+    "certify",
+    "compare",
+    "identify",
+    "margins",
+    "simulate",
+    "tune",
+    "verify",
+]
+
+_Array = NDArray[np.float64]
+_Path = str | PathLike[str]
+_Numbers = float | Sequence[float]
+_Told = Callable[[float], object] | None
+
+class _Problem(TypedDict):
+    code: str
+    message: str
+    hint: str
+    file: str | None
+    line: int | None
+    column: int | None
+
+class FlexureError(Exception):
+    """What the command line says with exit code 1 or 2: the text is the message, with file, line and hint."""
+
+    problems: list[_Problem]
+    """Each problem by itself; not there where the text is all that is known."""
+
+@final
+class Robot:
+    """A flexible-joint robot: links, and a motor and a spring for each of its n joints."""
+
+    def __new__(cls, path_or_name: _Path, *, allow_outside: bool = False) -> Robot: ...
+    def __len__(self) -> int: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def joints(self) -> list[str]: ...
+    @property
+    def stiffness(self) -> _Array:
+        """(n,), N m/rad"""
+    @property
+    def motor_inertia(self) -> _Array:
+        """(n,), kg m², on the link side of the gear"""
+    @property
+    def link_damping(self) -> _Array:
+        """(n,), N m s/rad"""
+    @property
+    def motor_damping(self) -> _Array:
+        """(n,), N m s/rad"""
+    @property
+    def limits(self) -> dict[str, _Array]:
+        """torque (N m), velocity (rad/s), lower and upper (rad), (n,) each, infinite for no limit"""
+    @property
+    def warnings(self) -> list[_Problem]: ...
+    def table(self) -> list[dict[str, Any]]: ...
+    def mass_matrix(self, q_l: ArrayLike) -> _Array:
+        """(…, n) → (…, n, n), kg m²"""
+    def inverse_dynamics(self, q_l: ArrayLike, dq_l: ArrayLike, ddq_l: ArrayLike) -> _Array:
+        """(…, n) each → (…, n), N m"""
+    def forward_dynamics(self, x: ArrayLike, u_m: ArrayLike) -> _Array:
+        """(…, 4n), (…, n) → (…, 2n), rad/s²: links, then motors"""
+    def energy(self, x: ArrayLike) -> Any:
+        """(…, 4n) → (…), J"""
+    def matrices(self, q_l: ArrayLike, dq_l: ArrayLike) -> dict[str, _Array]:
+        """(…, n) each → S, E and dM, (…, n, n) each"""
+    def torque_derivatives(self, q_l: ArrayLike) -> _Array:
+        """(…, 5, n), positions and four derivatives → (…, 3, n), N m, N m/s, N m/s²"""
+
+@final
+class Scenario:
+    """A robot, what it shall do, a law, and everything between law and robot."""
+
+    def __new__(
+        cls, path_or_name: _Path, *, set: dict[str, Any] | Sequence[str] | None = None, allow_outside: bool = False
+    ) -> Scenario: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def robot(self) -> Robot: ...
+    @property
+    def duration(self) -> float:
+        """s"""
+    @property
+    def control_period(self) -> float:
+        """s"""
+    @property
+    def seed(self) -> int: ...
+    @property
+    def initial(self) -> _Array:
+        """(4n,)"""
+    @property
+    def assumptions(self) -> list[dict[str, str]]: ...
+    @property
+    def warnings(self) -> list[_Problem]: ...
+    def controller(self) -> Controller: ...
+    def open(self) -> Loop: ...
+    def sampled(self) -> dict[str, Any] | None: ...
+
+@final
+class Controller:
+    """The law of a scenario by itself; it sees motions as they are and remembers nothing."""
+
+    def __new__(cls, scenario: Scenario) -> Controller: ...
+    @property
+    def joints(self) -> int: ...
+    def torque(self, x: ArrayLike, t: float) -> _Array:
+        """(…, 4n), s → (…, n), N m"""
+    def command(self, x: ArrayLike, t: float) -> dict[str, Any]:
+        """(4n,), s → what the law computes on the way, (n,) each, and energy, J"""
+    def reference(self, t: float) -> _Array:
+        """s → (5, n): positions, rad, and four derivatives"""
+    def jacobian(self, x: ArrayLike, t: float) -> _Array:
+        """(4n,), s → (n, 4n): ∂u_m/∂x, exact"""
+    def linearise(self, x: ArrayLike, u_m: ArrayLike) -> tuple[_Array, _Array]:
+        """(4n,), (n,) → A (4n, 4n) and B (4n, n) of the simulated robot, exact"""
+
+@final
+class Loop:
+    """The closed loop of a scenario, moved from one control instant to the next."""
+
+    def __new__(cls, scenario: Scenario) -> Loop: ...
+    @property
+    def scenario(self) -> Scenario: ...
+    @property
+    def joints(self) -> int: ...
+    @property
+    def period(self) -> float:
+        """s"""
+    @property
+    def signals(self) -> list[str]: ...
+    @property
+    def units(self) -> dict[str, str]: ...
+    @property
+    def t(self) -> float:
+        """s"""
+    @property
+    def x(self) -> _Array:
+        """(4n,)"""
+    @property
+    def u_m(self) -> _Array:
+        """(n,), N m"""
+    def step(self, count: int = 1) -> None: ...
+    def read(self) -> dict[str, float]: ...
+    def derivative(self, t: float, x: ArrayLike, u_m: ArrayLike) -> _Array:
+        """s, (…, 4n), (…, n) → (…, 4n)"""
+    def state(self) -> _Array: ...
+    def restore(self, state: ArrayLike) -> None: ...
+    def reset(self, seed: int) -> None: ...
+
+def simulate(scenario: Scenario, *, progress: _Told = None) -> dict[str, Any]: ...
+def certify(
+    scenario: Scenario,
+    *,
+    error_box: _Numbers | None = None,
+    initial_error: _Numbers | None = None,
+    rate: float | None = None,
+    disturbance: _Numbers | None = None,
+    direct: bool = False,
+    speed: float = 5.0,
+    budget: int = 1000,
+    out: _Path | None = None,
+    progress: _Told = None,
+) -> dict[str, Any]: ...
+def verify(certificate: _Path, *, against: Scenario | None = None) -> dict[str, Any]: ...
+def margins(scenario: Scenario, *, progress: _Told = None) -> dict[str, Any]: ...
+def tune(
+    scenario: Scenario,
+    *,
+    spec: _Path | None = None,
+    budget: int = 40,
+    seed: int = 0,
+    out: _Path | None = None,
+    progress: _Told = None,
+) -> dict[str, Any]: ...
+def compare(
+    scenarios: Sequence[Scenario] = ...,
+    *,
+    controllers: Sequence[str] = ...,
+    budget: int = 40,
+    seed: int = 0,
+    seeds: int = 5,
+    progress: _Told = None,
+) -> dict[str, Any]: ...
+def identify(
+    robot: _Path,
+    logs: Sequence[_Path],
+    *,
+    columns: str | None = None,
+    motor_only: bool = False,
+    hold_out: float = 0.2,
+    accuracy: float = 0.2,
+    out: _Path | None = None,
+    allow_outside: bool = False,
+    progress: _Told = None,
+) -> dict[str, Any]: ...

@@ -1,0 +1,171 @@
+"""What the command line does, under the same names."""
+
+from collections.abc import Callable, Sequence
+from os import PathLike
+from typing import Any, TypeVar
+
+from . import _flexure
+from ._flexure import Scenario
+from ._progress import Bar, Progress
+from ._run import Run, Trace
+
+Path = str | PathLike[str]
+Numbers = float | Sequence[float]
+Found = TypeVar("Found")
+
+
+def _scenario(given: Scenario | Path) -> Scenario:
+    return given if isinstance(given, Scenario) else Scenario(given)
+
+
+def _watched(name: str, progress: Progress, job: Callable[[Callable[[float], object] | None], Found]) -> Found:
+    if progress is True:
+        with Bar(name) as bar:
+            return job(bar)
+    return job(progress or None)
+
+
+def simulate(scenario: Scenario | Path, *, progress: Progress = None) -> Run:
+    """Simulates a scenario from beginning to end, as `flexure run`: its trace and what it is judged by.
+
+    A loop that does not follow its reference, or diverges, is a result and no error: see `Run.follows` and `Run.diverged_at`.
+    """
+    scenario = _scenario(scenario)
+    found = _watched(scenario.name, progress, lambda told: _flexure.simulate(scenario, progress=told))
+    return Run(
+        scenario=scenario,
+        summary=found["summary"],
+        trace=Trace(found["trace"], found["units"]),
+        diverged_at=found["diverged_at"],
+        divergence=found["divergence"],
+        faults=found["faults"],
+    )
+
+
+def certify(
+    scenario: Scenario | Path,
+    *,
+    error_box: Numbers | None = None,
+    initial_error: Numbers | None = None,
+    rate: float | None = None,
+    disturbance: Numbers | None = None,
+    direct: bool = False,
+    speed: float = 5.0,
+    budget: int = 1000,
+    out: Path | None = None,
+    progress: Progress = None,
+) -> dict[str, Any]:
+    """Proves how fast the closed loop contracts, and where, as `flexure certify`.
+
+    The dict has the keys of `--json`, with `verdict` ("proved", "proved (ideal loop)", "refuted", "undecided", …), and `certificate`,
+    the text that `verify` checks, None if nothing was proved. Errors in rad, links then motors; rate in 1/s; disturbance in N m, on
+    the motors; speed in rad/s.
+    """
+    scenario = _scenario(scenario)
+    return _watched(
+        scenario.name,
+        progress,
+        lambda told: _flexure.certify(
+            scenario,
+            error_box=error_box,
+            initial_error=initial_error,
+            rate=rate,
+            disturbance=disturbance,
+            direct=direct,
+            speed=speed,
+            budget=budget,
+            out=out,
+            progress=told,
+        ),
+    )
+
+
+def verify(certificate: Path, *, against: Scenario | Path | None = None) -> dict[str, Any]:
+    """Checks the claims of a certificate, its text or its file, without what made it, as `flexure verify`.
+
+    With `against`, `same` tells whether it is about that scenario, and `differences` what it has differently. Raises FlexureError for
+    a claim that does not hold.
+    """
+    return _flexure.verify(certificate, against=None if against is None else _scenario(against))
+
+
+def margins(scenario: Scenario | Path, *, progress: Progress = None) -> dict[str, Any]:
+    """How much delay, torque gain, stiffness error and noise the loop bears, by bisection in simulation, as `flexure margins`."""
+    scenario = _scenario(scenario)
+    return _watched(scenario.name, progress, lambda told: _flexure.margins(scenario, progress=told))
+
+
+def tune(
+    scenario: Scenario | Path,
+    *,
+    spec: Path | None = None,
+    budget: int = 40,
+    seed: int = 0,
+    out: Path | None = None,
+    progress: Progress = None,
+) -> dict[str, Any]:
+    """Finds gains, as `flexure tune`: constraints with their slack, evidence, trades.
+
+    `toml` is the complete scenario with the gains, None if no gains keep every constraint (`feasible`); `out` writes it.
+    """
+    scenario = _scenario(scenario)
+    return _watched(
+        scenario.name,
+        progress,
+        lambda told: _flexure.tune(scenario, spec=spec, budget=budget, seed=seed, out=out, progress=told),
+    )
+
+
+def compare(
+    scenarios: Sequence[Scenario | Path] = (),
+    *,
+    controllers: Sequence[str] = (),
+    budget: int = 40,
+    seed: int = 0,
+    seeds: int = 5,
+    progress: Progress = None,
+) -> dict[str, Any]:
+    """Compares laws on tasks, each with gains from the same search, as `flexure compare`.
+
+    Without scenarios the built-in tasks, without controllers all laws. Broken off, it has what was finished until then.
+    """
+    tasks = [_scenario(scenario) for scenario in scenarios]
+    return _watched(
+        "compare",
+        progress,
+        lambda told: _flexure.compare(tasks, controllers=list(controllers), budget=budget, seed=seed, seeds=seeds, progress=told),
+    )
+
+
+def identify(
+    robot: Path,
+    logs: Path | Sequence[Path],
+    *,
+    columns: str | None = None,
+    motor_only: bool = False,
+    hold_out: float = 0.2,
+    accuracy: float = 0.2,
+    out: Path | None = None,
+    allow_outside: bool = False,
+    progress: Progress = None,
+) -> dict[str, Any]:
+    """Stiffness, motor inertia, damping and friction of a robot's joints from logs, with error bars, as `flexure identify`.
+
+    `toml` is the robot file with the numbers that the logs know, None if they know none; `out` writes it.
+    """
+    files = [logs] if isinstance(logs, str | PathLike) else list(logs)
+    return _watched(
+        str(robot),
+        progress,
+        lambda told: _flexure.identify(
+            robot,
+            files,
+            columns=columns,
+            motor_only=motor_only,
+            hold_out=hold_out,
+            accuracy=accuracy,
+            out=out,
+            allow_outside=allow_outside,
+            progress=told,
+        ),
+    )

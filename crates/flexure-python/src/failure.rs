@@ -1,0 +1,81 @@
+//! Problems as exceptions.
+
+use flexure::files::{Problem, Problems};
+use flexure::robot::Mismatch;
+use pyo3::create_exception;
+use pyo3::exceptions::{PyException, PyKeyboardInterrupt, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+create_exception!(
+    flexure,
+    FlexureError,
+    PyException,
+    "What the command line says with exit code 1 or 2: the text is the message, with file, line and hint; `problems` has a dict with \
+     the keys code, message, hint, file, line and column for each."
+);
+
+/// An exception of `problems`, or KeyboardInterrupt if they say that a job was broken off.
+pub fn raised(py: Python<'_>, problems: &Problems) -> PyErr {
+    if problems.is_interrupted() {
+        PyKeyboardInterrupt::new_err(())
+    } else {
+        of(py, &problems.iter().collect::<Vec<_>>())
+    }
+}
+
+/// An exception of several problems, at least one.
+pub fn of(py: Python<'_>, problems: &[&Problem]) -> PyErr {
+    let text: Vec<_> = problems.iter().map(|problem| words(problem)).collect();
+    let error = FlexureError::new_err(text.join("\n"));
+    // Where memory is out the text has to do.
+    let _ = documents(py, problems.iter().copied())
+        .and_then(|documents| error.value(py).setattr("problems", documents));
+    error
+}
+
+/// Problems as a list of dicts, as `--json` has them.
+pub fn documents<'a, 'py>(
+    py: Python<'py>,
+    problems: impl Iterator<Item = &'a Problem>,
+) -> PyResult<Bound<'py, PyList>> {
+    let list = PyList::empty(py);
+    for problem in problems {
+        let (line, column) = problem.line_column().unzip();
+        let document = PyDict::new(py);
+        document.set_item("code", problem.code_word())?;
+        document.set_item("message", problem.to_string())?;
+        document.set_item("hint", problem.hint())?;
+        document.set_item("file", problem.file())?;
+        document.set_item("line", line)?;
+        document.set_item("column", column)?;
+        list.append(document)?;
+    }
+    Ok(list)
+}
+
+/// A problem in words: place, message, hint.
+fn words(problem: &Problem) -> String {
+    let place = match (problem.file(), problem.line_column()) {
+        (Some(file), Some((line, column))) => format!("{file}:{line}:{column}: "),
+        _ => String::new(),
+    };
+    let hint =
+        if problem.hint().is_empty() { String::new() } else { format!("\n  help: {}", problem.hint()) };
+    format!("{place}{problem}{hint}")
+}
+
+/// Warnings by Python's own way to warn.
+pub fn warn(py: Python<'_>, warnings: &[Problem]) -> PyResult<()> {
+    let category = py.get_type::<pyo3::exceptions::PyUserWarning>();
+    for warning in warnings {
+        let text = std::ffi::CString::new(words(warning).replace('\0', "\u{fffd}")).unwrap_or_default();
+        PyErr::warn(py, &category, &text, 2)?;
+    }
+    Ok(())
+}
+
+/// Slices of a wrong length, where shapes were looked at before: never.
+pub fn mismatch(mismatch: Mismatch) -> PyErr {
+    PyValueError::new_err(mismatch.to_string())
+}

@@ -1,0 +1,36 @@
+//! The module `flexure._flexure`: classes over [`flexure::Robot`], [`flexure::Scenario`] and [`flexure::Loop`], functions for what
+//! the command line does. The package around it is in `python/flexure`; docs/python.md is the guide.
+
+#![allow(clippy::needless_pass_by_value, reason = "arguments come from Python as values")]
+
+mod arrays;
+mod controller;
+mod documents;
+mod failure;
+mod held;
+mod results;
+mod robot;
+mod run;
+mod scenario;
+mod watched;
+
+use pyo3::prelude::*;
+
+/// The compiled half of the package.
+#[pymodule]
+mod _flexure {
+    #[pymodule_export]
+    use super::controller::Controller;
+    #[pymodule_export]
+    use super::failure::FlexureError;
+    #[pymodule_export]
+    use super::held::Loop;
+    #[pymodule_export]
+    use super::results::{certify, compare, identify, margins, tune, verify};
+    #[pymodule_export]
+    use super::robot::Robot;
+    #[pymodule_export]
+    use super::run::simulate;
+    #[pymodule_export]
+    use super::scenario::Scenario;
+}

@@ -1,0 +1,276 @@
+//! Robots.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use flexure::robot::{Arm, PortHamiltonian, Robot as Loaded, load_robot_with, overview};
+use numpy::PyArrayDyn;
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+use crate::arrays::{Numbers, shaped, vector};
+use crate::documents::document;
+use crate::failure::{documents, mismatch, raised, warn};
+use crate::scenario::outside;
+
+type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
+
+/// (q_l, q_m, dq_l, dq_m), the order of the trace.
+pub const MOTION: &str = "(q_l, q_m, dq_l, dq_m)";
+
+/// A flexible-joint robot: links, and a motor and a spring for each of its joints.
+#[pyclass(frozen, module = "flexure")]
+pub struct Robot {
+    loaded: Arc<Loaded>,
+    arm: Box<dyn Arm>,
+    /// None for the robot of a scenario.
+    source: Option<(String, bool)>,
+}
+
+impl Robot {
+    pub fn of(py: Python<'_>, loaded: Loaded, source: Option<(String, bool)>) -> PyResult<Self> {
+        let arm = loaded.arm().map_err(|problems| raised(py, &problems))?;
+        Ok(Self { loaded: Arc::new(loaded), arm, source })
+    }
+
+    fn read(py: Python<'_>, path_or_name: String, allow_outside: bool) -> PyResult<Self> {
+        let loaded = load_robot_with(&path_or_name, outside(allow_outside))
+            .map_err(|problems| raised(py, &problems))?;
+        Self::of(py, loaded, Some((path_or_name, allow_outside)))
+    }
+}
+
+/// Arguments of n numbers each, with a batch before, and what `each` makes of one after the other: `last` axes of each.
+fn each<'py>(
+    py: Python<'py>,
+    arguments: &[(&'static str, &Bound<'py, PyAny>, usize, &str)],
+    last: &[usize],
+    each: impl Fn(&[&[f64]], &mut [f64]) -> Result<(), flexure::robot::Mismatch> + Sync,
+) -> PyResult<Array<'py>> {
+    let read: Vec<Numbers<'py>> =
+        arguments.iter().map(|(name, given, ..)| Numbers::new(name, given)).collect::<PyResult<_>>()?;
+    let (_, _, count, meaning) = arguments[0];
+    let batch = read[0].batch(count, meaning)?;
+    for (numbers, (_, _, count, meaning)) in read.iter().zip(arguments).skip(1) {
+        numbers.beside(&batch, *count, meaning)?;
+    }
+    let slices: Vec<&[f64]> = read.iter().map(Numbers::slice).collect::<PyResult<_>>()?;
+    let counts: Vec<usize> = arguments.iter().map(|(_, _, count, _)| *count).collect();
+    let size: usize = last.iter().product();
+    let many: usize = batch.iter().product();
+    let mut found = vec![0.0; many * size];
+    py.detach(|| {
+        let mut row: Vec<&[f64]> = Vec::with_capacity(slices.len());
+        for (k, found) in found.chunks_exact_mut(size).enumerate() {
+            row.clear();
+            row.extend(slices.iter().zip(&counts).map(|(all, count)| &all[k * count..(k + 1) * count]));
+            each(&row, found)?;
+        }
+        Ok(())
+    })
+    .map_err(mismatch)?;
+    shaped(py, found, &batch, last)
+}
+
+#[pymethods]
+impl Robot {
+    #[new]
+    #[pyo3(signature = (path_or_name, *, allow_outside = false))]
+    fn new(py: Python<'_>, path_or_name: PathBuf, allow_outside: bool) -> PyResult<Self> {
+        let robot = Self::read(py, path_or_name.to_string_lossy().into_owned(), allow_outside)?;
+        warn(py, &robot.loaded.warnings)?;
+        Ok(robot)
+    }
+
+    /// Its name, as in its file.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.loaded.name
+    }
+
+    /// Names of its moving joints, in the order of everything that is given per joint.
+    #[getter]
+    fn joints(&self) -> Vec<&str> {
+        self.loaded.joints.iter().map(|joint| &*joint.name).collect()
+    }
+
+    /// How many joints move.
+    fn __len__(&self) -> usize {
+        self.loaded.joint_count()
+    }
+
+    /// Joint stiffness K, N m/rad.
+    #[getter]
+    fn stiffness<'py>(&self, py: Python<'py>) -> Array<'py> {
+        vector(py, &self.loaded.stiffness)
+    }
+
+    /// Motor inertia M_m on the link side of the gear, kg m².
+    #[getter]
+    fn motor_inertia<'py>(&self, py: Python<'py>) -> Array<'py> {
+        vector(py, &self.loaded.motor_inertia)
+    }
+
+    /// Link damping D_l, N m s/rad.
+    #[getter]
+    fn link_damping<'py>(&self, py: Python<'py>) -> Array<'py> {
+        vector(py, &self.loaded.link_damping)
+    }
+
+    /// Motor damping D_m, N m s/rad.
+    #[getter]
+    fn motor_damping<'py>(&self, py: Python<'py>) -> Array<'py> {
+        vector(py, &self.loaded.motor_damping)
+    }
+
+    /// What its joints must not exceed: arrays torque (N m), velocity (rad/s), lower and upper (rad); infinite for no limit.
+    #[getter]
+    fn limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let found = PyDict::new(py);
+        let limits = &self.loaded.limits;
+        for (key, numbers) in [
+            ("torque", &limits.torque),
+            ("velocity", &limits.velocity),
+            ("lower", &limits.lower),
+            ("upper", &limits.upper),
+        ] {
+            found.set_item(key, vector(py, numbers))?;
+        }
+        Ok(found)
+    }
+
+    /// What is suspicious in its file.
+    #[getter]
+    fn warnings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        documents(py, self.loaded.warnings.iter())
+    }
+
+    /// A dict for each joint: stiffness, inertias, resonance in Hz, limits, as `robot` of `flexure check --json`.
+    fn table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        document(py, &overview(&self.loaded).map_err(|problems| raised(py, &problems))?)
+    }
+
+    /// Mass matrix of the links M_l(q_l), kg m²: (…, n) → (…, n, n).
+    fn mass_matrix<'py>(&self, py: Python<'py>, q_l: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
+        let n = self.arm.joints();
+        each(py, &[("q_l", q_l, n, "q_l, a number per joint")], &[n, n], |x, mass| {
+            self.arm.mass_matrix(x[0], mass)
+        })
+    }
+
+    /// What the links ask of their springs, M_l ddq_l + C dq_l + g, N m: three arrays (…, n) → (…, n).
+    fn inverse_dynamics<'py>(
+        &self,
+        py: Python<'py>,
+        q_l: &Bound<'py, PyAny>,
+        dq_l: &Bound<'py, PyAny>,
+        ddq_l: &Bound<'py, PyAny>,
+    ) -> PyResult<Array<'py>> {
+        let n = self.arm.joints();
+        let arguments = [
+            ("q_l", q_l, n, "q_l, a number per joint"),
+            ("dq_l", dq_l, n, "dq_l, a number per joint"),
+            ("ddq_l", ddq_l, n, "ddq_l, a number per joint"),
+        ];
+        each(py, &arguments, &[n], |x, torque| self.arm.inverse_dynamics(x[0], x[1], x[2], torque))
+    }
+
+    /// Accelerations of links and motors, rad/s², of a robot that moves as x under motor torques u_m: (…, 4n), (…, n) → (…, 2n).
+    fn forward_dynamics<'py>(
+        &self,
+        py: Python<'py>,
+        x: &Bound<'py, PyAny>,
+        u_m: &Bound<'py, PyAny>,
+    ) -> PyResult<Array<'py>> {
+        let n = self.arm.joints();
+        let arguments = [("x", x, 4 * n, MOTION), ("u_m", u_m, n, "u_m, a number per joint")];
+        each(py, &arguments, &[2 * n], |x, a| self.arm.forward_dynamics(x[0], x[1], a))
+    }
+
+    /// Total energy, J: links and motors in motion, gravity and springs: (…, 4n) → (…).
+    fn energy<'py>(&self, py: Python<'py>, x: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let n = self.arm.joints();
+        let found = each(py, &[("x", x, 4 * n, MOTION)], &[1], |x, energy| {
+            energy[0] = self.arm.energy(x[0])?;
+            Ok(())
+        })?;
+        found.get_item((pyo3::types::PyEllipsis::get(py), 0))
+    }
+
+    /// Matrices of the port-Hamiltonian form, each (…, n, n): a dict with S (skew), E = S − ½ dM/dt and dM, N m s/rad and kg m²/s.
+    fn matrices<'py>(
+        &self,
+        py: Python<'py>,
+        q_l: &Bound<'py, PyAny>,
+        dq_l: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let n = self.arm.joints();
+        let arguments =
+            [("q_l", q_l, n, "q_l, a number per joint"), ("dq_l", dq_l, n, "dq_l, a number per joint")];
+        let all = each(py, &arguments, &[3, n, n], |x, found| {
+            let (skew, rest) = found.split_at_mut(n * n);
+            let (workless, mass_rate) = rest.split_at_mut(n * n);
+            self.arm.matrices(x[0], x[1], PortHamiltonian { skew, workless, mass_rate })
+        })?;
+        let matrices = PyDict::new(py);
+        let (rest, whole) = (pyo3::types::PyEllipsis::get(py), pyo3::types::PySlice::full(py));
+        for (k, key) in ["S", "E", "dM"].into_iter().enumerate() {
+            matrices.set_item(key, all.get_item((rest, k, &whole, &whole))?)?;
+        }
+        Ok(matrices)
+    }
+
+    /// Torque of the links along a trajectory and its first two derivatives in time, exactly: from positions and their first four
+    /// derivatives, (…, 5, n), torques in N m, N m/s, N m/s², (…, 3, n).
+    fn torque_derivatives<'py>(&self, py: Python<'py>, q_l: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
+        let n = self.arm.joints();
+        let numbers = Numbers::new("q_l", q_l)?;
+        let mut batch = numbers.batch(n, "positions and four derivatives, n each")?;
+        if batch.pop() != Some(5) {
+            return Err(PyValueError::new_err(format!(
+                "q_l: expected (…, 5, {n}) = (q_l, dq_l, ddq_l, …) up to the fourth derivative"
+            )));
+        }
+        let (all, many) = (numbers.slice()?, batch.iter().product::<usize>());
+        let mut found = vec![0.0; many * 3 * n];
+        for (q_l, torque) in all.chunks_exact(5 * n).zip(found.chunks_exact_mut(3 * n)) {
+            // Coefficients are derivatives over factorials.
+            let series: Vec<[f64; 5]> = (0..n)
+                .map(|i| {
+                    let over = [1.0, 1.0, 2.0, 6.0, 24.0];
+                    std::array::from_fn(|k| q_l[k * n + i] / over[k])
+                })
+                .collect();
+            let mut coefficients = vec![[0.0; 3]; n];
+            self.arm.torque_along(&series, &mut coefficients).map_err(mismatch)?;
+            for (i, [value, rate, half]) in coefficients.into_iter().enumerate() {
+                (torque[i], torque[n + i], torque[2 * n + i]) = (value, rate, 2.0 * half);
+            }
+        }
+        shaped(py, found, &batch, &[3, n])
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Robot({}: {})", self.loaded.name, self.joints().join(", "))
+    }
+
+    /// Files are read again where it is unpickled, and must say the same.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (String, bool, String))> {
+        let Some((path_or_name, allow_outside)) = slf.get().source.clone() else {
+            return Err(PyTypeError::new_err("the robot of a scenario: pickle the scenario"));
+        };
+        let digest = slf.get().loaded.digest().to_owned();
+        Ok((slf.get_type().getattr("_again")?, (crate::scenario::whole(path_or_name), allow_outside, digest)))
+    }
+
+    #[staticmethod]
+    fn _again(py: Python<'_>, path_or_name: String, allow_outside: bool, digest: &str) -> PyResult<Self> {
+        let again = Self::read(py, path_or_name, allow_outside)?;
+        if again.loaded.digest() == digest {
+            Ok(again)
+        } else {
+            Err(crate::scenario::changed(&again.loaded.name))
+        }
+    }
+}

@@ -1,0 +1,230 @@
+//! Scenarios.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use flexure::files::{Change, Outside, Problem, Problems, Reading};
+use flexure::scenario::{Scenario as Loaded, load_scenario_with};
+use numpy::PyArrayDyn;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+use crate::arrays::vector;
+use crate::controller::Controller;
+use crate::documents::document;
+use crate::failure::{documents, raised, warn};
+use crate::held::Loop;
+use crate::robot::Robot;
+
+/// A robot, what it shall do, a law, and everything between law and robot.
+#[pyclass(frozen, module = "flexure")]
+pub struct Scenario {
+    pub loaded: Arc<Loaded>,
+    pub source: Origin,
+}
+
+/// What a scenario was read from.
+#[derive(Clone)]
+pub struct Origin {
+    pub path_or_name: String,
+    changes: Vec<String>,
+    pub allow_outside: bool,
+}
+
+impl Origin {
+    /// The changes.
+    pub fn parsed(&self) -> Result<Vec<Change>, Problem> {
+        self.changes.iter().map(|change| Change::parse(change)).collect()
+    }
+
+    fn load(&self) -> Result<Loaded, Problems> {
+        let (outside, changes) = (outside(self.allow_outside), self.parsed()?);
+        load_scenario_with(&self.path_or_name, Reading { outside, changes: &changes })
+    }
+}
+
+/// A function and its arguments, by which pickle makes a scenario again.
+type Again<'py> = (Bound<'py, PyAny>, (String, Vec<String>, bool, String));
+
+/// Whether files may name files outside of their folders.
+pub fn outside(allowed: bool) -> Outside {
+    if allowed { Outside::Allowed } else { Outside::Refused }
+}
+
+/// Changes from `set`: a dict of dotted keys, or texts "key=value" as the command line takes them.
+pub fn changes(set: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<String>> {
+    let Some(set) = set else { return Ok(Vec::new()) };
+    let Ok(keys) = set.cast::<PyDict>() else { return set.extract() };
+    keys.iter().map(|(key, value)| Ok(format!("{}={}", key.extract::<String>()?, toml(&value)?))).collect()
+}
+
+/// A value as TOML has it.
+fn toml(value: &Bound<'_, PyAny>) -> PyResult<String> {
+    if let Ok(text) = value.extract::<String>() {
+        return Ok(format!("{text:?}"));
+    }
+    if let Ok(table) = value.cast::<PyDict>() {
+        let entries = table
+            .iter()
+            .map(|(key, value)| Ok(format!("{:?} = {}", key.extract::<String>()?, toml(&value)?)))
+            .collect::<PyResult<Vec<_>>>()?;
+        return Ok(format!("{{{}}}", entries.join(", ")));
+    }
+    if value.hasattr("tolist")? {
+        return toml(&value.call_method0("tolist")?);
+    }
+    if value.is_instance_of::<pyo3::types::PyList>() || value.is_instance_of::<pyo3::types::PyTuple>() {
+        let entries = value.try_iter()?.map(|value| toml(&value?)).collect::<PyResult<Vec<_>>>()?;
+        return Ok(format!("[{}]", entries.join(", ")));
+    }
+    if value.is_instance_of::<pyo3::types::PyBool>() {
+        return Ok(value.str()?.to_string().to_lowercase());
+    }
+    // The fewest digits that restore a number are what repr gives.
+    Ok(value.repr()?.to_string())
+}
+
+#[pymethods]
+impl Scenario {
+    #[new]
+    #[pyo3(signature = (path_or_name, *, set = None, allow_outside = false))]
+    fn new(
+        py: Python<'_>,
+        path_or_name: PathBuf,
+        set: Option<&Bound<'_, PyAny>>,
+        allow_outside: bool,
+    ) -> PyResult<Self> {
+        let path_or_name = path_or_name.to_string_lossy().into_owned();
+        let source = Origin { path_or_name, changes: changes(set)?, allow_outside };
+        let loaded = source.load().map_err(|problems| raised(py, &problems))?;
+        warn(py, &loaded.warnings)?;
+        Ok(Self { loaded: Arc::new(loaded), source })
+    }
+
+    /// Its name: that of its file.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.loaded.name
+    }
+
+    /// The robot that its law knows.
+    #[getter]
+    fn robot(&self, py: Python<'_>) -> PyResult<Robot> {
+        Robot::of(py, self.loaded.robot.clone(), None)
+    }
+
+    /// How long its runs are, s.
+    #[getter]
+    fn duration(&self) -> f64 {
+        self.loaded.duration
+    }
+
+    /// Time between two control instants, s.
+    #[getter]
+    fn control_period(&self) -> f64 {
+        self.loaded.control_period
+    }
+
+    /// Seed of everything that is random in it.
+    #[getter]
+    fn seed(&self) -> u64 {
+        self.loaded.seed
+    }
+
+    /// Numbers that no source vouches for: dicts with key, value and note.
+    #[getter]
+    fn assumptions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        let list = PyList::empty(py);
+        for assumed in &self.loaded.assumptions {
+            let entry = PyDict::new(py);
+            entry.set_item("file", &assumed.file)?;
+            entry.set_item("key", &assumed.key)?;
+            entry.set_item("value", &assumed.value)?;
+            entry.set_item("note", &assumed.note)?;
+            list.append(entry)?;
+        }
+        Ok(list)
+    }
+
+    /// What is suspicious in its files.
+    #[getter]
+    fn warnings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        documents(py, self.loaded.warnings.iter())
+    }
+
+    /// Where it starts: q_l, q_m in rad, dq_l, dq_m in rad/s, 4n numbers.
+    #[getter]
+    fn initial<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
+        let initial = &self.loaded.initial;
+        let parts = [&initial.q_l, &initial.q_m, &initial.dq_l, &initial.dq_m];
+        let numbers: Vec<f64> = parts.into_iter().flatten().copied().collect();
+        vector(py, &numbers)
+    }
+
+    /// Its law alone.
+    fn controller(&self, py: Python<'_>) -> PyResult<Controller> {
+        Controller::open(py, &self.loaded)
+    }
+
+    /// Its closed loop, to be stepped.
+    fn open(slf: PyRef<'_, Self>) -> PyResult<Loop> {
+        let py = slf.py();
+        Loop::open(py, slf.into())
+    }
+
+    /// Is the loop stable that holds its torque for a control period? A dict, as `sampled` of `flexure run --json`; None for a law in
+    /// continuous time.
+    fn sampled<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let found = py.detach(|| flexure::sampled::probe(&self.loaded));
+        document(py, &found.map_err(|problems| raised(py, &problems))?)
+    }
+
+    fn __repr__(&self) -> String {
+        let Loaded { name, robot, duration, control_period, controller, .. } = &*self.loaded;
+        format!(
+            "Scenario({name}: {} with {} joints, {}, {duration} s at {control_period} s)",
+            robot.name,
+            robot.joint_count(),
+            controller.kind()
+        )
+    }
+
+    /// Files are read again where it is unpickled, and must say the same.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Again<'py>> {
+        let again = slf.get_type().getattr("_again")?;
+        let Origin { path_or_name, changes, allow_outside } = slf.get().source.clone();
+        Ok((again, (whole(path_or_name), changes, allow_outside, slf.get().loaded.digest())))
+    }
+
+    #[staticmethod]
+    fn _again(
+        py: Python<'_>,
+        path_or_name: String,
+        changes: Vec<String>,
+        allow_outside: bool,
+        digest: &str,
+    ) -> PyResult<Self> {
+        let source = Origin { path_or_name, changes, allow_outside };
+        let loaded = source.load().map_err(|problems| raised(py, &problems))?;
+        if loaded.digest() == digest {
+            Ok(Self { loaded: Arc::new(loaded), source })
+        } else {
+            Err(changed(&loaded.name))
+        }
+    }
+}
+
+/// A path that is good from any folder; a name as it is.
+pub fn whole(path_or_name: String) -> String {
+    let path = Path::new(&path_or_name);
+    match path.canonicalize() {
+        Ok(whole) if path.is_file() => whole.to_string_lossy().into_owned(),
+        _ => path_or_name,
+    }
+}
+
+/// Why something is not unpickled.
+pub fn changed(name: &str) -> PyErr {
+    PyValueError::new_err(format!("{name} was pickled when its files said something else"))
+}

@@ -1,0 +1,85 @@
+//! Questions that do not fit the robot are refused before anything is computed.
+
+use crate::files::Problem;
+use crate::prove::question::{Direct, Question, Region, SMALLEST_ERROR};
+use crate::scenario::Scenario;
+
+/// Largest and smallest number that a question takes: products of a few of them stay finite.
+const LARGEST: f64 = 1e30;
+
+const OF_BOTH_SIDES: &str = "one number, or one per joint of the links, then of the motors, in rad";
+
+impl Question {
+    /// The same with a number for each joint where one number stands for all.
+    ///
+    /// # Errors
+    /// If lists have another length, or numbers are out of range.
+    pub fn fitting(self, scenario: &Scenario) -> Result<Self, Problem> {
+        let n = scenario.robot.joint_count();
+        let region = match self.region {
+            Region::Errors(largest) => Region::Errors(positive(
+                "the error box",
+                per_joint("the error box", largest, 2 * n, OF_BOTH_SIDES)?,
+            )?),
+            Region::Start(start) => {
+                let start = per_joint("the initial error", start, 2 * n, OF_BOTH_SIDES)?;
+                let largest = start.iter().fold(0.0, |largest: f64, e| largest.max(e.abs()));
+                positive("the initial error", vec![largest])?;
+                Region::Start(start.into_iter().map(f64::abs).collect())
+            }
+            Region::Chosen => Region::Chosen,
+        };
+        let hint = "one number, or one per motor, in N m, link side of the gear";
+        let disturbance =
+            self.disturbance.map(|torques| per_joint("the disturbance", torques, n, hint)).transpose()?;
+        if let Some(negative) = disturbance.iter().flatten().find(|&&d| d < 0.0) {
+            let message = format!("the disturbance is {negative} N m, must be >= 0");
+            return Err(Problem::new("range", message, "the largest absolute value of the torque"));
+        }
+        if let Some(rate) = self.rate.filter(|rate| !(rate.is_finite() && *rate > 0.0 && *rate <= LARGEST)) {
+            let message = format!("the rate is {rate:e} 1/s, must be > 0 and at most 1e30");
+            let hint = "decay rate of the distance of two solutions; leave it out for the largest";
+            return Err(Problem::new("range", message, hint));
+        }
+        if let Some(Direct { speed, .. }) =
+            self.direct.filter(|direct| !(0.0..=LARGEST).contains(&direct.speed))
+        {
+            let message = format!("the speed is {speed} rad/s, must be >= 0 and at most 1e30");
+            return Err(Problem::new("range", message, "the largest speed of the links that is looked at"));
+        }
+        Ok(Self { region, disturbance, ..self })
+    }
+}
+
+fn per_joint(name: &str, values: Vec<f64>, count: usize, what: &str) -> Result<Vec<f64>, Problem> {
+    if let Some(x) = values.iter().find(|x| !x.is_finite() || x.abs() > LARGEST) {
+        return Err(Problem::new(
+            "range",
+            format!("{name} is {x:e}, must be of a magnitude up to 1e30"),
+            what,
+        ));
+    }
+    match *values {
+        [one] => Ok(vec![one; count]),
+        _ if values.len() == count => Ok(values),
+        _ => {
+            let message = format!("{name}: 1 or {count} numbers expected; got {}", values.len());
+            Err(Problem::new("length", message, what))
+        }
+    }
+}
+
+fn positive(name: &str, values: Vec<f64>) -> Result<Vec<f64>, Problem> {
+    match values.iter().find(|&&x| x < SMALLEST_ERROR) {
+        None => Ok(values),
+        Some(x) if *x > 0.0 => {
+            let message = format!("{name} is {x:e} rad, must be at least {SMALLEST_ERROR:e}");
+            let hint = "so small a region cannot be represented: tanh is linear in it to rounding";
+            Err(Problem::new("region", message, hint))
+        }
+        Some(x) => {
+            let message = format!("{name} is {x} rad: the region is empty");
+            Err(Problem::new("region", message, "name the largest error that shall be certified, > 0"))
+        }
+    }
+}
