@@ -3,7 +3,7 @@
 use flexure::files::{Problem, Problems};
 use flexure::robot::Mismatch;
 use pyo3::create_exception;
-use pyo3::exceptions::{PyException, PyKeyboardInterrupt, PyValueError};
+use pyo3::exceptions::{PyException, PyKeyboardInterrupt, PyOSError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
@@ -24,8 +24,18 @@ pub fn raised(py: Python<'_>, problems: &Problems) -> PyErr {
     }
 }
 
+/// An exception of one problem.
+pub fn refused(py: Python<'_>, problem: &Problem) -> PyErr {
+    of(py, &[problem])
+}
+
+/// That a file could not be written.
+pub fn unwritten(error: impl std::error::Error) -> PyErr {
+    PyOSError::new_err(error.to_string())
+}
+
 /// An exception of several problems, at least one.
-pub fn of(py: Python<'_>, problems: &[&Problem]) -> PyErr {
+fn of(py: Python<'_>, problems: &[&Problem]) -> PyErr {
     let text: Vec<_> = problems.iter().map(|problem| words(problem)).collect();
     let error = FlexureError::new_err(text.join("\n"));
     // Where memory is out the text has to do.
@@ -67,7 +77,7 @@ fn words(problem: &Problem) -> String {
 
 /// Warnings by Python's own way to warn.
 pub fn warn(py: Python<'_>, warnings: &[Problem]) -> PyResult<()> {
-    let category = py.get_type::<pyo3::exceptions::PyUserWarning>();
+    let category = py.get_type::<PyUserWarning>();
     for warning in warnings {
         let text = std::ffi::CString::new(words(warning).replace('\0', "\u{fffd}")).unwrap_or_default();
         PyErr::warn(py, &category, &text, 2)?;

@@ -7,8 +7,10 @@ mod arrays;
 mod controller;
 mod documents;
 mod failure;
+mod gains;
 mod held;
-mod results;
+mod logs;
+mod proofs;
 mod robot;
 mod run;
 mod scenario;
@@ -24,9 +26,13 @@ mod _flexure {
     #[pymodule_export]
     use super::failure::FlexureError;
     #[pymodule_export]
+    use super::gains::{compare, tune};
+    #[pymodule_export]
     use super::held::Loop;
     #[pymodule_export]
-    use super::results::{certify, compare, identify, margins, tune, verify};
+    use super::logs::{excite, identify, replay};
+    #[pymodule_export]
+    use super::proofs::{certify, margins, verify};
     #[pymodule_export]
     use super::robot::Robot;
     #[pymodule_export]

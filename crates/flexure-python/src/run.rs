@@ -1,6 +1,6 @@
 //! `simulate`: a scenario from beginning to end.
 
-use flexure::simulate::{Run, exceeded, run};
+use flexure::simulate::{Run, Trace, exceeded, run};
 use numpy::IntoPyArray as _;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
@@ -30,11 +30,7 @@ pub fn simulate<'py>(
     if divergence.is_none() {
         warn(py, &exceeded(&loaded.robot, &trace))?;
     }
-    let (columns, units) = (PyDict::new(py), PyDict::new(py));
-    for column in trace.into_columns() {
-        units.set_item(&column.name, column.unit)?;
-        columns.set_item(&column.name, column.values.into_pyarray(py))?;
-    }
+    let (columns, units) = arrays(py, trace)?;
     let found = PyDict::new(py);
     found.set_item("summary", document(py, &summary)?)?;
     found.set_item("trace", columns)?;
@@ -43,4 +39,14 @@ pub fn simulate<'py>(
     found.set_item("divergence", divergence.map(|divergence| divergence.to_string()))?;
     found.set_item("faults", document(py, &faults)?)?;
     Ok(found)
+}
+
+/// The columns of a trace, and their units, by name.
+pub fn arrays(py: Python<'_>, trace: Trace) -> PyResult<(Bound<'_, PyDict>, Bound<'_, PyDict>)> {
+    let (columns, units) = (PyDict::new(py), PyDict::new(py));
+    for column in trace.into_columns() {
+        units.set_item(&column.name, column.unit)?;
+        columns.set_item(&column.name, column.values.into_pyarray(py))?;
+    }
+    Ok((columns, units))
 }

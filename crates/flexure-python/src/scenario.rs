@@ -180,6 +180,12 @@ impl Scenario {
         document(py, &found.map_err(|problems| raised(py, &problems))?)
     }
 
+    /// What its reference uses of each limit of the robot: dicts, as `usage` of `flexure check --json`.
+    fn usage<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let found = py.detach(|| flexure::feasible::usage(&self.loaded));
+        document(py, &found.map_err(|problems| raised(py, &problems))?)
+    }
+
     fn __repr__(&self) -> String {
         let Loaded { name, robot, duration, control_period, controller, .. } = &*self.loaded;
         format!(

@@ -9,6 +9,7 @@ import threading
 import time
 import warnings
 from pathlib import Path
+from typing import Any
 
 import flexure
 import numpy as np
@@ -17,7 +18,7 @@ import pytest
 SCENARIO = "two-link-tanh-smooth"
 
 
-def command(*arguments: str) -> dict:
+def command(*arguments: str) -> Any:
     """What the command line answers."""
     done = subprocess.run([os.environ["FLEXURE"], *arguments, "--json"], capture_output=True, text=True, check=False)
     assert done.returncode in (0, 1, 3), done.stderr
@@ -76,6 +77,39 @@ class TestSameAsTheCommandLine:
             answer = json.loads(done.stdout)
             assert law.torque(row, 0.5).tolist() == answer["u_m"]
             assert law.command(row, 0.5)["u_m"].tolist() == answer["u_m"]
+
+
+    def test_the_road_from_a_motion_to_numbers(self, tmp_path: Path) -> None:
+        out = tmp_path / "excite.toml"
+        motion = flexure.excite("planar-2r", out, budget=5)
+        assert motion["toml"] == out.read_text() and motion["objections"] == []
+        assert command("run", str(out), "--out", str(tmp_path))["follows"]
+        log = tmp_path / "excite.csv"
+        found = flexure.identify("planar-2r", log)
+        assert timeless({**found, "toml": None}) == timeless({**command("identify", "planar-2r", "--log", str(log)), "toml": None})
+        assert "identified: " in found["toml"]
+        laid = flexure.replay(out, log)
+        answer = command("replay", str(out), "--log", str(log), "--out", str(tmp_path / "replay"))
+        assert laid["joints"] == answer["joints"] and len(laid["trace"]["t"]) > 1000
+
+    def test_usage(self, scenario: flexure.Scenario) -> None:
+        (answer,) = command("check", SCENARIO)
+        assert scenario.usage() == answer["reference"]["usage"]
+        assert scenario.sampled() == answer["sampled"]
+        assert flexure.Robot("panda").table() == command("check", "panda")[0]["robot"]
+
+
+class TestPages:
+    @pytest.mark.parametrize("page", ["docs/python.md", "README.md"])
+    def test_what_is_shown_runs(self, page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        text = (Path(__file__).parents[3] / page).read_text()
+        blocks = [block.split("```")[0] for block in text.split("```python\n")[1:]]
+        blocks = [block for block in blocks if "pandas.read_csv" not in block]
+        assert blocks
+        monkeypatch.chdir(tmp_path)
+        names: dict = {}
+        for block in blocks:
+            exec(block, names)
 
 
 class TestArrays:

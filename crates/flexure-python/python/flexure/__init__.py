@@ -13,7 +13,7 @@ of the traces. Motors are seen from the link side of the gear. Arrays may have a
 """
 
 from ._flexure import Controller, FlexureError, Loop, Robot, Scenario
-from ._jobs import certify, compare, identify, margins, simulate, tune, verify
+from ._jobs import certify, compare, excite, identify, margins, replay, simulate, tune, verify
 from ._motion import Motion, motion, views
 from ._run import Run, Trace
 
@@ -28,9 +28,11 @@ __all__ = [
     "Trace",
     "certify",
     "compare",
+    "excite",
     "identify",
     "margins",
     "motion",
+    "replay",
     "simulate",
     "tune",
     "verify",

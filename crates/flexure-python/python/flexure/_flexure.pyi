@@ -15,8 +15,10 @@ __all__ = [
     "Scenario",
     "certify",
     "compare",
+    "excite",
     "identify",
     "margins",
+    "replay",
     "simulate",
     "tune",
     "verify",
@@ -111,6 +113,7 @@ class Scenario:
     def controller(self) -> Controller: ...
     def open(self) -> Loop: ...
     def sampled(self) -> dict[str, Any] | None: ...
+    def usage(self) -> list[dict[str, Any]]: ...
 
 @final
 class Controller:
@@ -207,5 +210,28 @@ def identify(
     accuracy: float = 0.2,
     out: _Path | None = None,
     allow_outside: bool = False,
+    progress: _Told = None,
+) -> dict[str, Any]: ...
+def excite(
+    robot: _Path,
+    out: _Path,
+    *,
+    duration: float = 20.0,
+    control_period: float = 0.001,
+    posture: Sequence[float] | None = None,
+    link_resolution: float = ...,
+    motor_resolution: float = ...,
+    motor_only: bool = False,
+    budget: int = ...,
+    seed: int = 0,
+    allow_outside: bool = False,
+    progress: _Told = None,
+) -> dict[str, Any]: ...
+def replay(
+    scenario: Scenario,
+    log: _Path,
+    *,
+    columns: str | None = None,
+    horizon: float = ...,
     progress: _Told = None,
 ) -> dict[str, Any]: ...

@@ -169,3 +169,66 @@ def identify(
             progress=told,
         ),
     )
+
+
+def excite(
+    robot: Path,
+    out: Path,
+    *,
+    duration: float = 20.0,
+    control_period: float = 0.001,
+    posture: Sequence[float] | None = None,
+    link_resolution: float | None = None,
+    motor_resolution: float | None = None,
+    motor_only: bool = False,
+    budget: int = 200,
+    seed: int = 0,
+    allow_outside: bool = False,
+    progress: Progress = None,
+) -> dict[str, Any]:
+    """Designs the motion that tells most about a robot's joints, inside all limits, as `flexure excite`; `out` is the scenario file.
+
+    Durations in s, posture in rad, resolutions of encoders in rad on the link side of the gear, 17 bits unless said otherwise.
+    `objections` is not empty if the simulated loop exceeds limits or does not follow.
+    """
+    resolutions = {"link_resolution": link_resolution, "motor_resolution": motor_resolution}
+    given = {name: value for name, value in resolutions.items() if value is not None}
+    return _watched(
+        str(robot),
+        progress,
+        lambda told: _flexure.excite(
+            robot,
+            out,
+            duration=duration,
+            control_period=control_period,
+            posture=posture,
+            motor_only=motor_only,
+            budget=budget,
+            seed=seed,
+            allow_outside=allow_outside,
+            progress=told,
+            **given,
+        ),
+    )
+
+
+def replay(
+    scenario: Scenario | Path,
+    log: Path,
+    *,
+    columns: str | None = None,
+    horizon: float = 0.1,
+    progress: Progress = None,
+) -> dict[str, Any]:
+    """Lays a log over the simulation, as `flexure replay`: residuals joint by joint, and in `trace` what its CSV file has.
+
+    `horizon` is how far predictions run from the log's own motion on, s.
+    """
+    scenario = _scenario(scenario)
+    found = _watched(
+        scenario.name,
+        progress,
+        lambda told: _flexure.replay(scenario, log, columns=columns, horizon=horizon, progress=told),
+    )
+    found["trace"] = Trace(found["trace"], found.pop("units"))
+    return found

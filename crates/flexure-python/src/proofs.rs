@@ -1,0 +1,137 @@
+//! Proofs, certificates and margins: what `certify`, `verify` and `margins` of the command line do. Results are dicts with the keys of
+//! `--json`.
+
+use std::path::PathBuf;
+
+use flexure::files::{Problems, read_text};
+use flexure::prove::question::{Direct, Question, Region, prove_watched};
+use flexure::prove::subject::differences;
+use flexure::prove::summary::ProofSummary;
+use flexure::report::write_certificate;
+use flexure::sampled::probe;
+use flexure::verify::Rejected;
+use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError, PyTypeError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::documents::document;
+use crate::failure::{FlexureError, raised, refused, unwritten};
+use crate::scenario::Scenario;
+use crate::watched::watched;
+
+/// One number, or several.
+#[derive(FromPyObject)]
+pub enum OneOrMore {
+    One(f64),
+    More(Vec<f64>),
+}
+
+impl OneOrMore {
+    fn list(self) -> Vec<f64> {
+        match self {
+            Self::One(x) => vec![x],
+            Self::More(all) => all,
+        }
+    }
+}
+
+/// Proves how fast the closed loop contracts, and where, as `flexure certify`: a dict with the keys of its `--json`, and `certificate`,
+/// its text, or None if nothing was proved. Errors in rad, links then motors, torques in N m, rates in 1/s, speed in rad/s.
+#[pyfunction]
+#[pyo3(signature = (scenario, *, error_box = None, initial_error = None, rate = None, disturbance = None, direct = false, speed = 5.0,
+                    budget = 1000, out = None, progress = None))]
+#[expect(clippy::too_many_arguments, reason = "keywords")]
+pub fn certify<'py>(
+    py: Python<'py>,
+    scenario: &Scenario,
+    error_box: Option<OneOrMore>,
+    initial_error: Option<OneOrMore>,
+    rate: Option<f64>,
+    disturbance: Option<OneOrMore>,
+    direct: bool,
+    speed: f64,
+    budget: usize,
+    out: Option<PathBuf>,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let region = match (error_box, initial_error) {
+        (Some(_), Some(_)) => {
+            return Err(PyTypeError::new_err("error_box or initial_error, not both"));
+        }
+        (Some(largest), None) => Region::Errors(largest.list()),
+        (None, Some(start)) => Region::Start(start.list()),
+        (None, None) => Region::Chosen,
+    };
+    let loaded = scenario.loaded.clone();
+    let direct = direct.then_some(Direct { speed, budget });
+    let question = Question { region, rate, disturbance: disturbance.map(OneOrMore::list), direct }
+        .fitting(&loaded)
+        .map_err(|problem| refused(py, &problem))?;
+    let found = watched(py, progress, |progress| {
+        let proof = prove_watched(&loaded, &question, progress)?;
+        let sampled = probe(&loaded)?;
+        Ok((ProofSummary::new(&loaded, &proof, sampled), proof))
+    })?;
+    let (summary, proof) = found.map_err(|problems: Problems| raised(py, &problems))?;
+    if proof.broken_off {
+        return Err(PyKeyboardInterrupt::new_err(()));
+    }
+    let found = document(py, &summary)?;
+    let certificate = proof.verdict.proved();
+    if let (Some(out), Some(certificate)) = (&out, certificate) {
+        write_certificate(out, certificate).map_err(unwritten)?;
+    }
+    let text = certificate.map(serde_json::to_string_pretty).transpose();
+    found.set_item("certificate", text.map_err(|error| PyRuntimeError::new_err(error.to_string()))?)?;
+    Ok(found)
+}
+
+/// Checks the claims of a certificate, its text or the path of its file, without what made it, as `flexure verify`: a dict. With `against`,
+/// what it has differently from that scenario. Raises FlexureError for a claim that does not hold, and for what is no certificate.
+#[pyfunction]
+#[pyo3(signature = (certificate, *, against = None))]
+pub fn verify<'py>(
+    py: Python<'py>,
+    certificate: PathBuf,
+    against: Option<&Scenario>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let given = certificate.to_string_lossy().into_owned();
+    let text = if given.trim_start().starts_with('{') {
+        given
+    } else {
+        read_text(&certificate, flexure::verify::LARGEST).map_err(|problem| refused(py, &problem))?
+    };
+    let report = py.detach(|| flexure::verify::verify(&text)).map_err(|rejected| {
+        FlexureError::new_err(match rejected {
+            Rejected::False { claim, reason } => format!("{claim} does not hold: {reason}"),
+            Rejected::Malformed { place, reason, .. } => format!("no certificate: {place}: {reason}"),
+        })
+    })?;
+    let found = PyDict::new(py);
+    found.set_item("name", report.name)?;
+    found.set_item("contraction_rate", report.contraction_rate)?;
+    found.set_item("convergence_rate", report.convergence_rate)?;
+    found.set_item("claims", document(py, &report.claims)?)?;
+    found.set_item("about", document(py, &report.about)?)?;
+    found.set_item("assumptions", report.assumptions)?;
+    if let Some(scenario) = against {
+        let found_there = differences(&text, &scenario.loaded).map_err(|problems| raised(py, &problems))?;
+        found.set_item("same", found_there.is_empty())?;
+        found.set_item("differences", document(py, &found_there)?)?;
+    }
+    Ok(found)
+}
+
+/// How much delay, torque gain, stiffness error and noise the loop bears, as `flexure margins`: a dict.
+#[pyfunction]
+#[pyo3(signature = (scenario, *, progress = None))]
+pub fn margins<'py>(
+    py: Python<'py>,
+    scenario: &Scenario,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let loaded = scenario.loaded.clone();
+    let found = watched(py, progress, |progress| flexure::margins::margins(&loaded, progress))?
+        .map_err(|problems| raised(py, &problems))?;
+    if found.broken_off { Err(PyKeyboardInterrupt::new_err(())) } else { document(py, &found) }
+}
