@@ -73,14 +73,45 @@ impl<'py> Numbers<'py> {
         )))
     }
 
+    /// All axes.
+    pub fn axes(&self) -> &[usize] {
+        self.array.shape()
+    }
+
     /// All numbers, one after the other.
     pub fn slice(&self) -> PyResult<&[f64]> {
         Ok(self.array.as_slice()?)
     }
 }
 
+/// Times in s: one for all, or one for each of a batch.
+pub enum Times<'py> {
+    /// One.
+    All(f64),
+    /// One for each.
+    Each(Numbers<'py>),
+}
+
+impl<'py> Times<'py> {
+    /// What `given` is, as the argument t.
+    pub fn new(given: &Bound<'py, PyAny>) -> PyResult<Self> {
+        match given.extract() {
+            Ok(t) => Ok(Self::All(t)),
+            Err(_) => Ok(Self::Each(Numbers::new("t", given)?)),
+        }
+    }
+
+    /// Its own axes.
+    pub fn axes(&self) -> &[usize] {
+        match self {
+            Self::All(_) => &[],
+            Self::Each(numbers) => numbers.axes(),
+        }
+    }
+}
+
 /// A shape as Python writes it.
-fn shape(axes: &[usize]) -> String {
+pub fn shape(axes: &[usize]) -> String {
     let numbers: Vec<_> = axes.iter().map(ToString::to_string).collect();
     if let [one] = &*numbers { format!("({one},)") } else { format!("({})", numbers.join(", ")) }
 }

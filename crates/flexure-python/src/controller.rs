@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use flexure::scenario::Scenario as Loaded;
 use numpy::PyArrayDyn;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arrays::{Numbers, shaped, vector};
+use crate::arrays::{Numbers, Times, shape, shaped, vector};
 use crate::failure::{mismatch, raised};
 use crate::robot::MOTION;
 
@@ -41,23 +42,34 @@ impl Controller {
         self.held.joints()
     }
 
-    /// Motor torque, N m, at motions x and time t in s: (…, 4n) → (…, n).
+    /// Motor torque, N m, at motions x and times t in s, one or one for each motion: (…, 4n) → (…, n).
     fn torque<'py>(
         &self,
         py: Python<'py>,
         x: &Bound<'py, PyAny>,
-        t: f64,
+        t: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let n = self.held.joints();
         let numbers = Numbers::new("x", x)?;
         let batch = numbers.batch(4 * n, MOTION)?;
         let motions = numbers.slice()?;
         let mut u_m = vec![0.0; motions.len() / 4];
-        if batch.is_empty() {
-            self.held.torque(t, motions, &mut u_m).map_err(mismatch)?;
-        } else {
-            py.detach(|| self.held.torque(t, motions, &mut u_m)).map_err(mismatch)?;
+        match Times::new(t)? {
+            Times::All(t) if batch.is_empty() => self.held.torque(t, motions, &mut u_m),
+            Times::All(t) => py.detach(|| self.held.torque(t, motions, &mut u_m)),
+            Times::Each(times) if times.axes() == batch => {
+                let times = times.slice()?;
+                let rows = motions.chunks_exact(4 * n).zip(u_m.chunks_exact_mut(n));
+                py.detach(|| rows.zip(times).try_for_each(|((x, u_m), &t)| self.held.torque(t, x, u_m)))
+            }
+            Times::Each(times) => {
+                let (own, expected) = (shape(times.axes()), shape(&batch));
+                return Err(PyValueError::new_err(format!(
+                    "t: shape {own}; expected one time, or {expected}, one for each motion"
+                )));
+            }
         }
+        .map_err(mismatch)?;
         shaped(py, u_m, &batch, &[n])
     }
 
@@ -89,15 +101,25 @@ impl Controller {
         Ok(document)
     }
 
-    /// The reference at the time t in s: positions and their first four derivatives, (5, n).
-    fn reference<'py>(&self, py: Python<'py>, t: f64) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    /// The reference at times t in s, positions and their first four derivatives: (…) → (…, 5, n).
+    fn reference<'py>(
+        &self,
+        py: Python<'py>,
+        t: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let n = self.held.joints();
-        let mut series = vec![[0.0; 5]; n];
-        self.held.reference(t, &mut series).map_err(mismatch)?;
+        let times = Times::new(t)?;
+        let all = match &times {
+            Times::All(t) => std::slice::from_ref(t),
+            Times::Each(numbers) => numbers.slice()?,
+        };
         let factorials = [1.0, 1.0, 2.0, 6.0, 24.0];
-        let derivatives =
-            (0..5).flat_map(|k| series.iter().map(move |joint| joint[k] * factorials[k])).collect();
-        shaped(py, derivatives, &[], &[5, n])
+        let (mut series, mut found) = (vec![[0.0; 5]; n], Vec::with_capacity(all.len() * 5 * n));
+        for &t in all {
+            self.held.reference(t, &mut series).map_err(mismatch)?;
+            found.extend((0..5).flat_map(|k| series.iter().map(move |joint| joint[k] * factorials[k])));
+        }
+        shaped(py, found, times.axes(), &[5, n])
     }
 
     /// Slopes of the torque over the motion, by dual numbers, exact: du_m/dx at one motion, (4n,) → (n, 4n).
@@ -139,5 +161,5 @@ fn one(batch: &[usize]) -> PyResult<()> {
     if batch.is_empty() {
         return Ok(());
     }
-    Err(pyo3::exceptions::PyValueError::new_err("x: one motion is meant here, of shape (4n,), not a batch"))
+    Err(PyValueError::new_err("x: one motion is meant here, of shape (4n,), not a batch"))
 }

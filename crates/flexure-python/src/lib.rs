@@ -10,6 +10,7 @@ mod failure;
 mod gains;
 mod held;
 mod logs;
+mod plant;
 mod proofs;
 mod robot;
 mod run;
@@ -31,6 +32,8 @@ mod _flexure {
     use super::held::Loop;
     #[pymodule_export]
     use super::logs::{excite, identify, replay};
+    #[pymodule_export]
+    use super::plant::Plant;
     #[pymodule_export]
     use super::proofs::{certify, margins, verify};
     #[pymodule_export]

@@ -131,6 +131,12 @@ class TestArrays:
             ]:
                 np.testing.assert_array_equal(all_[i], one)
         assert law.torque(np.zeros((0, 8)), 0.0).shape == (0, 2)
+        times = np.linspace(0.0, 1.0, 6).reshape(2, 3)
+        for i in np.ndindex(2, 3):
+            np.testing.assert_array_equal(law.torque(x, times)[i], law.torque(x[i], times[i]))
+            np.testing.assert_array_equal(law.reference(times)[i], law.reference(times[i]))
+        with pytest.raises(ValueError, match=r"t: shape \(3,\); expected one time, or \(2, 3\)"):
+            law.torque(x, np.zeros(3))
 
     def test_whatever_numpy_makes_numbers_of(self, scenario: flexure.Scenario) -> None:
         law = scenario.controller()

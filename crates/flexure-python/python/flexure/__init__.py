@@ -12,7 +12,7 @@ of the traces. Motors are seen from the link side of the gear. Arrays may have a
     'proved'
 """
 
-from ._flexure import Controller, FlexureError, Loop, Robot, Scenario
+from ._flexure import Controller, FlexureError, Loop, Plant, Robot, Scenario
 from ._jobs import certify, compare, excite, identify, margins, replay, simulate, tune, verify
 from ._motion import Motion, motion, views
 from ._run import Run, Trace
@@ -22,6 +22,7 @@ __all__ = [
     "FlexureError",
     "Loop",
     "Motion",
+    "Plant",
     "Robot",
     "Run",
     "Scenario",

@@ -11,6 +11,7 @@ __all__ = [
     "Controller",
     "FlexureError",
     "Loop",
+    "Plant",
     "Robot",
     "Scenario",
     "certify",
@@ -122,12 +123,12 @@ class Controller:
     def __new__(cls, scenario: Scenario) -> Controller: ...
     @property
     def joints(self) -> int: ...
-    def torque(self, x: ArrayLike, t: float) -> _Array:
-        """(…, 4n), s → (…, n), N m"""
+    def torque(self, x: ArrayLike, t: ArrayLike) -> _Array:
+        """(…, 4n), one time or (…), s → (…, n), N m"""
     def command(self, x: ArrayLike, t: float) -> dict[str, Any]:
         """(4n,), s → what the law computes on the way, (n,) each, and energy, J"""
-    def reference(self, t: float) -> _Array:
-        """s → (5, n): positions, rad, and four derivatives"""
+    def reference(self, t: ArrayLike) -> _Array:
+        """(…), s → (…, 5, n): positions, rad, and four derivatives"""
     def jacobian(self, x: ArrayLike, t: float) -> _Array:
         """(4n,), s → (n, 4n): ∂u_m/∂x, exact"""
     def linearise(self, x: ArrayLike, u_m: ArrayLike) -> tuple[_Array, _Array]:
@@ -165,6 +166,21 @@ class Loop:
     def state(self) -> _Array: ...
     def restore(self, state: ArrayLike) -> None: ...
     def reset(self, seed: int) -> None: ...
+
+@final
+class Plant:
+    """The robot that a scenario simulates, driven by torques of the caller; no sensors, no controller, no torque limit."""
+
+    def __new__(cls, scenario: Scenario) -> Plant: ...
+    @property
+    def joints(self) -> int: ...
+    @property
+    def period(self) -> float:
+        """s"""
+    @property
+    def scenario(self) -> Scenario: ...
+    def roll(self, x: ArrayLike, u_m: ArrayLike, *, first: ArrayLike | None = None, period: float | None = None) -> _Array:
+        """(…, 4n), (…, T, n), N m, each held for a period → (…, T, 4n)"""
 
 def simulate(scenario: Scenario, *, progress: _Told = None) -> dict[str, Any]: ...
 def certify(
