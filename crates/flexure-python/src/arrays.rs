@@ -7,9 +7,9 @@ use numpy::{
     IntoPyArray as _, PyArray1, PyArrayDyn, PyArrayMethods as _, PyReadonlyArrayDyn,
     PyUntypedArrayMethods as _,
 };
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::{PyMemoryError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::PyTuple;
 
 /// An argument that holds arrays.
 pub struct Numbers<'py> {
@@ -20,17 +20,27 @@ pub struct Numbers<'py> {
 impl<'py> Numbers<'py> {
     /// `given` as numbers; `name` stands for it in messages.
     pub fn new(name: &'static str, given: &Bound<'py, PyAny>) -> PyResult<Self> {
-        if let Ok(array) = given.extract::<PyReadonlyArrayDyn<'py, f64>>()
+        // Subclasses may mean something else by their numbers, as masked arrays do.
+        if let Ok(array) = given.cast_exact::<PyArrayDyn<f64>>()
+            && let Ok(array) = array.try_readonly()
             && array.is_c_contiguous()
+            && array.as_slice().is_ok()
         {
             return Ok(Self { array, name });
         }
         let py = given.py();
         let numpy = py.import("numpy")?;
         let refused = |error: PyErr| {
+            // Anything else, as memory that is out, is no matter of its type.
+            if !(error.is_instance_of::<PyTypeError>(py) || error.is_instance_of::<PyValueError>(py)) {
+                return error;
+            }
             let what = given.get_type().name().map_or_else(|_| "?".to_owned(), |name| name.to_string());
             PyTypeError::new_err(format!("{name}: {what} is no array of real numbers: {}", error.value(py)))
         };
+        if given.hasattr("mask")? && given.is_instance(&numpy.getattr("ma")?.getattr("MaskedArray")?)? {
+            return Err(PyTypeError::new_err(format!("{name}: a masked array; fill what is masked")));
+        }
         let any = numpy.call_method1("asarray", (given,)).map_err(refused)?;
         let kind: String = any.getattr("dtype")?.getattr("kind")?.extract()?;
         if !["b", "i", "u", "f"].contains(&&*kind) {
@@ -39,10 +49,7 @@ impl<'py> Numbers<'py> {
                 "{name}: numbers of type {dtype}; expected real numbers, as float64"
             )));
         }
-        let options = PyDict::new(py);
-        options.set_item("dtype", "float64")?;
-        options.set_item("order", "C")?;
-        let copied = numpy.call_method("asarray", (any,), Some(&options)).map_err(refused)?;
+        let copied = numpy.call_method1("require", (any, "float64", ["C", "A"])).map_err(refused)?;
         Ok(Self { array: copied.extract()?, name })
     }
 
@@ -60,17 +67,17 @@ impl<'py> Numbers<'py> {
 
     /// As [`Self::batch`], if it is as `batch`.
     pub fn beside(&self, batch: &[usize], count: usize, meaning: &str) -> PyResult<()> {
-        let own = self.batch(count, meaning)?;
-        if own == batch {
+        if self.batch(count, meaning)? == batch {
             return Ok(());
         }
         let expected: Vec<_> = batch.iter().copied().chain([count]).collect();
-        Err(PyValueError::new_err(format!(
-            "{}: shape {}; expected {} as the arrays before it, = {meaning}",
-            self.name,
-            shape(self.array.shape()),
-            shape(&expected)
-        )))
+        Err(self.unexpected(&expected))
+    }
+
+    /// That its shape is not as `expected`.
+    pub fn unexpected(&self, expected: &[usize]) -> PyErr {
+        let (own, expected) = (shape(self.axes()), shape(expected));
+        PyValueError::new_err(format!("{}: shape {own}; expected {expected}", self.name))
     }
 
     /// All axes.
@@ -82,6 +89,56 @@ impl<'py> Numbers<'py> {
     pub fn slice(&self) -> PyResult<&[f64]> {
         Ok(self.array.as_slice()?)
     }
+}
+
+/// An argument with its name, how many numbers its last axis has, and what they mean.
+pub type Argument<'a, 'py> = (&'static str, &'a Bound<'py, PyAny>, usize, &'a str);
+
+/// Arguments whose axes before the last one are broadcast to the same batch, by NumPy's rules.
+pub fn together<'py>(
+    py: Python<'py>,
+    arguments: &[Argument<'_, 'py>],
+) -> PyResult<(Vec<Numbers<'py>>, Vec<usize>)> {
+    let mut read: Vec<Numbers<'py>> =
+        arguments.iter().map(|(name, given, ..)| Numbers::new(name, given)).collect::<PyResult<_>>()?;
+    let batches: Vec<Vec<usize>> = read
+        .iter()
+        .zip(arguments)
+        .map(|(numbers, (_, _, count, meaning))| numbers.batch(*count, meaning))
+        .collect::<PyResult<_>>()?;
+    if batches.iter().all(|batch| *batch == batches[0]) {
+        return Ok((read, batches.into_iter().next().unwrap_or_default()));
+    }
+    let numpy = py.import("numpy")?;
+    let shapes = batches.iter().map(|batch| PyTuple::new(py, batch)).collect::<PyResult<Vec<_>>>()?;
+    let common = numpy.call_method1("broadcast_shapes", PyTuple::new(py, shapes)?).map_err(|_| {
+        let shapes: Vec<_> =
+            read.iter().map(|numbers| format!("{} {}", numbers.name, shape(numbers.axes()))).collect();
+        PyValueError::new_err(format!(
+            "shapes do not fit: {}; axes before the last are a batch",
+            shapes.join(", ")
+        ))
+    })?;
+    let batch: Vec<usize> = common.extract()?;
+    for (numbers, (name, _, count, _)) in read.iter_mut().zip(arguments) {
+        let axes = PyTuple::new(py, [&*batch, &[*count]].concat())?;
+        let wide = numpy.call_method1("broadcast_to", (&*numbers.array, axes))?;
+        *numbers = Numbers::new(name, &wide)?;
+    }
+    Ok((read, batch))
+}
+
+/// So many zeros.
+///
+/// # Errors
+/// `MemoryError`.
+pub fn zeros(count: usize) -> PyResult<Vec<f64>> {
+    let mut zeros = Vec::new();
+    zeros
+        .try_reserve_exact(count)
+        .map_err(|_| PyMemoryError::new_err(format!("no memory for {count} numbers")))?;
+    zeros.resize(count, 0.0);
+    Ok(zeros)
 }
 
 /// Times in s: one for all, or one for each of a batch.
@@ -133,4 +190,11 @@ pub fn shaped<'py>(
 /// `numbers` as an array with one axis.
 pub fn vector<'py>(py: Python<'py>, numbers: &[f64]) -> Bound<'py, PyArrayDyn<f64>> {
     PyArray1::from_slice(py, numbers).to_dyn().clone()
+}
+
+/// `numbers` as an array that is not to be written to.
+pub fn constant<'py>(py: Python<'py>, numbers: &[f64]) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let array = vector(py, numbers);
+    array.call_method1("setflags", (false,))?;
+    Ok(array)
 }

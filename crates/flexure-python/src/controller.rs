@@ -1,16 +1,15 @@
 //! The law of a scenario by itself.
 
-use std::sync::Arc;
-
-use flexure::scenario::Scenario as Loaded;
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arrays::{Numbers, Times, shape, shaped, vector};
+use crate::arrays::{Numbers, Times, shape, shaped, vector, zeros};
 use crate::failure::{mismatch, raised};
+use crate::own_law::derivatives;
 use crate::robot::MOTION;
+use crate::scenario::{Scenario, given};
 
 /// The law of a scenario: what it asks of the motors of a robot that moves as x, (q_l, q_m, dq_l, dq_m), at the time t. It sees the
 /// motion as it is; nothing is remembered.
@@ -18,22 +17,29 @@ use crate::robot::MOTION;
 pub struct Controller {
     held: Box<dyn flexure::Loop>,
     linear: flexure::sampled::Linearised,
-    name: String,
+    scenario: Py<Scenario>,
 }
 
 impl Controller {
-    pub fn open(py: Python<'_>, loaded: &Arc<Loaded>) -> PyResult<Self> {
-        let open = || Ok((loaded.open()?, flexure::sampled::Linearised::of(loaded)?));
+    pub fn open(py: Python<'_>, scenario: Py<Scenario>) -> PyResult<Self> {
+        let loaded = scenario.get().loaded.clone();
+        let open = || Ok((loaded.open()?, flexure::sampled::Linearised::of(&loaded)?));
         let (held, linear) = py.detach(open).map_err(|problems: flexure::Problems| raised(py, &problems))?;
-        Ok(Self { held, linear, name: loaded.name.clone() })
+        Ok(Self { held, linear, scenario })
     }
 }
 
 #[pymethods]
 impl Controller {
     #[new]
-    fn new(py: Python<'_>, scenario: &crate::scenario::Scenario) -> PyResult<Self> {
-        Self::open(py, &scenario.loaded)
+    fn new(scenario: &Bound<'_, PyAny>) -> PyResult<Self> {
+        Self::open(scenario.py(), given(scenario)?)
+    }
+
+    /// The scenario whose law it is.
+    #[getter]
+    fn scenario(&self, py: Python<'_>) -> Py<Scenario> {
+        self.scenario.clone_ref(py)
     }
 
     /// Number of joints n.
@@ -53,7 +59,7 @@ impl Controller {
         let numbers = Numbers::new("x", x)?;
         let batch = numbers.batch(4 * n, MOTION)?;
         let motions = numbers.slice()?;
-        let mut u_m = vec![0.0; motions.len() / 4];
+        let mut u_m = zeros(motions.len() / 4)?;
         match Times::new(t)? {
             Times::All(t) if batch.is_empty() => self.held.torque(t, motions, &mut u_m),
             Times::All(t) => py.detach(|| self.held.torque(t, motions, &mut u_m)),
@@ -113,11 +119,10 @@ impl Controller {
             Times::All(t) => std::slice::from_ref(t),
             Times::Each(numbers) => numbers.slice()?,
         };
-        let factorials = [1.0, 1.0, 2.0, 6.0, 24.0];
         let (mut series, mut found) = (vec![[0.0; 5]; n], Vec::with_capacity(all.len() * 5 * n));
         for &t in all {
             self.held.reference(t, &mut series).map_err(mismatch)?;
-            found.extend((0..5).flat_map(|k| series.iter().map(move |joint| joint[k] * factorials[k])));
+            found.extend(derivatives(&series));
         }
         shaped(py, found, times.axes(), &[5, n])
     }
@@ -152,7 +157,11 @@ impl Controller {
     }
 
     fn __repr__(&self) -> String {
-        format!("Controller({}: {} joints)", self.name, self.held.joints())
+        format!("Controller({}: {} joints)", self.scenario.get().loaded.name, self.held.joints())
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyAny>, (Py<Scenario>,)) {
+        (slf.get_type().into_any(), (slf.get().scenario(slf.py()),))
     }
 }
 

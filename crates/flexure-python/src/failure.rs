@@ -24,6 +24,29 @@ pub fn raised(py: Python<'_>, problems: &Problems) -> PyErr {
     }
 }
 
+create_exception!(flexure, FlexureWarning, PyUserWarning, "What is suspicious in a file, a log or a run.");
+
+/// An exception of what no problem of the library says, with its code, message and hint.
+pub fn said(py: Python<'_>, code: &str, message: &str, hint: &str) -> PyErr {
+    let error = FlexureError::new_err(hinted(message, hint));
+    let document = || {
+        let document = PyDict::new(py);
+        document.set_item("code", code)?;
+        document.set_item("message", message)?;
+        document.set_item("hint", hint)?;
+        ["file", "line", "column"].into_iter().try_for_each(|key| document.set_item(key, py.None()))?;
+        error.value(py).setattr("problems", PyList::new(py, [document])?)
+    };
+    // Where memory is out the text has to do.
+    let _ = document();
+    error
+}
+
+/// A message and its hint.
+fn hinted(message: &str, hint: &str) -> String {
+    if hint.is_empty() { message.to_owned() } else { format!("{message}\n  help: {hint}") }
+}
+
 /// An exception of one problem.
 pub fn refused(py: Python<'_>, problem: &Problem) -> PyErr {
     of(py, &[problem])
@@ -70,20 +93,21 @@ fn words(problem: &Problem) -> String {
         (Some(file), Some((line, column))) => format!("{file}:{line}:{column}: "),
         _ => String::new(),
     };
-    let hint =
-        if problem.hint().is_empty() { String::new() } else { format!("\n  help: {}", problem.hint()) };
-    format!("{place}{problem}{hint}")
+    format!("{place}{}", hinted(&problem.to_string(), problem.hint()))
 }
 
-/// Warnings by Python's own way to warn.
-pub fn warn(py: Python<'_>, warnings: &[Problem]) -> PyResult<()> {
-    let category = py.get_type::<PyUserWarning>();
+/// Warnings by Python's own way to warn, at the place that is `level` frames up.
+pub fn warn(py: Python<'_>, warnings: &[Problem], level: i32) -> PyResult<()> {
+    let category = py.get_type::<FlexureWarning>();
     for warning in warnings {
         let text = std::ffi::CString::new(words(warning).replace('\0', "\u{fffd}")).unwrap_or_default();
-        PyErr::warn(py, &category, &text, 2)?;
+        PyErr::warn(py, &category, &text, level)?;
     }
     Ok(())
 }
+
+/// Frames from the function of the module to who called the one around it: `_jobs.py` has two between.
+pub const OF_JOBS: i32 = 4;
 
 /// Slices of a wrong length, where shapes were looked at before: never.
 pub fn mismatch(mismatch: Mismatch) -> PyErr {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use flexure::compare::{Search, Task, check_budget, check_seeds, entrants, tasks};
 use flexure::design::{SpecFile, Specified, design, spare_out};
-use flexure::files::{Problems, Reading, write_atomic};
+use flexure::files::{Problems, Reading, folder_of, prepare, write_atomic};
 use flexure::progress::Parts;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
@@ -28,6 +28,9 @@ pub fn tune<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     check_budget(budget).map_err(|problem| refused(py, &problem))?;
+    if let Some(out) = &out {
+        prepare(folder_of(out)).map_err(unwritten)?;
+    }
     let inputs: Vec<&Path> =
         std::iter::once(Path::new(&*scenario.source.path_or_name)).chain(spec.as_deref()).collect();
     let prepared = || {

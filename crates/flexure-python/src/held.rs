@@ -3,27 +3,43 @@
 use std::sync::{Mutex, PoisonError};
 
 use numpy::PyArrayDyn;
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arrays::{Numbers, shaped, vector};
-use crate::failure::{mismatch, raised};
+use crate::arrays::{Numbers, shaped, together, vector, zeros};
+use crate::failure::{self, mismatch, said};
+use crate::own_law::{Raised, own_law};
 use crate::robot::MOTION;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, given};
 
 /// The closed loop of a scenario, moved from one control instant to the next.
 #[pyclass(frozen, module = "flexure")]
 pub struct Loop {
     held: Mutex<Box<dyn flexure::Loop>>,
     scenario: Py<Scenario>,
+    /// What a law in Python raised; none for that of the scenario.
+    raised: Option<Raised>,
 }
 
 impl Loop {
-    pub fn open(py: Python<'_>, scenario: Py<Scenario>) -> PyResult<Self> {
+    pub fn open(py: Python<'_>, scenario: Py<Scenario>, law: Option<Py<PyAny>>) -> PyResult<Self> {
         let loaded = scenario.get().loaded.clone();
-        let held = py.detach(|| loaded.open()).map_err(|problems| raised(py, &problems))?;
-        Ok(Self { held: Mutex::new(held), scenario })
+        let (law, raised) = law.map(own_law).unzip();
+        let open = || match law {
+            None => loaded.open(),
+            Some(law) => loaded.open_with(law),
+        };
+        let held = py.detach(open).map_err(|problems| failure::raised(py, &problems))?;
+        Ok(Self { held: Mutex::new(held), scenario, raised })
+    }
+
+    /// What the law in Python raised, else `result`.
+    fn unraised<T>(&self, result: PyResult<T>) -> PyResult<T> {
+        match &self.raised {
+            None => result,
+            Some(raised) => raised.first(result),
+        }
     }
 
     fn with<T>(&self, py: Python<'_>, what: impl FnOnce(&mut dyn flexure::Loop) -> T + Send) -> T
@@ -37,8 +53,9 @@ impl Loop {
 #[pymethods]
 impl Loop {
     #[new]
-    fn new(py: Python<'_>, scenario: Py<Scenario>) -> PyResult<Self> {
-        Self::open(py, scenario)
+    #[pyo3(signature = (scenario, *, law = None))]
+    fn new(scenario: &Bound<'_, PyAny>, law: Option<Py<PyAny>>) -> PyResult<Self> {
+        Self::open(scenario.py(), given(scenario)?, law)
     }
 
     /// The scenario that it was opened from.
@@ -83,8 +100,10 @@ impl Loop {
         let mut left = count;
         while left > 0 {
             let now = left.min(AT_ONCE);
-            self.with(py, |held| (0..now).try_for_each(|_| held.step()))
-                .map_err(|divergence| crate::failure::FlexureError::new_err(divergence.to_string()))?;
+            let stepped = self
+                .with(py, |held| (0..now).try_for_each(|_| held.step()))
+                .map_err(|divergence| said(py, "diverged", &divergence.to_string(), ""));
+            self.unraised(stepped)?;
             left -= now;
             py.check_signals()?;
         }
@@ -135,11 +154,11 @@ impl Loop {
         u_m: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let n = self.joints(py);
-        let (x, u_m) = (Numbers::new("x", x)?, Numbers::new("u_m", u_m)?);
-        let batch = x.batch(4 * n, MOTION)?;
-        u_m.beside(&batch, n, "u_m, a number per joint")?;
+        let arguments = [("x", x, 4 * n, MOTION), ("u_m", u_m, n, "u_m, a number per joint")];
+        let (read, batch) = together(py, &arguments)?;
+        let [x, u_m] = [&read[0], &read[1]];
         let (motions, torques) = (x.slice()?, u_m.slice()?);
-        let mut rates = vec![0.0; motions.len()];
+        let mut rates = zeros(motions.len())?;
         self.with(py, |held| {
             let rows = motions.chunks_exact(4 * n).zip(torques.chunks_exact(n));
             rows.zip(rates.chunks_exact_mut(4 * n))
@@ -157,6 +176,9 @@ impl Loop {
     /// Goes on from a state of this loop, or of another one of the same scenario.
     fn restore(&self, py: Python<'_>, state: &Bound<'_, PyAny>) -> PyResult<()> {
         let numbers = Numbers::new("state", state)?;
+        if numbers.axes().len() != 1 {
+            return Err(numbers.unexpected(&[self.with(py, |held| held.state().len())]));
+        }
         let state = numbers.slice()?;
         self.with(py, |held| held.restore(state)).map_err(|unfit| PyValueError::new_err(unfit.to_string()))
     }
@@ -173,13 +195,18 @@ impl Loop {
     /// Scenario and state: bit for bit the loop that it was.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
         let py = slf.py();
+        if slf.get().raised.is_some() {
+            return Err(PyTypeError::new_err(
+                "a loop with a law in Python: pickle its scenario and its state",
+            ));
+        }
         let arguments = (slf.get().scenario(py), slf.get().state(py));
         PyTuple::new(py, [slf.get_type().getattr("_again")?, arguments.into_pyobject(py)?.into_any()])
     }
 
     #[staticmethod]
     fn _again(py: Python<'_>, scenario: Py<Scenario>, state: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let again = Self::open(py, scenario)?;
+        let again = Self::open(py, scenario, None)?;
         again.restore(py, state)?;
         Ok(again)
     }

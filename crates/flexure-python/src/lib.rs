@@ -4,12 +4,14 @@
 #![allow(clippy::needless_pass_by_value, reason = "arguments come from Python as values")]
 
 mod arrays;
+mod changes;
 mod controller;
 mod documents;
 mod failure;
 mod gains;
 mod held;
 mod logs;
+mod own_law;
 mod plant;
 mod proofs;
 mod robot;
@@ -25,7 +27,7 @@ mod _flexure {
     #[pymodule_export]
     use super::controller::Controller;
     #[pymodule_export]
-    use super::failure::FlexureError;
+    use super::failure::{FlexureError, FlexureWarning};
     #[pymodule_export]
     use super::gains::{compare, tune};
     #[pymodule_export]
@@ -42,4 +44,11 @@ mod _flexure {
     use super::run::simulate;
     #[pymodule_export]
     use super::scenario::Scenario;
+    #[pymodule_export]
+    use super::watched::panic;
+
+    /// The version of the package.
+    #[pymodule_export]
+    #[expect(non_upper_case_globals, reason = "its name in Python")]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
 }

@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 
 use flexure::excite::{Settings as Motion, excite as designed, spare_out};
-use flexure::files::{Problem, Problems, write_atomic};
+use flexure::files::{Problem, Problems, folder_of, prepare, write_atomic};
 use flexure::identify::{RobotFile, Settings};
 use flexure::logs::{Columns, Log, read_log};
 use flexure::robot::Robot;
 use pyo3::prelude::*;
 
 use crate::documents::document;
-use crate::failure::{documents, raised, refused, unwritten, warn};
+use crate::failure::{OF_JOBS, documents, raised, refused, unwritten, warn};
 use crate::run::arrays;
 use crate::scenario::{Scenario, outside};
 use crate::watched::watched;
@@ -33,6 +33,9 @@ pub fn identify<'py>(
     allow_outside: bool,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    if let Some(out) = &out {
+        prepare(folder_of(out)).map_err(unwritten)?;
+    }
     let mut warnings = Vec::new();
     let mut prepared = || {
         let file = RobotFile::load(&robot.to_string_lossy(), outside(allow_outside))?;
@@ -43,8 +46,8 @@ pub fn identify<'py>(
         Ok((file, read))
     };
     let (file, read) = prepared().map_err(|problems: Problems| raised(py, &problems))?;
-    warn(py, &file.robot.warnings)?;
-    warn(py, &warnings)?;
+    warn(py, &file.robot.warnings, OF_JOBS)?;
+    warn(py, &warnings, OF_JOBS)?;
     let settings = Settings { hold_out, accuracy, gaps: file.gaps.clone() };
     let found = watched(py, progress, |progress| {
         flexure::identify::identify(&file.robot, &read, &settings, progress)
@@ -121,6 +124,7 @@ pub fn excite<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let robot = robot.to_string_lossy().into_owned();
     spare_out(&out, &robot).map_err(|problem| refused(py, &problem))?;
+    prepare(folder_of(&out)).map_err(unwritten)?;
     let link_resolution = (!motor_only).then_some(link_resolution);
     let settings =
         Motion { duration, control_period, budget, seed, posture, link_resolution, motor_resolution };
@@ -150,11 +154,11 @@ pub fn replay<'py>(
     let mut warnings = Vec::new();
     let logs = read(&[log], columns.as_deref(), false, &loaded.robot, &mut warnings)
         .map_err(|problems| raised(py, &problems))?;
-    warn(py, &warnings)?;
+    warn(py, &warnings, OF_JOBS)?;
     let found =
         watched(py, progress, |progress| flexure::replay::replay(&loaded, &logs[0], horizon, progress))?
             .map_err(|problems| raised(py, &problems))?;
-    warn(py, &found.warnings)?;
+    warn(py, &found.warnings, OF_JOBS)?;
     let answer = document(py, &found)?;
     let (trace, units) = arrays(py, found.trace)?;
     answer.set_item("trace", trace)?;

@@ -8,10 +8,10 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
-use crate::arrays::{Numbers, shape, shaped};
+use crate::arrays::{Numbers, shape, shaped, zeros};
 use crate::failure::{mismatch, raised};
 use crate::robot::MOTION;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, given};
 
 /// The robot that a scenario simulates, driven by torques of the caller: friction, coupled rotors, springs that are not linear, torque
 /// constants that are off and pushes included; no sensors, no controller, no torque limit.
@@ -25,7 +25,8 @@ pub struct Plant {
 #[pymethods]
 impl Plant {
     #[new]
-    fn new(py: Python<'_>, scenario: Py<Scenario>) -> PyResult<Self> {
+    fn new(scenario: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let (py, scenario) = (scenario.py(), given(scenario)?);
         let loaded = Arc::clone(&scenario.get().loaded);
         let driven = loaded.driven().map_err(|problems| raised(py, &problems))?;
         Ok(Self { driven, scenario, period: loaded.control_period })
@@ -77,7 +78,7 @@ impl Plant {
         }
         let (starts, torques) = (x.slice()?, u_m.slice()?);
         let firsts = Self::firsts(first, &batch)?;
-        let mut found = vec![0.0; batch.iter().product::<usize>() * periods * 4 * n];
+        let mut found = zeros((batch.iter().product::<usize>() * periods).saturating_mul(4 * n))?;
         if !found.is_empty() {
             py.detach(|| {
                 let rows =

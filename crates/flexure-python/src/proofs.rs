@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use flexure::files::{Problems, read_text};
+use flexure::files::{Problems, folder_of, prepare, read_text, spare};
 use flexure::prove::question::{Direct, Question, Region, prove_watched};
 use flexure::prove::subject::differences;
 use flexure::prove::summary::ProofSummary;
@@ -14,25 +14,15 @@ use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::arrays::Numbers;
 use crate::documents::document;
-use crate::failure::{FlexureError, raised, refused, unwritten};
+use crate::failure::{raised, refused, said, unwritten};
 use crate::scenario::Scenario;
 use crate::watched::watched;
 
-/// One number, or several.
-#[derive(FromPyObject)]
-pub enum OneOrMore {
-    One(f64),
-    More(Vec<f64>),
-}
-
-impl OneOrMore {
-    fn list(self) -> Vec<f64> {
-        match self {
-            Self::One(x) => vec![x],
-            Self::More(all) => all,
-        }
-    }
+/// An argument of one number, or of several.
+fn list(name: &'static str, given: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Vec<f64>>> {
+    given.map(|given| Ok(Numbers::new(name, given)?.slice()?.to_vec())).transpose()
 }
 
 /// Proves how fast the closed loop contracts, and where, as `flexure certify`: a dict with the keys of its `--json`, and `certificate`,
@@ -44,27 +34,33 @@ impl OneOrMore {
 pub fn certify<'py>(
     py: Python<'py>,
     scenario: &Scenario,
-    error_box: Option<OneOrMore>,
-    initial_error: Option<OneOrMore>,
+    error_box: Option<&Bound<'py, PyAny>>,
+    initial_error: Option<&Bound<'py, PyAny>>,
     rate: Option<f64>,
-    disturbance: Option<OneOrMore>,
+    disturbance: Option<&Bound<'py, PyAny>>,
     direct: bool,
     speed: f64,
     budget: usize,
     out: Option<PathBuf>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let region = match (error_box, initial_error) {
+    let region = match (list("error_box", error_box)?, list("initial_error", initial_error)?) {
         (Some(_), Some(_)) => {
             return Err(PyTypeError::new_err("error_box or initial_error, not both"));
         }
-        (Some(largest), None) => Region::Errors(largest.list()),
-        (None, Some(start)) => Region::Start(start.list()),
+        (Some(largest), None) => Region::Errors(largest),
+        (None, Some(start)) => Region::Start(start),
         (None, None) => Region::Chosen,
     };
+    if let Some(out) = &out {
+        // Said before minutes of proof, not after.
+        spare(out, "certificate", |text| text.contains("flexure-certificate"), &[])
+            .map_err(|problem| refused(py, &problem))?;
+        prepare(folder_of(out)).map_err(unwritten)?;
+    }
     let loaded = scenario.loaded.clone();
     let direct = direct.then_some(Direct { speed, budget });
-    let question = Question { region, rate, disturbance: disturbance.map(OneOrMore::list), direct }
+    let question = Question { region, rate, disturbance: list("disturbance", disturbance)?, direct }
         .fitting(&loaded)
         .map_err(|problem| refused(py, &problem))?;
     let found = watched(py, progress, |progress| {
@@ -102,10 +98,11 @@ pub fn verify<'py>(
         read_text(&certificate, flexure::verify::LARGEST).map_err(|problem| refused(py, &problem))?
     };
     let report = py.detach(|| flexure::verify::verify(&text)).map_err(|rejected| {
-        FlexureError::new_err(match rejected {
+        let message = match rejected {
             Rejected::False { claim, reason } => format!("{claim} does not hold: {reason}"),
             Rejected::Malformed { place, reason, .. } => format!("no certificate: {place}: {reason}"),
-        })
+        };
+        said(py, "certificate", &message, "")
     })?;
     let found = PyDict::new(py);
     found.set_item("name", report.name)?;

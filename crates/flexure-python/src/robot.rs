@@ -5,14 +5,14 @@ use std::sync::Arc;
 
 use flexure::robot::{Arm, PortHamiltonian, Robot as Loaded, load_robot_with, overview};
 use numpy::PyArrayDyn;
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
+use pyo3::types::{PyDict, PyList, PyTuple};
 
-use crate::arrays::{Numbers, shaped, vector};
+use crate::arrays::{Argument, Numbers, constant, shape, shaped, together, zeros};
 use crate::documents::document;
 use crate::failure::{documents, mismatch, raised, warn};
-use crate::scenario::outside;
+use crate::scenario::{Scenario, changed, hashed, outside, whole};
 
 type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 
@@ -24,12 +24,19 @@ pub const MOTION: &str = "(q_l, q_m, dq_l, dq_m)";
 pub struct Robot {
     loaded: Arc<Loaded>,
     arm: Box<dyn Arm>,
-    /// None for the robot of a scenario.
-    source: Option<(String, bool)>,
+    source: Source,
+}
+
+/// What a robot was read from.
+pub enum Source {
+    /// A file or a name, and whether it may name files outside of its folder.
+    File(String, bool),
+    /// It is that of a scenario.
+    Scenario(Py<Scenario>),
 }
 
 impl Robot {
-    pub fn of(py: Python<'_>, loaded: Loaded, source: Option<(String, bool)>) -> PyResult<Self> {
+    pub fn of(py: Python<'_>, loaded: Loaded, source: Source) -> PyResult<Self> {
         let arm = loaded.arm().map_err(|problems| raised(py, &problems))?;
         Ok(Self { loaded: Arc::new(loaded), arm, source })
     }
@@ -37,29 +44,23 @@ impl Robot {
     fn read(py: Python<'_>, path_or_name: String, allow_outside: bool) -> PyResult<Self> {
         let loaded = load_robot_with(&path_or_name, outside(allow_outside))
             .map_err(|problems| raised(py, &problems))?;
-        Self::of(py, loaded, Some((path_or_name, allow_outside)))
+        Self::of(py, loaded, Source::File(whole(path_or_name), allow_outside))
     }
 }
 
 /// Arguments of n numbers each, with a batch before, and what `each` makes of one after the other: `last` axes of each.
 fn each<'py>(
     py: Python<'py>,
-    arguments: &[(&'static str, &Bound<'py, PyAny>, usize, &str)],
+    arguments: &[Argument<'_, 'py>],
     last: &[usize],
     each: impl Fn(&[&[f64]], &mut [f64]) -> Result<(), flexure::robot::Mismatch> + Sync,
 ) -> PyResult<Array<'py>> {
-    let read: Vec<Numbers<'py>> =
-        arguments.iter().map(|(name, given, ..)| Numbers::new(name, given)).collect::<PyResult<_>>()?;
-    let (_, _, count, meaning) = arguments[0];
-    let batch = read[0].batch(count, meaning)?;
-    for (numbers, (_, _, count, meaning)) in read.iter().zip(arguments).skip(1) {
-        numbers.beside(&batch, *count, meaning)?;
-    }
+    let (read, batch) = together(py, arguments)?;
     let slices: Vec<&[f64]> = read.iter().map(Numbers::slice).collect::<PyResult<_>>()?;
     let counts: Vec<usize> = arguments.iter().map(|(_, _, count, _)| *count).collect();
     let size: usize = last.iter().product();
     let many: usize = batch.iter().product();
-    let mut found = vec![0.0; many * size];
+    let mut found = zeros(many.saturating_mul(size))?;
     py.detach(|| {
         let mut row: Vec<&[f64]> = Vec::with_capacity(slices.len());
         for (k, found) in found.chunks_exact_mut(size).enumerate() {
@@ -79,7 +80,7 @@ impl Robot {
     #[pyo3(signature = (path_or_name, *, allow_outside = false))]
     fn new(py: Python<'_>, path_or_name: PathBuf, allow_outside: bool) -> PyResult<Self> {
         let robot = Self::read(py, path_or_name.to_string_lossy().into_owned(), allow_outside)?;
-        warn(py, &robot.loaded.warnings)?;
+        warn(py, &robot.loaded.warnings, 1)?;
         Ok(robot)
     }
 
@@ -102,26 +103,26 @@ impl Robot {
 
     /// Joint stiffness K, N m/rad.
     #[getter]
-    fn stiffness<'py>(&self, py: Python<'py>) -> Array<'py> {
-        vector(py, &self.loaded.stiffness)
+    fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        constant(py, &self.loaded.stiffness)
     }
 
     /// Motor inertia M_m on the link side of the gear, kg m².
     #[getter]
-    fn motor_inertia<'py>(&self, py: Python<'py>) -> Array<'py> {
-        vector(py, &self.loaded.motor_inertia)
+    fn motor_inertia<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        constant(py, &self.loaded.motor_inertia)
     }
 
     /// Link damping D_l, N m s/rad.
     #[getter]
-    fn link_damping<'py>(&self, py: Python<'py>) -> Array<'py> {
-        vector(py, &self.loaded.link_damping)
+    fn link_damping<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        constant(py, &self.loaded.link_damping)
     }
 
     /// Motor damping D_m, N m s/rad.
     #[getter]
-    fn motor_damping<'py>(&self, py: Python<'py>) -> Array<'py> {
-        vector(py, &self.loaded.motor_damping)
+    fn motor_damping<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        constant(py, &self.loaded.motor_damping)
     }
 
     /// What its joints must not exceed: arrays torque (N m), velocity (rad/s), lower and upper (rad); infinite for no limit.
@@ -135,7 +136,7 @@ impl Robot {
             ("lower", &limits.lower),
             ("upper", &limits.upper),
         ] {
-            found.set_item(key, vector(py, numbers))?;
+            found.set_item(key, constant(py, numbers)?)?;
         }
         Ok(found)
     }
@@ -195,7 +196,8 @@ impl Robot {
             energy[0] = self.arm.energy(x[0])?;
             Ok(())
         })?;
-        found.get_item((pyo3::types::PyEllipsis::get(py), 0))
+        // A number of one motion, an array of a batch.
+        found.get_item((pyo3::types::PyEllipsis::get(py), 0))?.get_item(PyTuple::empty(py))
     }
 
     /// Matrices of the port-Hamiltonian form, each (…, n, n): a dict with S (skew), E = S − ½ dM/dt and dM, N m s/rad and kg m²/s.
@@ -226,14 +228,15 @@ impl Robot {
     fn torque_derivatives<'py>(&self, py: Python<'py>, q_l: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
         let n = self.arm.joints();
         let numbers = Numbers::new("q_l", q_l)?;
-        let mut batch = numbers.batch(n, "positions and four derivatives, n each")?;
-        if batch.pop() != Some(5) {
+        let mut batch = numbers.axes().to_vec();
+        if batch.pop() != Some(n) || batch.pop() != Some(5) {
             return Err(PyValueError::new_err(format!(
-                "q_l: expected (…, 5, {n}) = (q_l, dq_l, ddq_l, …) up to the fourth derivative"
+                "q_l: shape {}; expected (…, 5, {n}) = (q_l, dq_l, ddq_l, …) up to the fourth derivative",
+                shape(numbers.axes())
             )));
         }
         let (all, many) = (numbers.slice()?, batch.iter().product::<usize>());
-        let mut found = vec![0.0; many * 3 * n];
+        let mut found = zeros(many.saturating_mul(3 * n))?;
         for (q_l, torque) in all.chunks_exact(5 * n).zip(found.chunks_exact_mut(3 * n)) {
             // Coefficients are derivatives over factorials.
             let series: Vec<[f64; 5]> = (0..n)
@@ -255,22 +258,41 @@ impl Robot {
         format!("Robot({}: {})", self.loaded.name, self.joints().join(", "))
     }
 
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
+    }
+
+    /// Whether files say the same.
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        other.cast::<Self>().is_ok_and(|other| other.get().loaded.digest() == self.loaded.digest())
+    }
+
+    fn __hash__(&self) -> u64 {
+        hashed(self.loaded.digest())
+    }
+
     /// Files are read again where it is unpickled, and must say the same.
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (String, bool, String))> {
-        let Some((path_or_name, allow_outside)) = slf.get().source.clone() else {
-            return Err(PyTypeError::new_err("the robot of a scenario: pickle the scenario"));
-        };
-        let digest = slf.get().loaded.digest().to_owned();
-        Ok((slf.get_type().getattr("_again")?, (crate::scenario::whole(path_or_name), allow_outside, digest)))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let (py, robot) = (slf.py(), slf.get());
+        match &robot.source {
+            Source::File(path_or_name, allow_outside) => {
+                let arguments = (path_or_name, *allow_outside, robot.loaded.digest());
+                Ok((slf.get_type().getattr("_again")?, arguments.into_pyobject(py)?))
+            }
+            Source::Scenario(scenario) => {
+                let getattr = py.import("builtins")?.getattr("getattr")?;
+                Ok((getattr, (scenario.clone_ref(py), "robot").into_pyobject(py)?))
+            }
+        }
     }
 
     #[staticmethod]
     fn _again(py: Python<'_>, path_or_name: String, allow_outside: bool, digest: &str) -> PyResult<Self> {
         let again = Self::read(py, path_or_name, allow_outside)?;
-        if again.loaded.digest() == digest {
-            Ok(again)
-        } else {
-            Err(crate::scenario::changed(&again.loaded.name))
-        }
+        if again.loaded.digest() == digest { Ok(again) } else { Err(changed(py, &again.loaded.name)) }
     }
 }

@@ -1,35 +1,57 @@
 //! `simulate`: a scenario from beginning to end.
 
-use flexure::simulate::{Run, Trace, exceeded, run};
+use flexure::feasible;
+use flexure::files::Problems;
+use flexure::sampled::probe;
+use flexure::simulate::{Run, Trace, exceeded, preload, run, run_with};
 use numpy::IntoPyArray as _;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::documents::document;
-use crate::failure::{raised, warn};
+use crate::failure::{OF_JOBS, documents, raised, warn};
+use crate::own_law::own_law;
 use crate::scenario::Scenario;
 use crate::watched::watched;
 
 /// Simulates a scenario: a dict with the summary, the columns of the trace as arrays, their units, when it diverged (None if it did
-/// not), and what the guard kept of its stops.
+/// not), whether the loop is stable as sampled, what speaks against it beside its errors, and what the guard kept of its stops.
 #[pyfunction]
-#[pyo3(signature = (scenario, *, progress = None))]
+#[pyo3(signature = (scenario, *, law = None, progress = None))]
 pub fn simulate<'py>(
     py: Python<'py>,
     scenario: &Scenario,
+    law: Option<Py<PyAny>>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let loaded = scenario.loaded.clone();
-    let found = watched(py, progress, |progress| run(&loaded, progress))?;
-    let Run { summary, trace, divergence, broken_off, faults } =
-        found.map_err(|problems| raised(py, &problems))?;
+    let before = || {
+        let beyond = feasible::exceeded(&loaded, &feasible::usage(&loaded)?);
+        Ok((beyond, preload(&loaded)?.into_iter().chain(feasible::slowed(&loaded)?).collect::<Vec<_>>()))
+    };
+    let (beyond, doubts) = py.detach(before).map_err(|problems: Problems| raised(py, &problems))?;
+    warn(py, &doubts, OF_JOBS)?;
+    let (law, of_law) = law.map(own_law).unzip();
+    let found = watched(py, progress, |progress| match law {
+        // What the sampled loop does is known of the scenario's own law.
+        None => Ok((run(&loaded, progress)?, probe(&loaded)?)),
+        Some(law) => Ok((run_with(&loaded, law, progress)?, None)),
+    })?;
+    if let Some(error) = of_law.and_then(|of_law| of_law.take()) {
+        return Err(error);
+    }
+    let (Run { summary, trace, divergence, broken_off, faults }, sampled) =
+        found.map_err(|problems: Problems| raised(py, &problems))?;
     if broken_off.is_some() {
         return Err(PyKeyboardInterrupt::new_err(()));
     }
     if divergence.is_none() {
-        warn(py, &exceeded(&loaded.robot, &trace))?;
+        warn(py, &exceeded(&loaded.robot, &trace), OF_JOBS)?;
     }
+    let unstable = sampled.as_ref().and_then(|sampled| sampled.problem(&loaded));
+    let objections: Vec<_> = unstable.into_iter().chain(beyond).collect();
+    warn(py, &objections.iter().map(|problem| problem.clone().warning()).collect::<Vec<_>>(), OF_JOBS)?;
     let (columns, units) = arrays(py, trace)?;
     let found = PyDict::new(py);
     found.set_item("summary", document(py, &summary)?)?;
@@ -37,6 +59,8 @@ pub fn simulate<'py>(
     found.set_item("units", units)?;
     found.set_item("diverged_at", divergence.map(|divergence| divergence.time))?;
     found.set_item("divergence", divergence.map(|divergence| divergence.to_string()))?;
+    found.set_item("sampled", document(py, &sampled)?)?;
+    found.set_item("objections", documents(py, objections.iter())?)?;
     found.set_item("faults", document(py, &faults)?)?;
     Ok(found)
 }

@@ -6,16 +6,16 @@ use std::sync::Arc;
 use flexure::files::{Change, Outside, Problem, Problems, Reading};
 use flexure::scenario::{Scenario as Loaded, load_scenario_with};
 use numpy::PyArrayDyn;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::arrays::vector;
+use crate::changes::changes;
 use crate::controller::Controller;
 use crate::documents::document;
-use crate::failure::{documents, raised, warn};
+use crate::failure::{documents, raised, said, warn};
 use crate::held::Loop;
-use crate::robot::Robot;
+use crate::robot::{Robot, Source};
 
 /// A robot, what it shall do, a law, and everything between law and robot.
 #[pyclass(frozen, module = "flexure")]
@@ -52,39 +52,6 @@ pub fn outside(allowed: bool) -> Outside {
     if allowed { Outside::Allowed } else { Outside::Refused }
 }
 
-/// Changes from `set`: a dict of dotted keys, or texts "key=value" as the command line takes them.
-pub fn changes(set: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<String>> {
-    let Some(set) = set else { return Ok(Vec::new()) };
-    let Ok(keys) = set.cast::<PyDict>() else { return set.extract() };
-    keys.iter().map(|(key, value)| Ok(format!("{}={}", key.extract::<String>()?, toml(&value)?))).collect()
-}
-
-/// A value as TOML has it.
-fn toml(value: &Bound<'_, PyAny>) -> PyResult<String> {
-    if let Ok(text) = value.extract::<String>() {
-        return Ok(format!("{text:?}"));
-    }
-    if let Ok(table) = value.cast::<PyDict>() {
-        let entries = table
-            .iter()
-            .map(|(key, value)| Ok(format!("{:?} = {}", key.extract::<String>()?, toml(&value)?)))
-            .collect::<PyResult<Vec<_>>>()?;
-        return Ok(format!("{{{}}}", entries.join(", ")));
-    }
-    if value.hasattr("tolist")? {
-        return toml(&value.call_method0("tolist")?);
-    }
-    if value.is_instance_of::<pyo3::types::PyList>() || value.is_instance_of::<pyo3::types::PyTuple>() {
-        let entries = value.try_iter()?.map(|value| toml(&value?)).collect::<PyResult<Vec<_>>>()?;
-        return Ok(format!("[{}]", entries.join(", ")));
-    }
-    if value.is_instance_of::<pyo3::types::PyBool>() {
-        return Ok(value.str()?.to_string().to_lowercase());
-    }
-    // The fewest digits that restore a number are what repr gives.
-    Ok(value.repr()?.to_string())
-}
-
 #[pymethods]
 impl Scenario {
     #[new]
@@ -96,10 +63,29 @@ impl Scenario {
         allow_outside: bool,
     ) -> PyResult<Self> {
         let path_or_name = path_or_name.to_string_lossy().into_owned();
-        let source = Origin { path_or_name, changes: changes(set)?, allow_outside };
+        let mut source = Origin { path_or_name, changes: changes(set)?, allow_outside };
         let loaded = source.load().map_err(|problems| raised(py, &problems))?;
-        warn(py, &loaded.warnings)?;
+        warn(py, &loaded.warnings, 1)?;
+        // The current folder may be another when it is pickled.
+        source.path_or_name = whole(source.path_or_name);
         Ok(Self { loaded: Arc::new(loaded), source })
+    }
+
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
+    }
+
+    /// Whether files and changes say the same.
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        other.cast::<Self>().is_ok_and(|other| other.get().loaded.digest() == self.loaded.digest())
+    }
+
+    fn __hash__(&self) -> u64 {
+        hashed(&self.loaded.digest())
     }
 
     /// Its name: that of its file.
@@ -110,8 +96,9 @@ impl Scenario {
 
     /// The robot that its law knows.
     #[getter]
-    fn robot(&self, py: Python<'_>) -> PyResult<Robot> {
-        Robot::of(py, self.loaded.robot.clone(), None)
+    fn robot(slf: PyRef<'_, Self>) -> PyResult<Robot> {
+        let py = slf.py();
+        Robot::of(py, slf.loaded.robot.clone(), Source::Scenario(slf.into()))
     }
 
     /// How long its runs are, s.
@@ -163,14 +150,17 @@ impl Scenario {
     }
 
     /// Its law alone.
-    fn controller(&self, py: Python<'_>) -> PyResult<Controller> {
-        Controller::open(py, &self.loaded)
+    fn controller(slf: PyRef<'_, Self>) -> PyResult<Controller> {
+        let py = slf.py();
+        Controller::open(py, slf.into())
     }
 
-    /// Its closed loop, to be stepped.
-    fn open(slf: PyRef<'_, Self>) -> PyResult<Loop> {
+    /// Its closed loop, to be stepped; with `law`, a function of t (s), x (4n,) and the reference with four derivatives (5, n) that returns torques
+    /// (n,), in the place of its own.
+    #[pyo3(signature = (*, law = None))]
+    fn open(slf: PyRef<'_, Self>, law: Option<Py<PyAny>>) -> PyResult<Loop> {
         let py = slf.py();
-        Loop::open(py, slf.into())
+        Loop::open(py, slf.into(), law)
     }
 
     /// Is the loop stable that holds its torque for a control period? A dict, as `sampled` of `flexure run --json`; None for a law in
@@ -200,7 +190,7 @@ impl Scenario {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Again<'py>> {
         let again = slf.get_type().getattr("_again")?;
         let Origin { path_or_name, changes, allow_outside } = slf.get().source.clone();
-        Ok((again, (whole(path_or_name), changes, allow_outside, slf.get().loaded.digest())))
+        Ok((again, (path_or_name, changes, allow_outside, slf.get().loaded.digest())))
     }
 
     #[staticmethod]
@@ -216,7 +206,7 @@ impl Scenario {
         if loaded.digest() == digest {
             Ok(Self { loaded: Arc::new(loaded), source })
         } else {
-            Err(changed(&loaded.name))
+            Err(changed(py, &loaded.name))
         }
     }
 }
@@ -231,6 +221,20 @@ pub fn whole(path_or_name: String) -> String {
 }
 
 /// Why something is not unpickled.
-pub fn changed(name: &str) -> PyErr {
-    PyValueError::new_err(format!("{name} was pickled when its files said something else"))
+pub fn changed(py: Python<'_>, name: &str) -> PyErr {
+    let message = format!("{name} was pickled when its files said something else");
+    said(py, "changed", &message, "pickle it again, or bring the files back")
+}
+
+/// A hash of a digest.
+pub fn hashed(digest: &str) -> u64 {
+    digest.get(..16).and_then(|first| u64::from_str_radix(first, 16).ok()).unwrap_or_default()
+}
+
+/// A scenario, or the one at a path or of a name.
+pub fn given(given: &Bound<'_, PyAny>) -> PyResult<Py<Scenario>> {
+    if let Ok(scenario) = given.cast::<Scenario>() {
+        return Ok(scenario.clone().unbind());
+    }
+    Ok(given.py().get_type::<Scenario>().call1((given,))?.cast_into::<Scenario>()?.unbind())
 }

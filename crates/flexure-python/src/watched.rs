@@ -61,3 +61,10 @@ pub fn watched<T: Send>(
         Ok(result.unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
     })
 }
+
+/// Panics in a job: what the tests see of bugs to come.
+#[pyfunction]
+#[pyo3(name = "_panic")]
+pub fn panic(py: Python<'_>) -> PyResult<()> {
+    watched(py, None, |_| panic!("asked for"))
+}

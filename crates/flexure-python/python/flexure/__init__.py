@@ -12,7 +12,7 @@ of the traces. Motors are seen from the link side of the gear. Arrays may have a
     'proved'
 """
 
-from ._flexure import Controller, FlexureError, Loop, Plant, Robot, Scenario
+from ._flexure import Controller, FlexureError, FlexureWarning, Loop, Plant, Robot, Scenario, __version__
 from ._jobs import certify, compare, excite, identify, margins, replay, simulate, tune, verify
 from ._motion import Motion, motion, views
 from ._run import Run, Trace
@@ -20,6 +20,7 @@ from ._run import Run, Trace
 __all__ = [
     "Controller",
     "FlexureError",
+    "FlexureWarning",
     "Loop",
     "Motion",
     "Plant",
@@ -27,6 +28,7 @@ __all__ = [
     "Run",
     "Scenario",
     "Trace",
+    "__version__",
     "certify",
     "compare",
     "excite",
@@ -39,3 +41,6 @@ __all__ = [
     "verify",
     "views",
 ]
+
+# Those that the library raises have their own.
+FlexureError.problems = ()

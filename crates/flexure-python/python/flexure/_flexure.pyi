@@ -10,10 +10,13 @@ from numpy.typing import ArrayLike, NDArray
 __all__ = [
     "Controller",
     "FlexureError",
+    "FlexureWarning",
     "Loop",
     "Plant",
     "Robot",
     "Scenario",
+    "__version__",
+    "_panic",
     "certify",
     "compare",
     "excite",
@@ -27,8 +30,11 @@ __all__ = [
 
 _Array = NDArray[np.float64]
 _Path = str | PathLike[str]
-_Numbers = float | Sequence[float]
+_Numbers = ArrayLike
 _Told = Callable[[float], object] | None
+_Law = Callable[[float, _Array, _Array], ArrayLike]
+
+__version__: str
 
 class _Problem(TypedDict):
     code: str
@@ -41,12 +47,15 @@ class _Problem(TypedDict):
 class FlexureError(Exception):
     """What the command line says with exit code 1 or 2: the text is the message, with file, line and hint."""
 
-    problems: list[_Problem]
-    """Each problem by itself; not there where the text is all that is known."""
+    problems: Sequence[_Problem]
+    """Each problem by itself."""
+
+class FlexureWarning(UserWarning):
+    """What is suspicious in a file, a log or a run."""
 
 @final
 class Robot:
-    """A flexible-joint robot: links, and a motor and a spring for each of its n joints."""
+    """A flexible-joint robot: links, and a motor and a spring for each of its n joints; for joints that slide read m for rad and N for N m."""
 
     def __new__(cls, path_or_name: _Path, *, allow_outside: bool = False) -> Robot: ...
     def __len__(self) -> int: ...
@@ -71,6 +80,10 @@ class Robot:
         """torque (N m), velocity (rad/s), lower and upper (rad), (n,) each, infinite for no limit"""
     @property
     def warnings(self) -> list[_Problem]: ...
+    def __copy__(self) -> Robot: ...
+    def __deepcopy__(self, _memo: object) -> Robot: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
     def table(self) -> list[dict[str, Any]]: ...
     def mass_matrix(self, q_l: ArrayLike) -> _Array:
         """(…, n) → (…, n, n), kg m²"""
@@ -111,8 +124,12 @@ class Scenario:
     def assumptions(self) -> list[dict[str, str]]: ...
     @property
     def warnings(self) -> list[_Problem]: ...
+    def __copy__(self) -> Scenario: ...
+    def __deepcopy__(self, _memo: object) -> Scenario: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
     def controller(self) -> Controller: ...
-    def open(self) -> Loop: ...
+    def open(self, *, law: _Law | None = None) -> Loop: ...
     def sampled(self) -> dict[str, Any] | None: ...
     def usage(self) -> list[dict[str, Any]]: ...
 
@@ -120,9 +137,11 @@ class Scenario:
 class Controller:
     """The law of a scenario by itself; it sees motions as they are and remembers nothing."""
 
-    def __new__(cls, scenario: Scenario) -> Controller: ...
+    def __new__(cls, scenario: Scenario | _Path) -> Controller: ...
     @property
     def joints(self) -> int: ...
+    @property
+    def scenario(self) -> Scenario: ...
     def torque(self, x: ArrayLike, t: ArrayLike) -> _Array:
         """(…, 4n), one time or (…), s → (…, n), N m"""
     def command(self, x: ArrayLike, t: float) -> dict[str, Any]:
@@ -138,7 +157,7 @@ class Controller:
 class Loop:
     """The closed loop of a scenario, moved from one control instant to the next."""
 
-    def __new__(cls, scenario: Scenario) -> Loop: ...
+    def __new__(cls, scenario: Scenario | _Path, *, law: _Law | None = None) -> Loop: ...
     @property
     def scenario(self) -> Scenario: ...
     @property
@@ -171,7 +190,7 @@ class Loop:
 class Plant:
     """The robot that a scenario simulates, driven by torques of the caller; no sensors, no controller, no torque limit."""
 
-    def __new__(cls, scenario: Scenario) -> Plant: ...
+    def __new__(cls, scenario: Scenario | _Path) -> Plant: ...
     @property
     def joints(self) -> int: ...
     @property
@@ -182,7 +201,7 @@ class Plant:
     def roll(self, x: ArrayLike, u_m: ArrayLike, *, first: ArrayLike | None = None, period: float | None = None) -> _Array:
         """(…, 4n), (…, T, n), N m, each held for a period → (…, T, 4n)"""
 
-def simulate(scenario: Scenario, *, progress: _Told = None) -> dict[str, Any]: ...
+def simulate(scenario: Scenario, *, law: _Law | None = None, progress: _Told = None) -> dict[str, Any]: ...
 def certify(
     scenario: Scenario,
     *,
@@ -251,3 +270,5 @@ def replay(
     horizon: float = ...,
     progress: _Told = None,
 ) -> dict[str, Any]: ...
+def _panic() -> None:
+    """Panics, for the tests."""

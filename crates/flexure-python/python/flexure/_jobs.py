@@ -1,17 +1,21 @@
 """What the command line does, under the same names."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from typing import Any, TypeVar
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
 from . import _flexure
-from ._flexure import Scenario
+from ._flexure import FlexureError, Scenario
 from ._progress import Bar, Progress
 from ._run import Run, Trace
 
 Path = str | PathLike[str]
-Numbers = float | Sequence[float]
+Numbers = ArrayLike
 Found = TypeVar("Found")
+Law = Callable[[float, NDArray[np.float64], NDArray[np.float64]], ArrayLike]
 
 
 def _scenario(given: Scenario | Path) -> Scenario:
@@ -25,19 +29,25 @@ def _watched(name: str, progress: Progress, job: Callable[[Callable[[float], obj
     return job(progress or None)
 
 
-def simulate(scenario: Scenario | Path, *, progress: Progress = None) -> Run:
+def simulate(scenario: Scenario | Path, *, law: Law | None = None, progress: Progress = None) -> Run:
     """Simulates a scenario from beginning to end, as `flexure run`: its trace and what it is judged by.
 
-    A loop that does not follow its reference, or diverges, is a result and no error: see `Run.follows` and `Run.diverged_at`.
+    With `law`, a function of the time in s, the motion that the controller sees, (4n,), and the reference with its first four derivatives,
+    (5, n), which returns motor torques, (n,), N m, that is the law instead of the scenario's; sensors, delays, guard and drive stay. It
+    is called at every control instant from Python: some microseconds each, and what it raises comes out here.
+
+    A loop that does not follow its reference, diverges, or is unstable as sampled is a result and no error: see `Run.ok`.
     """
     scenario = _scenario(scenario)
-    found = _watched(scenario.name, progress, lambda told: _flexure.simulate(scenario, progress=told))
+    found = _watched(scenario.name, progress, lambda told: _flexure.simulate(scenario, law=law, progress=told))
     return Run(
         scenario=scenario,
         summary=found["summary"],
         trace=Trace(found["trace"], found["units"]),
         diverged_at=found["diverged_at"],
         divergence=found["divergence"],
+        sampled=found["sampled"],
+        objections=found["objections"],
         faults=found["faults"],
     )
 
@@ -80,17 +90,22 @@ def certify(
     )
 
 
-def verify(certificate: Path, *, against: Scenario | Path | None = None) -> dict[str, Any]:
-    """Checks the claims of a certificate, its text or its file, without what made it, as `flexure verify`.
+def verify(certificate: Path | Mapping[str, Any], *, against: Scenario | Path | None = None) -> dict[str, Any]:
+    """Checks the claims of a certificate, without what made it, as `flexure verify`: its text, its file, or what `certify` found.
 
     With `against`, `same` tells whether it is about that scenario, and `differences` what it has differently. Raises FlexureError for
     a claim that does not hold.
     """
+    if isinstance(certificate, Mapping):
+        text = certificate.get("certificate")
+        if not isinstance(text, str):
+            raise FlexureError("there is no certificate: nothing was proved")
+        certificate = text
     return _flexure.verify(certificate, against=None if against is None else _scenario(against))
 
 
 def margins(scenario: Scenario | Path, *, progress: Progress = None) -> dict[str, Any]:
-    """How much delay, torque gain, stiffness error and noise the loop bears, by bisection in simulation, as `flexure margins`."""
+    """How much delay, torque gain, stiffness error and noise the loop bears, by bisection in simulation, as `flexure margins`: its only loop."""
     scenario = _scenario(scenario)
     return _watched(scenario.name, progress, lambda told: _flexure.margins(scenario, progress=told))
 
@@ -117,9 +132,9 @@ def tune(
 
 
 def compare(
-    scenarios: Sequence[Scenario | Path] = (),
+    scenarios: Scenario | Path | Sequence[Scenario | Path] = (),
     *,
-    controllers: Sequence[str] = (),
+    controllers: str | Sequence[str] = (),
     budget: int = 40,
     seed: int = 0,
     seeds: int = 5,
@@ -127,13 +142,15 @@ def compare(
 ) -> dict[str, Any]:
     """Compares laws on tasks, each with gains from the same search, as `flexure compare`.
 
-    Without scenarios the built-in tasks, without controllers all laws. Broken off, it has what was finished until then.
+    Without scenarios the built-in tasks, without controllers all laws.
     """
-    tasks = [_scenario(scenario) for scenario in scenarios]
+    given = [scenarios] if isinstance(scenarios, Scenario | str | PathLike) else scenarios
+    tasks = [_scenario(scenario) for scenario in given]
+    laws = [controllers] if isinstance(controllers, str) else list(controllers)
     return _watched(
         "compare",
         progress,
-        lambda told: _flexure.compare(tasks, controllers=list(controllers), budget=budget, seed=seed, seeds=seeds, progress=told),
+        lambda told: _flexure.compare(tasks, controllers=laws, budget=budget, seed=seed, seeds=seeds, progress=told),
     )
 
 

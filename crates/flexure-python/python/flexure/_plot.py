@@ -33,7 +33,7 @@ def plot(run: Run) -> Figure:
     (small_error, error_prefix), (bend, bend_prefix) = scaled(e_l), scaled(trace.joints("q_m") - q_l)
     limits = robot.limits["torque"]
     for i, (name, colour) in enumerate(zip(names, colours, strict=True)):
-        positions.plot(t, q_l[:, i], color=colour, label=name)
+        positions.plot(t, q_l[:, i], color=colour, label=plain(name))
         positions.plot(t, q_l[:, i] - e_l[:, i], color="black", linestyle=":", linewidth=0.8)
         errors.plot(t, small_error[:, i], color=colour, linewidth=1.0)
         deflections.plot(t, bend[:, i], color=colour, linewidth=1.0)
@@ -47,7 +47,7 @@ def plot(run: Run) -> Figure:
     deflections.set_ylabel(f"spring deflection [{bend_prefix}{angle}]")
     torques.set_ylabel(f"motor torque [{torque}]")
     torques.set_xlabel("time [s]")
-    positions.set_title(run.scenario.name, loc="left")
+    positions.set_title(plain(run.scenario.name), loc="left")
     for panel in panels:
         panel.grid(visible=True, color="#dddddd", linewidth=0.6)
         panel.spines[["top", "right"]].set_visible(False)
@@ -57,6 +57,11 @@ def plot(run: Run) -> Figure:
     reference = positions.get_lines()[1]
     figure.legend([*handles, reference], [*labels, "reference"], loc="outside right upper", frameon=False)
     return figure
+
+
+def plain(name: str) -> str:
+    """A name as it is: no formula, and in the legend whatever it begins with."""
+    return "\u200a" + name.replace("$", r"\$")
 
 
 def scaled(x: NDArray[np.float64]) -> tuple[NDArray[np.float64], str]:

@@ -4,7 +4,7 @@ import sys
 from collections.abc import Callable
 
 Progress = Callable[[float], object] | bool | None
-"""What is told the fraction done about twenty times a second; True writes it to stderr, in a terminal and in a notebook."""
+"""What is told the fraction done about twenty times a second; True writes it to stderr, in a terminal and in a notebook, not into files."""
 
 
 class Bar:
@@ -17,6 +17,8 @@ class Bar:
         self.shown = ""
 
     def __call__(self, fraction: float) -> None:
+        if not (sys.stderr.isatty() or "ipykernel" in sys.modules):
+            return
         done = round(self.WIDTH * min(max(fraction, 0.0), 1.0))
         self.write(f"{self.name} {'█' * done}{'·' * (self.WIDTH - done)} {100 * fraction:3.0f} %")
 
@@ -30,6 +32,7 @@ class Bar:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.write("")
-        sys.stderr.write("\r")
-        sys.stderr.flush()
+        if self.shown:
+            self.write("")
+            sys.stderr.write("\r")
+            sys.stderr.flush()

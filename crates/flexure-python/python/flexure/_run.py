@@ -36,6 +36,9 @@ class Trace(Mapping[str, NDArray[np.float64]]):
     def __len__(self) -> int:
         return len(self._columns)
 
+    __eq__ = object.__eq__
+    __hash__ = object.__hash__
+
     def joints(self, name: str) -> NDArray[np.float64]:
         """A signal of all joints, (instants, n), as "q_l" for the columns q_l1, q_l2, …"""
         columns: list[NDArray[np.float64]] = []
@@ -70,18 +73,22 @@ class Trace(Mapping[str, NDArray[np.float64]]):
         return f"Trace({len(self['t'])} instants to {self['t'][-1]:g} s: {', '.join(self)})"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Run:
     """A simulated run."""
 
     scenario: Scenario
     summary: dict[str, Any]
-    """What it is judged by, with the keys of `flexure run --json`; `rate_certified` is None: ask `certify`."""
+    """Errors, torques and rates, and what they were held to, with the keys of `flexure run --json`; `rate_certified` is None: ask `certify`."""
     trace: Trace
     diverged_at: float | None
     """When it diverged, s; trace and summary end there. None if it ran to its end."""
     divergence: str | None
     """Why, in words."""
+    sampled: dict[str, Any] | None
+    """Whether the loop is stable that holds its torque for a control period (`stable`); None for laws in continuous time and of one's own."""
+    objections: list[dict[str, Any]]
+    """What speaks against the loop beside its errors: limits that the reference exceeds, and that it is unstable as sampled."""
     faults: dict[str, Any] | None
     """What the guard kept of its stops; None without a guard."""
 
@@ -90,6 +97,11 @@ class Run:
         """Whether it follows its reference; `summary["reasons"]` tells why not."""
         return bool(self.summary["follows"])
 
+    @property
+    def ok(self) -> bool:
+        """Whether it follows and nothing speaks against it: where `flexure run` ends with 0."""
+        return self.follows and not self.objections
+
     def plot(self) -> Figure:
         """Positions, errors, spring deflections and torques over time, a line for each joint. Needs matplotlib."""
         from ._plot import plot
@@ -97,5 +109,5 @@ class Run:
         return plot(self)
 
     def __repr__(self) -> str:
-        answer = f"diverged at {self.diverged_at:g} s" if self.diverged_at is not None else "follows" if self.follows else "does not follow"
+        answer = f"diverged at {self.diverged_at:g} s" if self.diverged_at is not None else "follows" if self.ok else "follows, but see objections" if self.follows else "does not follow"
         return f"Run({self.scenario.name}: {answer}, rms error {1e3 * (self.summary['rms_e_l'] or float('nan')):.3g} mrad)"

@@ -1,5 +1,6 @@
 //! Files that a command may write over.
 
+use std::io::ErrorKind;
 use std::path::Path;
 
 use crate::files::diagnostic::Problem;
@@ -19,7 +20,8 @@ pub fn spare(
     inputs: &[&Path],
 ) -> Result<(), Problem> {
     // Links that lead nowhere, and what may not be looked at, are in the way as well.
-    if out.symlink_metadata().is_err_and(|error| error.kind() == std::io::ErrorKind::NotFound) {
+    let missing = [ErrorKind::NotFound, ErrorKind::NotADirectory];
+    if out.symlink_metadata().is_err_and(|error| missing.contains(&error.kind())) {
         return Ok(());
     }
     let place = out.canonicalize().ok();

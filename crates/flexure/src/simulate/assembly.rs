@@ -9,7 +9,6 @@ use flexure_core::reference::Reference;
 
 use crate::estimators::{AnyEstimator, estimator};
 use crate::imperfections::{Effects, Imperfection, Saturation};
-use crate::laws::AnyLaw;
 use crate::plant::{Plant, Push};
 use crate::robot::{Robot, padded, vector};
 use crate::scenario::{self, Scenario};
@@ -38,11 +37,11 @@ pub(crate) fn timing(scenario: &Scenario) -> Timing {
     }
 }
 
-/// What can be read of the loop beside the motion.
-pub(crate) fn columns<const N: usize>(scenario: &Scenario, law: &AnyLaw<f64, N>) -> Columns {
+/// What can be read of the loop beside the motion; `errors` says whether its law computes those of v-CBC.
+pub(crate) fn columns(scenario: &Scenario, errors: bool) -> Columns {
     let Scenario { imperfections, estimator, disturbance_observer, guard, .. } = scenario;
     Columns {
-        errors: matches!(law, AnyLaw::Vcbc(_)),
+        errors,
         devices: imperfections.iter().any(Imperfection::is_of_devices)
             || estimator.is_some()
             || disturbance_observer.is_some()

@@ -18,9 +18,11 @@ use crate::robot::sized::{pair, sized};
 use crate::robot::slices::{check, read, read_motion, write, write_motion};
 use crate::scenario::Scenario;
 use crate::simulate::assembly;
+use crate::simulate::controller::Feedback as _;
 use crate::simulate::fault_log::FaultLog;
 use crate::simulate::interface::{Commanded, Errors, Loop, Observed, Signal};
 use crate::simulate::names::Names;
+use crate::simulate::own_law::{HeldLaw, OwnLaw};
 use crate::simulate::signals::Columns;
 use crate::simulate::simulation::{Divergence, Simulation};
 
@@ -31,12 +33,26 @@ impl Scenario {
     /// If the robot has more joints than this program was built for, its links cannot contain its coupled rotors, the simulated
     /// robot is of another kind, the samples of the reference make no path, or no speed keeps it inside the limits.
     pub fn open(&self) -> Result<Box<dyn Loop>, Problems> {
-        let simulated = assembly::simulated(self);
-        Ok(sized!(&self.robot, L, N => {
-            let [model, simulated] = pair::<L<f64>, N>(&self.robot, &simulated)?;
-            Box::new(Held::new(self, model, simulated)?)
-        }))
+        opened(self, None)
     }
+
+    /// The same with the law of the caller in the place of its own.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    pub fn open_with(&self, law: OwnLaw) -> Result<Box<dyn Loop>, Problems> {
+        opened(self, Some(law))
+    }
+}
+
+/// The loop of `scenario` with its own law, or with `law`.
+fn opened(scenario: &Scenario, law: Option<OwnLaw>) -> Result<Box<dyn Loop>, Problems> {
+    let simulated = assembly::simulated(scenario);
+    Ok(sized!(&scenario.robot, L, N => {
+        let [model, simulated] = pair::<L<f64>, N>(&scenario.robot, &simulated)?;
+        let law = law.map_or_else(|| HeldLaw::Registered(any_law(&scenario.controller, |x| x)), HeldLaw::Own);
+        Box::new(Held::new(scenario, model, simulated, law)?)
+    }))
 }
 
 #[cfg(test)]
@@ -44,21 +60,25 @@ mod tests;
 
 /// A loop whose size is known to the compiler.
 struct Held<L, const N: usize> {
-    simulation: Simulation<L, AnyReference<f64, N>, AnyLaw<f64, N>, AnyEstimator<f64, N>, N>,
+    simulation: Simulation<L, AnyReference<f64, N>, HeldLaw<N>, AnyEstimator<f64, N>, N>,
     scenario: Scenario,
     columns: Columns,
     signals: Vec<Signal>,
 }
 
 impl<L: FromFile<f64, N> + Clone, const N: usize> Held<L, N> {
-    fn new(scenario: &Scenario, model: Fjr<f64, L, N>, simulated: Fjr<f64, L, N>) -> Result<Self, Problems> {
+    fn new(
+        scenario: &Scenario,
+        model: Fjr<f64, L, N>,
+        simulated: Fjr<f64, L, N>,
+        law: HeldLaw<N>,
+    ) -> Result<Self, Problems> {
         let plant = assembly::plant(scenario, simulated);
         if !plant.carries_its_rotors(&assembly::initial::<N>(scenario).q_l) {
             return Err(too_heavy(scenario).into());
         }
-        let law = any_law(&scenario.controller, |x| x);
-        let columns = assembly::columns(scenario, &law);
-        let signals = columns.signals(model.links.joints());
+        let columns = assembly::columns(scenario, matches!(law, HeldLaw::Registered(AnyLaw::Vcbc(_))));
+        let signals = columns.signals(&scenario.robot.joints);
         let reference = feasible::reference::<N>(scenario)?;
         let simulation = simulation(scenario, model, plant, law, reference);
         Ok(Self { simulation, scenario: scenario.clone(), columns, signals })
@@ -69,9 +89,9 @@ fn simulation<L: Links<f64, N> + Clone, const N: usize>(
     scenario: &Scenario,
     model: Fjr<f64, L, N>,
     plant: Plant<L, N>,
-    law: AnyLaw<f64, N>,
+    law: HeldLaw<N>,
     reference: AnyReference<f64, N>,
-) -> Simulation<L, AnyReference<f64, N>, AnyLaw<f64, N>, AnyEstimator<f64, N>, N> {
+) -> Simulation<L, AnyReference<f64, N>, HeldLaw<N>, AnyEstimator<f64, N>, N> {
     let start = assembly::initial(scenario);
     let controller = assembly::controller(scenario, model, reference, law, &start);
     Simulation::new(assembly::timing(scenario), plant, start, assembly::pushes(scenario), controller)
@@ -121,7 +141,7 @@ where
         let (robot, reference) = (self.robot(), self.reference_at(t));
         for (motion, u_m) in motions.chunks_exact(4 * n).zip(u_m.chunks_exact_mut(n)) {
             let x = read_motion(motion, n)?;
-            write(&laws::torque(&self.simulation.controller().law, robot, &x, &reference), u_m);
+            write(&self.simulation.controller().law.torque(robot, t, &x, &reference), u_m);
         }
         Ok(())
     }
@@ -133,7 +153,7 @@ where
         let e_l = list(&(x.q_l - reference.map(|jet| jet.coefficient(0))));
         let energy = robot.total_energy(&x);
         Ok(match &self.simulation.controller().law {
-            AnyLaw::Vcbc(law) => {
+            HeldLaw::Registered(AnyLaw::Vcbc(law)) => {
                 let command = laws::command(law, robot, &x, &reference);
                 let sigma = robot.state(&Motion { v_l: command.s_l, v_m: command.s_m, ..x });
                 let errors = Errors {
@@ -148,7 +168,7 @@ where
                 Commanded { u_m: list(&command.u_m), e_l, energy, errors: Some(errors) }
             }
             law => {
-                let u_m = list(&laws::torque(law, robot, &x, &reference));
+                let u_m = list(&law.torque(robot, t, &x, &reference));
                 Commanded { u_m, e_l, energy, errors: None }
             }
         })
@@ -188,7 +208,7 @@ where
         };
         let robot = self.robot();
         let errors = match &self.simulation.controller().law {
-            AnyLaw::Vcbc(law) => {
+            HeldLaw::Registered(AnyLaw::Vcbc(law)) => {
                 let command = laws::command(law, robot, instant.motion, &instant.action.reference);
                 let rate = BlockRates::at(robot, law, &instant.motion.q_l, &command).overall();
                 Some((command, rate))

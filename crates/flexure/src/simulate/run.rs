@@ -12,6 +12,7 @@ use crate::simulate::fault_log::FaultLog;
 use crate::simulate::figures::Figures;
 use crate::simulate::following::{Following, Watch};
 use crate::simulate::interface::{Loop, Observed};
+use crate::simulate::own_law::OwnLaw;
 use crate::simulate::simulation::Divergence;
 use crate::simulate::summary::Summary;
 use crate::simulate::trace::Trace;
@@ -50,6 +51,16 @@ pub fn run(scenario: &Scenario, progress: Progress<'_>) -> Result<Run, Problems>
     simulate(scenario, &Criteria::of(scenario)?, progress, true)
 }
 
+/// As [`run`], with the law of the caller in the place of the scenario's own.
+///
+/// # Errors
+/// As [`Scenario::open`].
+pub fn run_with(scenario: &Scenario, law: OwnLaw, progress: Progress<'_>) -> Result<Run, Problems> {
+    let mut run = simulated(scenario, scenario.open_with(law)?, &Criteria::of(scenario)?, progress, true);
+    (run.summary.controller, run.summary.phi) = ("own".to_owned(), None);
+    Ok(run)
+}
+
 /// Simulates a scenario for its figures alone: no trace, no rates. Faster, for many runs.
 ///
 /// # Errors
@@ -86,8 +97,18 @@ fn simulate(
     progress: Progress<'_>,
     traced: bool,
 ) -> Result<Run, Problems> {
+    Ok(simulated(scenario, scenario.open()?, criteria, progress, traced))
+}
+
+/// Moves `held`, the loop of `scenario`, from beginning to end.
+fn simulated(
+    scenario: &Scenario,
+    mut held: Box<dyn Loop>,
+    criteria: &Criteria,
+    progress: Progress<'_>,
+    traced: bool,
+) -> Run {
     let started = Clock::now();
-    let mut held = scenario.open()?;
     let mut observed = Observed::new(held.joints());
     let limits = assembly::acting_limits(scenario);
     let mut figures = Figures::new(limits.clone());
@@ -114,7 +135,7 @@ fn simulate(
     let following = watch.verdict(&scenario.robot.joints, divergence.as_ref(), broken_off);
     let summary = summary(scenario, &figures, following, &*held, divergence.is_some(), seconds);
     let trace = recorder.map(|recorder| recorder.trace).unwrap_or_default();
-    Ok(Run { summary, trace, divergence, broken_off, faults: held.faults() })
+    Run { summary, trace, divergence, broken_off, faults: held.faults() }
 }
 
 /// Number of control periods in the run.

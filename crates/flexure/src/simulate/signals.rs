@@ -3,6 +3,7 @@
 use flexure_core::control::Command;
 use flexure_core::model::{Fjr, Links, Motion};
 
+use crate::robot::MovingJoint;
 use crate::simulate::controller::{Action, Said};
 use crate::simulate::interface::Signal;
 use crate::simulate::simulation::Instant;
@@ -64,11 +65,13 @@ const STATUS: [Kind; 2] = [("certificate", units::NONE), ("stopped", units::NONE
 const GUARD: [Kind; 2] = [("phase", units::NONE), ("fault", units::NONE)];
 
 impl Columns {
-    /// Name and unit of each column for a robot of `joints` joints.
-    pub(crate) fn signals(self, joints: usize) -> Vec<Signal> {
+    /// Name and unit of each column for a robot of these joints.
+    pub(crate) fn signals(self, joints: &[MovingJoint]) -> Vec<Signal> {
         let signal = |name: String, unit: Unit| Signal { name, unit: unit.plain };
         let per_joint = |&(name, unit): &Kind| {
-            (1..=joints).map(move |k| signal(format!("{name}{k}"), unit)).collect::<Vec<_>>()
+            let of_joint =
+                |(k, joint): (usize, &MovingJoint)| signal(format!("{name}{k}"), unit.of(joint.kind));
+            (1..).zip(joints).map(of_joint).collect::<Vec<_>>()
         };
         let scalar = |&(name, unit): &Kind| vec![signal(name.to_owned(), unit)];
         let (errors, devices) = (usize::from(self.errors), usize::from(self.devices));

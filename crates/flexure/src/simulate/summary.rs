@@ -18,7 +18,7 @@ use crate::simulate::following::Following;
 pub struct Summary {
     /// Scenario name.
     pub name: String,
-    /// Controller kind, as in the scenario file.
+    /// Controller kind, as in the scenario file; `own` for a law of the caller's.
     pub controller: String,
     /// Shaping function, as in the scenario file; none for laws without one.
     pub phi: Option<String>,

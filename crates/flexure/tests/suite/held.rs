@@ -233,3 +233,27 @@ fn wrong_lengths_are_refused() {
     }
     assert!(held.torque(0.0, &[0.0; 30], &mut [0.0; 7]).is_err(), "not a multiple of 28");
 }
+
+/// A joint that slides has metres and newtons, in the trace of a run too; one that turns beside it has not.
+#[test]
+fn signals_have_the_units_of_their_joints() {
+    let tree = "name = 'cart'\n[links]\nkind = 'tree'\n\
+                [[links.body]]\nname = 'slider'\nkind = 'prismatic'\naxis = [1, 0, 0]\nmass = 2.0\ncom = [0, 0, 0]\ninertia = [0.1, 0.1, 0.1, 0, 0, 0]\n\
+                [[links.body]]\nname = 'pole'\nparent = 'slider'\naxis = [0, 1, 0]\nmass = 0.5\ncom = [0, 0, 0.2]\ninertia = [0.01, 0.01, 0.01, 0, 0, 0]\n\
+                [joints]\nstiffness = [5000.0, 200.0]\nmotor_inertia = [1.0, 0.05]\n";
+    let robot = flexure::robot::robot_from_text("cart.toml", tree, ".".as_ref());
+    let robot = robot.unwrap_or_else(|problems| panic!("{problems}"));
+    let mut scenario = scenario("planar-2r-tanh");
+    scenario.robot = robot;
+    let held = scenario.open().expect("supported");
+    let unit = |name: &str| held.signals().iter().find(|signal| signal.name == name).expect(name).unit;
+    for (first, second, units) in [
+        ("q_l1", "q_l2", ["m", "rad"]),
+        ("dq_m1", "dq_m2", ["m/s", "rad/s"]),
+        ("u_m1", "u_m2", ["N", "N m"]),
+        ("sigma_l1", "sigma_l2", ["kg m/s", "kg m^2/s"]),
+    ] {
+        assert_eq!([unit(first), unit(second)], units);
+    }
+    assert_eq!(unit("t"), "s");
+}

@@ -1,0 +1,64 @@
+//! A law written in Python: slow, for experiments.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use flexure::simulate::OwnLaw;
+use pyo3::prelude::*;
+
+use crate::arrays::{Numbers, shaped, vector};
+
+/// What the law raised: a loop has no place for it, so that it waits here.
+#[derive(Clone, Default)]
+pub struct Raised(Arc<Mutex<Option<PyErr>>>);
+
+impl Raised {
+    /// The first of them, if there is one.
+    pub fn take(&self) -> Option<PyErr> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+
+    /// The first of them as what went wrong, else `otherwise`.
+    pub fn first<T>(&self, otherwise: PyResult<T>) -> PyResult<T> {
+        self.take().map_or(otherwise, Err)
+    }
+}
+
+/// The law of `function`, called with the time in s, the motion that is seen, (4n,), and the reference with its derivatives, (5, n); it returns
+/// torques, (n,), N m. Where it raises, the torque is no number and the loop ends.
+pub fn own_law(function: Py<PyAny>) -> (OwnLaw, Raised) {
+    let raised = Raised::default();
+    let keep = raised.clone();
+    let law = OwnLaw::new(move |t, motion, series, u_m| {
+        let given = Python::attach(|py| torque(py, &function, t, motion, series, u_m));
+        if let Err(error) = given {
+            u_m.fill(f64::NAN);
+            keep.0.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+        }
+    });
+    (law, raised)
+}
+
+fn torque(
+    py: Python<'_>,
+    function: &Py<PyAny>,
+    t: f64,
+    motion: &[f64],
+    series: &[[f64; 5]],
+    u_m: &mut [f64],
+) -> PyResult<()> {
+    let n = series.len();
+    let reference = shaped(py, derivatives(series).collect(), &[], &[5, n])?;
+    let given = function.call1(py, (t, vector(py, motion), reference))?;
+    let given = Numbers::new("the law's torque", given.bind(py))?;
+    if !given.batch(n, "u_m, a number per joint")?.is_empty() {
+        return Err(given.unexpected(&[n]));
+    }
+    u_m.copy_from_slice(given.slice()?);
+    Ok(())
+}
+
+/// Positions of all joints, then their first derivatives, … from Taylor coefficients.
+pub fn derivatives(series: &[[f64; 5]]) -> impl Iterator<Item = f64> {
+    let factorials = [1.0, 1.0, 2.0, 6.0, 24.0];
+    (0..5).flat_map(move |k| series.iter().map(move |joint| joint[k] * factorials[k]))
+}
