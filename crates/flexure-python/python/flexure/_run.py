@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -16,36 +15,28 @@ if TYPE_CHECKING:
     from pandas import DataFrame as _DataFrame
 
 
-class Trace(Mapping[str, NDArray[np.float64]]):
+class Trace(dict[str, NDArray[np.float64]]):
     """What a run recorded: an array for each column, by name, `t` in s first."""
 
     def __init__(self, columns: dict[str, NDArray[np.float64]], units: dict[str, str]) -> None:
-        self._columns = columns
+        super().__init__(columns)
         self.units = units
         """SI units of the columns; empty for none."""
 
-    def __getitem__(self, name: str) -> NDArray[np.float64]:
-        try:
-            return self._columns[name]
-        except KeyError:
-            raise KeyError(f"{name}; columns are {', '.join(self._columns)}") from None
+    def __missing__(self, name: str) -> NDArray[np.float64]:
+        raise KeyError(f"{name}; columns are {', '.join(self)}")
 
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._columns)
-
-    def __len__(self) -> int:
-        return len(self._columns)
-
+    # Arrays have no one answer to being equal.
     __eq__ = object.__eq__
-    __hash__ = object.__hash__
+    __hash__ = object.__hash__  # type: ignore[assignment]
 
     def joints(self, name: str) -> NDArray[np.float64]:
         """A signal of all joints, (instants, n), as "q_l" for the columns q_l1, q_l2, …"""
         columns: list[NDArray[np.float64]] = []
-        while (column := self._columns.get(f"{name}{len(columns) + 1}")) is not None:
+        while (column := self.get(f"{name}{len(columns) + 1}")) is not None:
             columns.append(column)
         if not columns:
-            raise KeyError(f"{name}1; columns are {', '.join(self._columns)}")
+            raise KeyError(f"{name}1; columns are {', '.join(self)}")
         return np.stack(columns, axis=-1)
 
     @property
@@ -57,7 +48,7 @@ class Trace(Mapping[str, NDArray[np.float64]]):
         """A DataFrame with the time as index. Needs pandas."""
         import pandas
 
-        columns = {name: column for name, column in self._columns.items() if name != "t"}
+        columns = {name: column for name, column in self.items() if name != "t"}
         return pandas.DataFrame(columns, index=pandas.Index(self["t"], name="t"))
 
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
@@ -65,7 +56,7 @@ class Trace(Mapping[str, NDArray[np.float64]]):
         import pyarrow
 
         fields = [pyarrow.field(name, pyarrow.float64(), metadata={"unit": self.units[name]}) for name in self]
-        arrays = [pyarrow.array(column) for column in self._columns.values()]
+        arrays = [pyarrow.array(column) for column in self.values()]
         table = pyarrow.Table.from_arrays(arrays, schema=pyarrow.schema(fields))
         return table.__arrow_c_stream__(requested_schema)
 

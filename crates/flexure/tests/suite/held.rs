@@ -237,11 +237,14 @@ fn wrong_lengths_are_refused() {
 /// A joint that slides has metres and newtons, in the trace of a run too; one that turns beside it has not.
 #[test]
 fn signals_have_the_units_of_their_joints() {
-    let tree = "name = 'cart'\n[links]\nkind = 'tree'\n\
-                [[links.body]]\nname = 'slider'\nkind = 'prismatic'\naxis = [1, 0, 0]\nmass = 2.0\ncom = [0, 0, 0]\ninertia = [0.1, 0.1, 0.1, 0, 0, 0]\n\
-                [[links.body]]\nname = 'pole'\nparent = 'slider'\naxis = [0, 1, 0]\nmass = 0.5\ncom = [0, 0, 0.2]\ninertia = [0.01, 0.01, 0.01, 0, 0, 0]\n\
-                [joints]\nstiffness = [5000.0, 200.0]\nmotor_inertia = [1.0, 0.05]\n";
-    let robot = flexure::robot::robot_from_text("cart.toml", tree, ".".as_ref());
+    let body = "mass = 2.0\ncom = [0.0, 0.0, 0.1]\ninertia = [0.1, 0.0, 0.0, 0.1, 0.0, 0.1]\n";
+    let tree = format!(
+        "name = 'cart'\ngravity = [0.0, 0.0, -9.81]\n[links]\nkind = 'tree'\n\
+         [[links.joint]]\nname = 'slider'\nkind = 'prismatic'\naxis = [1.0, 0.0, 0.0]\n{body}\
+         [[links.joint]]\nname = 'pole'\nparent = 'slider'\nkind = 'revolute'\naxis = [0.0, 1.0, 0.0]\n{body}\
+         [joints]\nstiffness = [5000.0, 200.0]\nmotor_inertia = [1.0, 0.05]\nlink_damping = [1.0, 0.1]\nmotor_damping = [1.0, 0.1]\n"
+    );
+    let robot = flexure::robot::robot_from_text("cart.toml", &tree, ".".as_ref());
     let robot = robot.unwrap_or_else(|problems| panic!("{problems}"));
     let mut scenario = scenario("planar-2r-tanh");
     scenario.robot = robot;
