@@ -1,6 +1,7 @@
 //! A closed loop that Python steps.
 
 use std::sync::{Mutex, PoisonError};
+use std::thread::{self, ThreadId};
 
 use numpy::PyArrayDyn;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
@@ -17,6 +18,8 @@ use crate::scenario::{Scenario, given};
 #[pyclass(frozen, module = "flexure")]
 pub struct Loop {
     held: Mutex<Box<dyn flexure::Loop>>,
+    /// The thread in which a law in Python is asked: it would wait for itself.
+    asking: Mutex<Option<ThreadId>>,
     scenario: Py<Scenario>,
     /// What a law in Python raised; none for that of the scenario.
     raised: Option<Raised>,
@@ -31,7 +34,7 @@ impl Loop {
             Some(law) => loaded.open_with(law),
         };
         let held = py.detach(open).map_err(|problems| failure::raised(py, &problems))?;
-        Ok(Self { held: Mutex::new(held), scenario, raised })
+        Ok(Self { held: Mutex::new(held), asking: Mutex::new(None), scenario, raised })
     }
 
     /// What the law in Python raised, else `result`.
@@ -42,11 +45,24 @@ impl Loop {
         }
     }
 
-    fn with<T>(&self, py: Python<'_>, what: impl FnOnce(&mut dyn flexure::Loop) -> T + Send) -> T
-    where
-        T: Send,
-    {
-        py.detach(|| what(&mut **self.held.lock().unwrap_or_else(PoisonError::into_inner)))
+    /// What `what` makes of the loop; an error if a law uses the very loop that asks it, which would wait for itself.
+    fn with<T: Send>(
+        &self,
+        py: Python<'_>,
+        what: impl FnOnce(&mut dyn flexure::Loop) -> T + Send,
+    ) -> PyResult<T> {
+        let asking = || self.asking.lock().unwrap_or_else(PoisonError::into_inner);
+        let own = self.raised.as_ref().map(|_| thread::current().id());
+        if own.is_some() && *asking() == own {
+            return Err(PyRuntimeError::new_err("a law uses the loop that asks it"));
+        }
+        Ok(py.detach(|| {
+            let mut held = self.held.lock().unwrap_or_else(PoisonError::into_inner);
+            *asking() = own;
+            let found = what(&mut **held);
+            *asking() = None;
+            found
+        }))
     }
 }
 
@@ -66,26 +82,26 @@ impl Loop {
 
     /// Number of joints n.
     #[getter]
-    fn joints(&self, py: Python<'_>) -> usize {
+    fn joints(&self, py: Python<'_>) -> PyResult<usize> {
         self.with(py, |held| held.joints())
     }
 
     /// Time between two control instants, s.
     #[getter]
-    fn period(&self, py: Python<'_>) -> f64 {
+    fn period(&self, py: Python<'_>) -> PyResult<f64> {
         self.with(py, |held| held.period())
     }
 
     /// Names of what can be read, the columns of a trace.
     #[getter]
-    fn signals(&self, py: Python<'_>) -> Vec<String> {
+    fn signals(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         self.with(py, |held| held.signals().iter().map(|signal| signal.name.clone()).collect())
     }
 
     /// Units of the signals, by name; empty for none.
     #[getter]
     fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let all = self.with(py, |held| held.signals().to_vec());
+        let all = self.with(py, |held| held.signals().to_vec())?;
         let units = PyDict::new(py);
         all.iter().try_for_each(|signal| units.set_item(&signal.name, signal.unit))?;
         Ok(units)
@@ -101,7 +117,7 @@ impl Loop {
         while left > 0 {
             let now = left.min(AT_ONCE);
             let stepped = self
-                .with(py, |held| (0..now).try_for_each(|_| held.step()))
+                .with(py, |held| (0..now).try_for_each(|_| held.step()))?
                 .map_err(|divergence| said(py, "diverged", &divergence.to_string(), ""));
             self.unraised(stepped)?;
             left -= now;
@@ -117,7 +133,7 @@ impl Loop {
                 let signals = held.signals().to_vec();
                 let mut values = vec![0.0; signals.len()];
                 held.read(&mut values).map(|()| (signals, values))
-            })
+            })?
             .map_err(mismatch)?;
         let document = PyDict::new(py);
         for (signal, value) in signals.iter().zip(values) {
@@ -153,7 +169,7 @@ impl Loop {
         x: &Bound<'py, PyAny>,
         u_m: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let n = self.joints(py);
+        let n = self.joints(py)?;
         let arguments = [("x", x, 4 * n, MOTION), ("u_m", u_m, n, "u_m, a number per joint")];
         let (read, batch) = together(py, &arguments)?;
         let [x, u_m] = [&read[0], &read[1]];
@@ -163,29 +179,29 @@ impl Loop {
             let rows = motions.chunks_exact(4 * n).zip(torques.chunks_exact(n));
             rows.zip(rates.chunks_exact_mut(4 * n))
                 .try_for_each(|((x, u), rate)| held.derivative(t, x, u, rate))
-        })
+        })?
         .map_err(mismatch)?;
         shaped(py, rates, &batch, &[4 * n])
     }
 
     /// Everything that it remembers, as numbers: to come back by `restore`.
-    fn state<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
-        vector(py, &self.with(py, |held| held.state()))
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        Ok(vector(py, &self.with(py, |held| held.state())?))
     }
 
     /// Goes on from a state of this loop, or of another one of the same scenario.
     fn restore(&self, py: Python<'_>, state: &Bound<'_, PyAny>) -> PyResult<()> {
         let numbers = Numbers::new("state", state)?;
         if numbers.axes().len() != 1 {
-            return Err(numbers.unexpected(&[self.with(py, |held| held.state().len())]));
+            return Err(numbers.unexpected(&[self.with(py, |held| held.state().len())?]));
         }
         let state = numbers.slice()?;
-        self.with(py, |held| held.restore(state)).map_err(|unfit| PyValueError::new_err(unfit.to_string()))
+        self.with(py, |held| held.restore(state))?.map_err(|unfit| PyValueError::new_err(unfit.to_string()))
     }
 
     /// Goes back to before the first instant, with other random numbers.
-    fn reset(&self, py: Python<'_>, seed: u64) {
-        self.with(py, |held| held.reset(seed));
+    fn reset(&self, py: Python<'_>, seed: u64) -> PyResult<()> {
+        self.with(py, |held| held.reset(seed))
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
@@ -200,7 +216,7 @@ impl Loop {
                 "a loop with a law in Python: pickle its scenario and its state",
             ));
         }
-        let arguments = (slf.get().scenario(py), slf.get().state(py));
+        let arguments = (slf.get().scenario(py), slf.get().state(py)?);
         PyTuple::new(py, [slf.get_type().getattr("_again")?, arguments.into_pyobject(py)?.into_any()])
     }
 
@@ -217,7 +233,7 @@ impl Loop {
         self.with(py, |held| {
             let mut observed = flexure::simulate::Observed::new(held.joints());
             held.observe(&mut observed).map(|()| observed)
-        })
+        })?
         .map_err(|mismatch| PyRuntimeError::new_err(mismatch.to_string()))
     }
 }

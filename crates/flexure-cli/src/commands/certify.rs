@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use flexure::files::{Problem, Reading, spare};
+use flexure::files::{Problem, Reading, folder_of, prepare, spare};
 use flexure::prove::question::{Direct, Question, Region, prove_watched};
 use flexure::prove::standing::{Standing, outside_of_proofs};
 use flexure::prove::summary::ProofSummary;
@@ -35,6 +35,7 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
         .unwrap_or_else(|| PathBuf::from(format!("out/{}.certificate.json", scenario.name)));
     // Said before minutes of proof, not after.
     spare(&path, "certificate", |text| text.contains("flexure-certificate"), &[])?;
+    prepare(folder_of(&path))?;
     let proof = {
         let progress = Progress::of_one(&scenario.name);
         prove_watched(&scenario, &question, &|fraction| progress.set(0, fraction))?

@@ -280,3 +280,14 @@ fn other_files_are_spared() {
     folder.run(&["certify", "s.toml", "--out", "c.json"]).done();
     folder.run(&["certify", "s.toml", "--out", "c.json"]).done();
 }
+
+/// A place where no certificate can ever be written is told before the proof, not after minutes of it: this one would be refuted.
+#[test]
+fn a_place_below_a_file_is_refused_before_the_proof() {
+    let folder = Place::new();
+    folder.write("notes", "mine");
+    folder
+        .run(&["certify", "two-link-tanh", "--rate", "1000", "--out", "notes/c.json"])
+        .refused(&["cannot create files in notes"]);
+    assert_eq!(folder.read("notes"), "mine");
+}

@@ -14,6 +14,14 @@ pub(crate) fn subject(scenario: &Scenario) -> Subject {
     Subject { robot: scenario.robot.digest.clone(), scenario: scenario.digest.clone() }
 }
 
+impl Scenario {
+    /// SHA-256 of what its files say, in hexadecimal, of the robot's and then of its own: the same for files that differ in comments
+    /// and spaces only.
+    pub fn digest(&self) -> String {
+        format!("{}{}", self.robot.digest, self.digest)
+    }
+}
+
 /// A value that a certificate and a scenario have differently.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Difference {

@@ -131,12 +131,6 @@ impl Scenario {
         kinds
     }
 
-    /// SHA-256 of what its files say, in hexadecimal, of the robot's and then of its own: the same for files that differ in comments
-    /// and spaces only.
-    pub fn digest(&self) -> String {
-        format!("{}{}", self.robot.digest, self.digest)
-    }
-
     /// Largest torques that the drives give, in the order of the joints, infinite where there is no limit [N m]: those of a
     /// `saturation`, or else the robot's. None where neither acts: switched off by `[plant]`, or in continuous time, which has
     /// no drives.
