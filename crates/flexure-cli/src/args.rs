@@ -113,6 +113,14 @@ pub enum Command {
     )]
     /// Measure how much delay, gain error, stiffness error and noise a loop bears, by bisection in simulation.
     Margins(Margins),
+    #[command(
+        args_conflicts_with_subcommands = true,
+        subcommand_negates_reqs = true,
+        disable_help_subcommand = true,
+        after_help = "Examples:\n  flexure sweep sweep.toml --out study\n  flexure sweep sweep.toml --out study --shards 0..8\n  flexure sweep show study\n  flexure sweep replay study --row 8123"
+    )]
+    /// Run a scenario many times with changed numbers: rows of metrics as Parquet files, computed shard by shard.
+    Sweep(Sweep),
     #[command(after_help = "Example:\n  flexure excite planar-2r --budget 5 --out excite.toml")]
     /// Design the motion that tells most about a robot's joints, inside all limits: a scenario file.
     Excite(Excite),
@@ -256,6 +264,40 @@ pub struct Tune {
 }
 
 #[derive(Debug, Args)]
+pub struct Sweep {
+    #[command(subcommand)]
+    pub of: Option<OfFolder>,
+    /// Sweep file: a scenario, which of its numbers change, which points, what is kept.
+    #[arg(required = true, value_name = "SWEEP")]
+    pub file: Option<String>,
+    /// Shards to compute, counted from 0: A..B without B, or one; all if left out. Those that are there stay.
+    #[arg(long, value_name = "A..B")]
+    pub shards: Option<String>,
+    /// Folder of the rows; created if missing; default out/SWEEP.
+    #[arg(long, value_name = "FOLDER")]
+    pub out: Option<PathBuf>,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum OfFolder {
+    /// Run a row again: summary, trace and figure.
+    Replay {
+        /// Folder of a sweep.
+        folder: PathBuf,
+        /// The row, counted from 0.
+        #[arg(long)]
+        row: u64,
+        #[command(flatten)]
+        output: Output,
+    },
+    /// Tell what the rows that are there come to.
+    Show {
+        /// Folder of a sweep.
+        folder: PathBuf,
+    },
+}
+
+#[derive(Debug, Args)]
 pub struct Margins {
     /// Scenario file, or the name of a built-in scenario.
     pub scenario: String,
@@ -375,6 +417,7 @@ impl Command {
             | Self::Certify(_)
             | Self::Check { .. }
             | Self::Tune(_)
+            | Self::Sweep(_)
             | Self::Replay(_)
             | Self::Margins(_) => None,
         }

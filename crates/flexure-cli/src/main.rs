@@ -62,6 +62,7 @@ fn dispatch(command: Command, reading: Reading<'_>, json: bool) -> Result<(), Fa
         Command::Verify { certificate, against } => {
             commands::verify(&certificate, against.as_deref(), reading, json)
         }
+        Command::Sweep(options) => commands::sweep(&options, reading, json),
         Command::Tune(options) => commands::tune(&options, reading, json),
         Command::Margins(options) => commands::margins(&options, reading, json),
         Command::Excite(options) => commands::excite(&options, reading.outside, json),

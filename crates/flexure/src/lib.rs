@@ -26,6 +26,7 @@ pub mod robot;
 pub mod sampled;
 pub mod scenario;
 pub mod simulate;
+pub mod sweep;
 pub mod tune;
 pub mod units;
 pub mod verify;

@@ -17,6 +17,7 @@ pub mod print;
 mod replay;
 mod reproduce;
 mod run;
+mod sweep;
 mod tune;
 mod verify;
 
@@ -35,5 +36,6 @@ pub use model::model;
 pub use replay::replay;
 pub use reproduce::reproduce;
 pub use run::run;
+pub use sweep::sweep;
 pub use tune::tune;
 pub use verify::verify;

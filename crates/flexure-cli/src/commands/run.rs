@@ -48,7 +48,11 @@ impl<'a> Outcome<'a> {
 }
 
 pub fn run(scenario: &str, reading: Reading<'_>, out: &Path, json: bool) -> Result<(), Failure> {
-    let scenario = load_scenario_with(scenario, reading)?;
+    told(load_scenario_with(scenario, reading)?, out, json)
+}
+
+/// Runs `scenario`, writes its files into `out`, and tells what came of it.
+pub fn told(scenario: Scenario, out: &Path, json: bool) -> Result<(), Failure> {
     say(&scenario.warnings);
     say(&preload(&scenario)?);
     say(&feasible::slowed(&scenario)?);

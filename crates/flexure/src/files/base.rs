@@ -5,6 +5,7 @@ use std::path::{Component, Path, PathBuf};
 
 use crate::files::change::Change;
 use crate::files::diagnostic::Problem;
+use crate::files::kept::Kept;
 use crate::files::source::{self, Source};
 use crate::files::{builtin, suggest};
 
@@ -56,6 +57,8 @@ pub(crate) enum Base {
     Folder(PathBuf, Outside),
     /// Out of the program: a relative path names another file in it.
     BuiltIn,
+    /// From one of these two; what was read once is not read again.
+    Kept(Kept),
 }
 
 impl Base {
@@ -70,6 +73,7 @@ impl Base {
         match self {
             Self::Folder(folder, outside) => Self::of(&folder.join(path), *outside),
             Self::BuiltIn => Self::BuiltIn,
+            Self::Kept(kept) => Self::Kept(kept.beside(path)),
         }
     }
 
@@ -88,6 +92,7 @@ impl Base {
                 let message = format!("no built-in file is called {}", suggest::quoted(path));
                 Problem::new("unreadable", message, "built-in files name built-in files only")
             }),
+            Self::Kept(kept) => kept.read(path, limit),
         }
     }
 }

@@ -39,6 +39,8 @@ const DEEPEST: usize = 8;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Change {
+    /// Where it stands: what a file is by its name.
+    from: &'static str,
     text: String,
     steps: Vec<Step>,
     value: Range<usize>,
@@ -63,9 +65,14 @@ impl Change {
     /// # Errors
     /// `syntax` if it is none.
     pub fn parse(text: &str) -> Result<Self, Problem> {
+        Self::parse_from(NAME, text)
+    }
+
+    /// As [`parse`](Self::parse); messages say that it stands in `from`.
+    pub(crate) fn parse_from(from: &'static str, text: &str) -> Result<Self, Problem> {
         let refuse = |span: Range<usize>, message: &str| {
             let hint = "write KEY=VALUE: control_period=0.002, controller.link.metric=[1, 2], imperfection.delay.computation=1e-3";
-            Problem::new("syntax", message, hint).at(&Source::new(NAME, text), span)
+            Problem::new("syntax", message, hint).at(&Source::new(from, text), span)
         };
         let (mut steps, mut at) = (Vec::new(), 0);
         let value = loop {
@@ -115,7 +122,7 @@ impl Change {
         }
         let given = &text[value.clone()];
         let start = value.start + given.len() - given.trim_start().len();
-        Ok(Self { text: text.to_owned(), steps, value: start..start + given.trim().len() })
+        Ok(Self { from, text: text.to_owned(), steps, value: start..start + given.trim().len() })
     }
 
     /// Whether it is about the inside of `robot`: the robot's file.
@@ -132,7 +139,59 @@ impl Change {
     pub(crate) fn of_another_file(&self) -> Problem {
         let message = "this changes the robot's file, and what is written is the scenario's";
         let help = "copy the robot's file, change the copy, and name it: --set robot=COPY.toml; `run` and others take the change as it is";
-        Problem::new("unsupported", message, help).at(&Source::new(NAME, &self.text), 0..self.value.start)
+        Problem::new("unsupported", message, help)
+            .at(&Source::new(self.from, &self.text), 0..self.value.start)
+    }
+
+    /// The number, or the numbers of the array, that stand at the key in `source` after `changes`; none where something else does, or
+    /// nothing.
+    pub(crate) fn numbers(&self, source: &Source, changes: &[Self]) -> Option<Numbers> {
+        self.found(source, changes, |value| match value {
+            DeValue::Array(array) => {
+                array.iter().map(|entry| number(entry.get_ref())).collect::<Option<_>>().map(Numbers::Array)
+            }
+            one => number(one).map(Numbers::One),
+        })
+    }
+
+    /// The text that stands there.
+    pub(crate) fn said(&self, source: &Source, changes: &[Self]) -> Option<String> {
+        self.found(source, changes, |value| value.as_str().map(str::to_owned))
+    }
+
+    fn found<T>(
+        &self,
+        source: &Source,
+        changes: &[Self],
+        read: impl FnOnce(&DeValue<'_>) -> Option<T>,
+    ) -> Option<T> {
+        let with = source.with(changes);
+        let (mut root, _) = DeTable::parse_recoverable(with.of_file());
+        for (change, at) in changes.iter().zip(with.changes()) {
+            change.apply(root.get_mut(), at, &with).ok()?;
+        }
+        let root = DeValue::Table(root.into_inner());
+        let end = self.steps.iter().try_fold(&root, |value, step| match (&step.what, value) {
+            (What::Key(key), DeValue::Table(table)) => table.get(key.as_str()).map(Spanned::get_ref),
+            (What::Key(kind), DeValue::Array(array)) => {
+                let mut found = array.iter().map(Spanned::get_ref).filter(|entry| is_of_kind(entry, kind));
+                found.next().filter(|_| found.next().is_none())
+            }
+            (What::Index(index), DeValue::Array(array)) => array.get(*index).map(Spanned::get_ref),
+            _ => None,
+        })?;
+        read(end)
+    }
+
+    /// The key as it was written.
+    pub(crate) fn key(&self) -> &str {
+        let before = self.text.get(..self.value.start).unwrap_or_default();
+        before.trim_end().trim_end_matches('=').trim()
+    }
+
+    /// Where it stands.
+    pub(crate) fn from(&self) -> &'static str {
+        self.from
     }
 
     /// As it was written.
@@ -165,6 +224,26 @@ impl Change {
         walk.in_table(root, &steps, value)?;
         Ok(walk.turns)
     }
+}
+
+/// Numbers of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Numbers {
+    One(f64),
+    Array(Vec<f64>),
+}
+
+fn number(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Float(float) => float.as_str().parse().ok(),
+        DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().parse().ok(),
+        _ => None,
+    }
+}
+
+/// Whether it is a table with this `kind`.
+fn is_of_kind(entry: &DeValue<'_>, kind: &str) -> bool {
+    entry.get("kind").and_then(|kind| kind.get_ref().as_str()) == Some(kind)
 }
 
 /// The value that `text` is: TOML, or bare words.
@@ -305,10 +384,7 @@ impl Walk<'_> {
 
     /// The index of the only entry of a kind; of a new one if there is none.
     fn of_kind(&self, array: &mut DeArray<'_>, kind: &str, step: &Step) -> Result<usize, Problem> {
-        let is = |entry: &Spanned<DeValue<'_>>| {
-            entry.get_ref().get("kind").and_then(|kind| kind.get_ref().as_str()) == Some(kind)
-        };
-        let found: Vec<usize> = (0..array.len()).filter(|&i| is(&array[i])).collect();
+        let found: Vec<usize> = (0..array.len()).filter(|&i| is_of_kind(array[i].get_ref(), kind)).collect();
         match found.as_slice() {
             [one] => Ok(*one),
             [] if KINDS.contains(&self.so_far.as_str()) => {

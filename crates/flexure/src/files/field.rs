@@ -175,6 +175,20 @@ impl<'a> Field<'a> {
         }
     }
 
+    /// The entries of an array.
+    pub fn each(&self) -> Option<Vec<Field<'a>>> {
+        let DeValue::Array(array) = self.value else {
+            self.wrong_type("an array", "like [1.0, 2.0]");
+            return None;
+        };
+        Some(self.entries(array).collect())
+    }
+
+    /// The value as it is written.
+    pub fn text_of(&self) -> &str {
+        self.log.source.text.get(self.span.clone()).unwrap_or_default()
+    }
+
     /// Whether an array stands here.
     pub fn is_array(&self) -> bool {
         matches!(self.value, DeValue::Array(_))

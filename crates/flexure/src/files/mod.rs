@@ -15,6 +15,7 @@ pub(crate) mod diagnostic;
 pub(crate) mod document;
 mod entry;
 pub(crate) mod field;
+pub(crate) mod kept;
 mod leftover;
 pub(crate) mod normal;
 pub mod number;

@@ -32,7 +32,7 @@ pub(crate) struct Quantity {
 }
 
 impl Quantity {
-    const fn any(what: &'static str, unit: Unit) -> Self {
+    pub const fn any(what: &'static str, unit: Unit) -> Self {
         Self { what, unit, sign: Sign::Any, plausible: (TINY, LARGEST, "") }
     }
     pub const fn positive(what: &'static str, unit: Unit) -> Self {

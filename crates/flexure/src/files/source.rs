@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use miette::{MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 
-use crate::files::change::{self, Change};
+use crate::files::change::Change;
 use crate::files::diagnostic::Problem;
 
 /// A file's name and text, or a part of it from some line on, perhaps with changes appended; cheap to clone.
@@ -65,7 +65,7 @@ impl Source {
         let (mut text, mut parts) = (self.text.to_string(), vec![file]);
         for change in changes {
             text.push('\n');
-            let source = Self::new(change::NAME, change.text());
+            let source = Self::new(change.from(), change.text());
             parts.push(Part { start: text.len(), source, at: 0 });
             text.push_str(change.text());
         }

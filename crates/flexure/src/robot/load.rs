@@ -44,11 +44,16 @@ impl Robot {
 
 /// The robot at `path_or_name`, relative to `base`, its file changed by `changes`.
 pub(crate) fn robot(path_or_name: &str, base: &Base, changes: &[Change]) -> Result<Robot, Problems> {
+    let beside = if builtin::is_name(path_or_name) { Base::BuiltIn } else { base.beside(path_or_name) };
+    document::read(&source_at(path_or_name, base)?, &beside, changes)
+}
+
+/// The text of its file.
+pub(crate) fn source_at(path_or_name: &str, base: &Base) -> Result<Source, Problems> {
     if builtin::is_name(path_or_name) {
-        let text = builtin::find(path_or_name, ROBOTS, "robot")?;
-        return document::read(&Source::new(path_or_name, text), &Base::BuiltIn, changes);
+        return Ok(Source::new(path_or_name, builtin::find(path_or_name, ROBOTS, "robot")?));
     }
-    document::read(&base.read(path_or_name, bounds::LIMIT)?, &base.beside(path_or_name), changes)
+    Ok(base.read(path_or_name, bounds::LIMIT)?)
 }
 
 #[cfg(test)]

@@ -4,8 +4,10 @@ use std::path::Path;
 
 use crate::files::base::Base;
 use crate::files::bounds;
+use crate::files::change::{Change, Numbers};
 use crate::files::source::{self, Source};
-use crate::files::{Outside, Problems, Reading, SCENARIOS, TASKS, builtin};
+use crate::files::{Outside, Problem, Problems, Reading, SCENARIOS, TASKS, builtin, suggest};
+use crate::robot;
 use crate::scenario::document::{self, Scenario};
 
 /// Loads the scenario file at a path, or the built-in scenario of that name.
@@ -41,6 +43,43 @@ pub(crate) fn source(path_or_name: &str, outside: Outside) -> Result<(Source, Ba
     }
     let path = Path::new(path_or_name);
     Ok((source::read(path, bounds::LIMIT)?, Base::of(path, outside)))
+}
+
+/// The text of the scenario at a path, from `base` on, or of that name, and what paths in it are relative to.
+pub(crate) fn source_at(path_or_name: &str, base: &Base) -> Result<(Source, Base), Problems> {
+    if builtin::is_name(path_or_name) {
+        return source(path_or_name, Outside::Refused);
+    }
+    Ok((base.read(path_or_name, bounds::LIMIT)?, base.beside(path_or_name)))
+}
+
+/// The numbers that stand at the key of `key` in the scenario of `source` after `changes`, or in the file of its robot.
+pub(crate) fn numbers(
+    key: &Change,
+    source: &Source,
+    base: &Base,
+    changes: &[Change],
+) -> Result<Numbers, Problems> {
+    let own: Vec<Change> = changes.iter().filter(|change| !change.is_of_robot()).cloned().collect();
+    let found = match key.of_robot() {
+        None => key.numbers(source, &own),
+        Some(key) => {
+            let of_robot: Vec<Change> = changes.iter().filter_map(Change::of_robot).collect();
+            let robot = Change::parse("robot = 0")?.said(source, &own);
+            let robot = robot.map(|robot| robot::source_at(&robot, base)).transpose()?;
+            robot.and_then(|robot| key.numbers(&robot, &of_robot))
+        }
+    };
+    found.ok_or_else(|| {
+        let message =
+            format!("{} is relative, and the file has no numbers there", suggest::quoted(key.key()));
+        Problem::new(
+            "missing-number",
+            message,
+            "give the key in the file, or in [set], or leave relative out",
+        )
+        .into()
+    })
 }
 
 impl Scenario {

@@ -24,9 +24,11 @@ mod plant;
 
 pub use accept::Accept;
 pub use any::{Checked, check};
+pub(crate) use document::read;
 pub use document::{Hold, Scenario, scenario_from_text};
 pub use draft::draft;
 pub use guard::{Believed, Collision, GuardSettings, Reaction, Rejoin};
 pub use initial::Initial;
 pub use load::{load_scenario, load_scenario_with};
+pub(crate) use load::{numbers, source_at};
 pub use plant::Plant;

@@ -1,0 +1,202 @@
+//! `flexure sweep`: many runs of a scenario whose numbers change, and what came of them.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use flexure::files::Reading;
+use flexure::report::sweep_table;
+use flexure::sweep::{Folder, Statistics, Status, Sweep as Many, Unfinished};
+use serde::Serialize;
+
+use super::{print, run};
+use crate::args::{OfFolder, Sweep};
+use crate::failure::Failure;
+use crate::progress::Progress;
+
+/// What there is of a sweep.
+#[derive(Serialize)]
+struct Outcome<'a> {
+    name: &'a str,
+    /// A hash of what it is.
+    identity: &'a str,
+    folder: &'a Path,
+    /// Rows in all.
+    rows: u64,
+    /// Shards in all.
+    shards: u64,
+    /// Shards that are there.
+    shards_there: u64,
+    /// Shards that this command computed.
+    computed: u64,
+    /// Rows that are there.
+    rows_there: u64,
+    /// How many of them have each status.
+    statuses: &'a BTreeMap<String, u64>,
+    metrics: BTreeMap<&'a str, Spread<'a>>,
+}
+
+/// How a metric is spread over the rows that have it.
+#[derive(Serialize)]
+struct Spread<'a> {
+    unit: &'a str,
+    count: u64,
+    mean: Option<f64>,
+    deviation: Option<f64>,
+    least: Option<f64>,
+    /// The values below which 5, 50 and 95 % of them lie, to half a percent.
+    quantiles: [Option<f64>; 3],
+    largest: Option<f64>,
+}
+
+pub fn sweep(options: &Sweep, reading: Reading<'_>, json: bool) -> Result<(), Failure> {
+    if let Some(of) = &options.of {
+        if !reading.changes.is_empty() {
+            let message = "--set changes a scenario, and that of a folder stands".to_owned();
+            return Err(Failure::input(
+                "usage",
+                message,
+                "give it to `flexure sweep SWEEP`, with another folder",
+            ));
+        }
+        return match of {
+            OfFolder::Replay { folder, row, output } => replay(folder, *row, &output.out, json),
+            OfFolder::Show { folder } => {
+                let (folder, sweep) = Folder::open(folder)?;
+                show(&sweep, &folder, 0, json)
+            }
+        };
+    }
+    let sweep = Many::load(options.file.as_deref().unwrap_or_default(), reading)?;
+    let range = shards(options.shards.as_deref(), sweep.shards())?;
+    let path = options.out.clone().unwrap_or_else(|| PathBuf::from("out").join(sweep.name()));
+    let folder = Folder::of(&sweep, &path)?;
+    let computed = {
+        let progress = Progress::of_one(sweep.name());
+        folder.complete(&sweep, range.clone(), &|fraction| progress.set(0, fraction))
+    };
+    match computed {
+        Ok(computed) => show(&sweep, &folder, computed, json),
+        Err(Unfinished::Problems(problems)) if problems.is_interrupted() => {
+            show(&sweep, &folder, 0, json)?;
+            let there = folder.parts()?.range(range.clone()).count();
+            let message = format!("broken off: {there} of {} shards are there", range.end - range.start);
+            Err(Failure::interrupted(message, "the same command goes on where it was"))
+        }
+        Err(other) => Err(other.into()),
+    }
+}
+
+impl From<Unfinished> for Failure {
+    fn from(unfinished: Unfinished) -> Self {
+        match unfinished {
+            Unfinished::Problems(problems) => problems.into(),
+            Unfinished::Unwritten(error) => error.into(),
+        }
+    }
+}
+
+/// `A..B`, or one shard.
+fn shards(said: Option<&str>, count: u64) -> Result<Range<u64>, Failure> {
+    let Some(said) = said else { return Ok(0..count) };
+    let number = |text: &str, missing: u64| {
+        let text = text.trim();
+        if text.is_empty() { Some(missing) } else { text.parse().ok() }
+    };
+    let range = match said.split_once("..") {
+        Some((from, to)) => number(from, 0).zip(number(to, count)),
+        None => said.trim().parse().ok().map(|shard: u64| (shard, shard.saturating_add(1))),
+    };
+    match range {
+        Some((from, to)) if from < to && to <= count => Ok(from..to),
+        _ => {
+            let message = format!("--shards is '{said}', must be shards from 0 to {}", count - 1);
+            Err(Failure::input(
+                "usage",
+                message,
+                "--shards 0..10 is the first ten, --shards 3 the one after three",
+            ))
+        }
+    }
+}
+
+fn show(sweep: &Many, folder: &Folder, computed: u64, json: bool) -> Result<(), Failure> {
+    let statistics = folder.statistics(sweep)?;
+    let there = folder.parts()?.len() as u64;
+    if json {
+        return print::json(&outcome(sweep, folder, &statistics, there, computed));
+    }
+    if statistics.rows > 0 {
+        print::line(&sweep_table(sweep, &statistics, print::columns()))?;
+    }
+    let statuses: Vec<String> = Status::ALL
+        .iter()
+        .filter_map(|status| {
+            let count = statistics.statuses.get(status.name()).filter(|count| **count > 0)?;
+            Some(format!("{count} {}", words(*status)))
+        })
+        .collect();
+    let statuses = if statuses.is_empty() { String::new() } else { format!(": {}", statuses.join(", ")) };
+    print::line(&format!("{} of {} runs are there{statuses}", statistics.rows, sweep.rows()))?;
+    print::line(&format!("{there} of {} shards in {}", sweep.shards(), folder.path().display()))
+}
+
+fn words(status: Status) -> &'static str {
+    match status {
+        Status::Follows => "follow their reference",
+        Status::Strays => "do not follow",
+        Status::Diverges => "diverge",
+        Status::Refused => "were refused: their numbers do not go together",
+    }
+}
+
+fn outcome<'a>(
+    sweep: &'a Many,
+    folder: &'a Folder,
+    statistics: &'a Statistics,
+    there: u64,
+    computed: u64,
+) -> Outcome<'a> {
+    let spread = |metric: &&'static flexure::sweep::Metric| {
+        let figures = statistics.metrics.get(metric.name)?;
+        let spread = Spread {
+            unit: metric.unit,
+            count: figures.count,
+            mean: (figures.count > 0).then_some(figures.mean),
+            deviation: figures.deviation(),
+            least: figures.least,
+            quantiles: [0.05, 0.5, 0.95].map(|part| figures.quantile(part)),
+            largest: figures.largest,
+        };
+        Some((metric.name, spread))
+    };
+    Outcome {
+        name: sweep.name(),
+        identity: sweep.identity(),
+        folder: folder.path(),
+        rows: sweep.rows(),
+        shards: sweep.shards(),
+        shards_there: there,
+        computed,
+        rows_there: statistics.rows,
+        statuses: &statistics.statuses,
+        metrics: sweep.metrics().iter().filter_map(spread).collect(),
+    }
+}
+
+/// Runs a row again, with its trace.
+fn replay(folder: &Path, row: u64, out: &Path, json: bool) -> Result<(), Failure> {
+    let (_, sweep) = Folder::open(folder)?;
+    let mut scenario = sweep.scenario(row)?;
+    scenario.name = format!("{}-row-{row}", sweep.name());
+    if !json {
+        let values = sweep.values(row);
+        let said = sweep.parameters().iter().zip(&values).map(|(parameter, value)| {
+            let times = if parameter.relative { "× " } else { "" };
+            format!("{} {times}{value}", parameter.key)
+        });
+        let said: Vec<String> = said.collect();
+        print::line(&format!("row {row}: {}; seed {}", said.join(", "), sweep.seed(row)))?;
+    }
+    run::told(scenario, out, json)
+}

@@ -1,0 +1,374 @@
+//! Sweeps: many runs of a scenario whose numbers change from one to the next.
+//!
+//! A row, one run, is a function of its index alone: where its point lies, its seed and what comes of it depend on nothing that ran
+//! before. So rows are computed in any order, by any number of threads, programs and machines, and any of them can be run again,
+//! with its trace. Rows come in shards: a shard is computed, written, taken into account and repeated as a whole, as a Parquet file
+//! that is there or not. What there is to do is what is not in the folder; nobody keeps books.
+
+mod design;
+mod document;
+mod folder;
+mod metric;
+mod outcome;
+mod parameter;
+mod parquet;
+mod sobol;
+mod statistics;
+mod streams;
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::files::base::Base;
+use crate::files::change::Change;
+use crate::files::document as toml;
+use crate::files::kept::Kept;
+use crate::files::normal::Normal;
+use crate::files::source::{self, Source};
+use crate::files::{Problem, Problems, Reading, bounds, suggest};
+use crate::progress::Progress;
+use crate::scenario::{self, Scenario};
+use document::{FORM, Said, Seeds};
+use streams::Stream;
+
+pub use design::Kind;
+pub use folder::{Folder, MANIFEST, Unfinished, part_name};
+pub use metric::{METRICS, Metric};
+pub use outcome::{Outcome, Status};
+pub use parameter::{Parameter, Value, Values};
+pub use parquet::{Column, Columns};
+pub use statistics::{Figures, Statistics};
+
+/// Many runs of a scenario, by their indices.
+///
+/// ```
+/// let text = r#"
+///     scenario = "pendulum-tanh"
+///     design = "sobol"
+///     points = 8
+///     set.duration = 0.1
+///     [parameters]
+///     "robot.joints.stiffness" = { from = 0.5, to = 2.0, scale = "log", relative = true }
+/// "#;
+/// let sweep = flexure::sweep::Sweep::from_text("soft", text, std::path::Path::new("."))?;
+/// assert_eq!(sweep.rows(), 8);
+/// let row = sweep.row(5);
+/// assert_eq!(sweep.run(5)?.summary.rms_e_l, row.metric(&sweep, "rms_e_l").expect("kept")); // rad
+/// # Ok::<(), flexure::Problems>(())
+/// ```
+#[derive(Debug)]
+pub struct Sweep {
+    name: String,
+    said: Said,
+    /// The text of the scenario.
+    scenario: Source,
+    /// Where files that it names are.
+    base: Base,
+    identity: String,
+    manifest: Manifest,
+}
+
+/// A sweep with everything that it needs, as it stands in its folder: enough to go on with it anywhere.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+struct Manifest {
+    /// Version of Flexure.
+    flexure: String,
+    /// What it is, hashed.
+    identity: String,
+    /// Name of the file.
+    name: String,
+    /// The file.
+    text: String,
+    /// Changes from outside.
+    set: Vec<String>,
+    /// Name and text of the scenario.
+    scenario: [String; 2],
+    /// The files that the scenario names, those that these name, and so on.
+    files: BTreeMap<String, String>,
+    rows: u64,
+    shard: u64,
+    columns: Vec<String>,
+}
+
+impl Sweep {
+    /// Loads the sweep file at a path; changes are made to its scenario, as those of its `[set]`, after them.
+    ///
+    /// # Errors
+    /// With everything that is wrong, in the files that it names as well, and in what becomes of them at the ends of the parameters.
+    pub fn load<'a>(path: &str, reading: impl Into<Reading<'a>>) -> Result<Self, Problems> {
+        let Reading { outside, changes } = reading.into();
+        let source = source::read(Path::new(path), bounds::LIMIT)?;
+        let name = Path::new(path)
+            .file_stem()
+            .map_or_else(|| path.to_owned(), |stem| stem.to_string_lossy().into_owned());
+        Self::read(&name, &source, &Base::of(Path::new(path), outside), changes)
+    }
+
+    /// Reads one from `text`, which is called `name`; paths in it start from `folder` and stay there or below.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn from_text(name: &str, text: &str, folder: &Path) -> Result<Self, Problems> {
+        let base = Base::Folder(folder.to_owned(), crate::files::Outside::Refused);
+        Self::read(name, &Source::new(name, text), &base, &[])
+    }
+
+    fn read(name: &str, source: &Source, base: &Base, set: &[Change]) -> Result<Self, Problems> {
+        let (said, _) = said(source)?;
+        let (scenario, base) = scenario::source_at(&said.scenario, base)?;
+        Self::assembled(name, source, said, scenario, &Kept::of(base), set)
+    }
+
+    /// From what [`document`](Self::document) wrote, anywhere.
+    ///
+    /// # Errors
+    /// If it is no such document, or of another version of Flexure.
+    pub fn from_document(text: &str) -> Result<Self, Problems> {
+        let manifest: Manifest = serde_json::from_str(text).map_err(|error| {
+            let message = format!("{MANIFEST} is no description of a sweep: {error}");
+            Problem::new("syntax", message, "it is written by `flexure sweep`: name another folder")
+        })?;
+        let ours = env!("CARGO_PKG_VERSION");
+        if manifest.flexure != ours {
+            let message = format!("the sweep is of Flexure {}, and this is {ours}", manifest.flexure);
+            let help = "numbers may differ between versions: go on with the other one, or begin again in another folder";
+            return Err(Problem::new("version", message, help).into());
+        }
+        let source = Source::new(&manifest.name, &manifest.text);
+        let [name, text] = &manifest.scenario;
+        let set: Result<Vec<Change>, Problem> = manifest.set.iter().map(|set| Change::parse(set)).collect();
+        let kept = Kept::holding(&manifest.files);
+        let sweep = Self::assembled(
+            &manifest.name,
+            &source,
+            said(&source)?.0,
+            Source::new(name, text),
+            &kept,
+            &set?,
+        )?;
+        if sweep.identity == manifest.identity {
+            return Ok(sweep);
+        }
+        let message = format!("{MANIFEST} was changed: it is not the sweep that it was written for");
+        Err(Problem::new("changed", message, "begin again in another folder").into())
+    }
+
+    fn assembled(
+        name: &str,
+        source: &Source,
+        mut said: Said,
+        scenario: Source,
+        kept: &Kept,
+        set: &[Change],
+    ) -> Result<Self, Problems> {
+        said.set.extend(set.iter().cloned());
+        let base = Base::Kept(kept.clone());
+        for parameter in said.parameters.iter_mut().filter(|parameter| parameter.relative) {
+            let key = Change::parse(&format!("{} = 0", parameter.key))?;
+            parameter.base = Some(scenario::numbers(&key, &scenario, &base, &said.set)?);
+        }
+        let mut sweep = Self {
+            name: name.to_owned(),
+            said,
+            scenario,
+            base,
+            identity: String::new(),
+            manifest: Manifest {
+                flexure: env!("CARGO_PKG_VERSION").to_owned(),
+                identity: String::new(),
+                name: name.to_owned(),
+                text: source.of_file().to_owned(),
+                set: set.iter().map(|change| change.text().to_owned()).collect(),
+                scenario: [String::new(), String::new()],
+                files: BTreeMap::new(),
+                rows: 0,
+                shard: 0,
+                columns: Vec::new(),
+            },
+        };
+        let digests = sweep.looked_at()?;
+        // What no row near the ends of its parameters has read is read by none: rows do not depend on what becomes of files.
+        sweep.base = Base::Kept(kept.clone().closed());
+        sweep.identity = identity(source, set, &digests);
+        sweep.manifest.identity.clone_from(&sweep.identity);
+        sweep.manifest.scenario = [&sweep.scenario.name, &sweep.scenario.text].map(ToString::to_string);
+        sweep.manifest.files = kept.files();
+        (sweep.manifest.rows, sweep.manifest.shard) = (sweep.rows(), sweep.said.shard);
+        sweep.manifest.columns = sweep.columns();
+        Ok(sweep)
+    }
+
+    /// Reads the scenario of the first row, and with each end of each parameter: what is wrong with them is wrong with the sweep. Returns
+    /// what they say, hashed.
+    fn looked_at(&self) -> Result<Vec<String>, Problems> {
+        let first = self.said.design.point(0, &self.said.parameters);
+        let mut points = vec![first.clone()];
+        for (i, parameter) in self.said.parameters.iter().enumerate() {
+            points.extend(parameter.ends().into_iter().map(|end| {
+                let mut point = first.clone();
+                point[i] = end;
+                point
+            }));
+        }
+        points.iter().map(|point| Ok(self.changed(point, 0)?.digest())).collect()
+    }
+
+    /// Name of its file, without the ending.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What it is, hashed: the same for files that differ in comments and spaces only.
+    pub fn identity(&self) -> &str {
+        &self.identity
+    }
+
+    /// Everything that is needed to go on with it anywhere, as JSON.
+    pub fn document(&self) -> String {
+        serde_json::to_string_pretty(&self.manifest).unwrap_or_default()
+    }
+
+    /// What changes, in the order of the keys.
+    pub fn parameters(&self) -> &[Parameter] {
+        &self.said.parameters
+    }
+
+    /// What is kept of each run.
+    pub fn metrics(&self) -> &[&'static Metric] {
+        &self.said.metrics
+    }
+
+    /// How points are spread.
+    pub fn design(&self) -> Kind {
+        self.said.design.kind
+    }
+
+    /// Runs in all: points times seeds.
+    pub fn rows(&self) -> u64 {
+        self.said.design.points * self.said.seeds.count()
+    }
+
+    /// Shards in all.
+    pub fn shards(&self) -> u64 {
+        self.rows().div_ceil(self.said.shard)
+    }
+
+    /// Rows of a shard.
+    pub fn rows_of(&self, shard: u64) -> Range<u64> {
+        shard * self.said.shard..((shard + 1) * self.said.shard).min(self.rows())
+    }
+
+    /// Names of the columns: row, seed, status, parameters, metrics.
+    pub fn columns(&self) -> Vec<String> {
+        let parameters = self.said.parameters.iter().map(|parameter| parameter.key.clone());
+        let metrics = self.said.metrics.iter().map(|metric| metric.name.to_owned());
+        ["row", "seed", "status"].map(str::to_owned).into_iter().chain(parameters).chain(metrics).collect()
+    }
+
+    /// Values of the parameters of a row.
+    pub fn values(&self, row: u64) -> Vec<Value> {
+        self.said.design.point(row / self.said.seeds.count(), &self.said.parameters)
+    }
+
+    /// Seed of a row: what is random in its run.
+    pub fn seed(&self, row: u64) -> u64 {
+        match &self.said.seeds {
+            Seeds::Own(_) => Stream { seed: self.said.design.seed, purpose: "seed" }.bits(row, 0) >> 11,
+            Seeds::Shared(seeds) => seeds[usize::try_from(row % seeds.len() as u64).unwrap_or(0)],
+        }
+    }
+
+    /// The scenario of a row.
+    ///
+    /// # Errors
+    /// If its numbers do not go together, and `range` if there is no such row.
+    pub fn scenario(&self, row: u64) -> Result<Scenario, Problems> {
+        if row >= self.rows() {
+            let message = format!(
+                "row {row}: {} has {} rows, counted from 0",
+                suggest::quoted(&self.name),
+                self.rows()
+            );
+            return Err(Problem::new("range", message, "name a row that is there").into());
+        }
+        self.changed(&self.values(row), self.seed(row))
+    }
+
+    fn changed(&self, values: &[Value], seed: u64) -> Result<Scenario, Problems> {
+        let mut changes = self.said.set.clone();
+        for (parameter, value) in self.said.parameters.iter().zip(values) {
+            changes.push(parameter.change(value)?);
+        }
+        changes.push(Change::parse_from("seeds", &format!("seed = {seed}"))?);
+        scenario::read(&self.scenario, &self.base, &changes)
+    }
+
+    /// What comes of a row.
+    pub fn row(&self, row: u64) -> Outcome {
+        self.outcome(row, &crate::progress::unwatched).unwrap_or_else(|_| Outcome::refused(self, row))
+    }
+
+    /// The run of a row, with its trace.
+    ///
+    /// # Errors
+    /// As [`scenario`](Self::scenario), and as [`Scenario::open`].
+    pub fn run(&self, row: u64) -> Result<crate::simulate::Run, Problems> {
+        self.scenario(row)?.simulate()
+    }
+
+    fn outcome(&self, row: u64, progress: Progress<'_>) -> Result<Outcome, Problems> {
+        match Outcome::of(self, row, progress) {
+            Err(problems) if !problems.is_interrupted() => Ok(Outcome::refused(self, row)),
+            outcome => outcome,
+        }
+    }
+
+    /// What comes of the rows of a shard, computed side by side. `progress` is told the fraction of them that is done.
+    ///
+    /// # Errors
+    /// [`Problems::interrupted`] if it was broken off.
+    pub fn outcomes(&self, shard: u64, progress: Progress<'_>) -> Result<Vec<Outcome>, Problems> {
+        let rows = self.rows_of(shard);
+        let (count, done) = ((rows.end - rows.start) as f64, AtomicU64::new(0));
+        let fraction = || done.load(Ordering::Relaxed) as f64 / count;
+        let each = |i| {
+            let outcome = self.outcome(rows.start + i as u64, &|_| progress(fraction()))?;
+            done.fetch_add(1, Ordering::Relaxed);
+            Ok(outcome)
+        };
+        let count = usize::try_from(rows.end - rows.start).unwrap_or(usize::MAX);
+        (0..count).into_par_iter().with_max_len(1).map(each).collect()
+    }
+
+    /// The file of a shard: Parquet, with the statistics of its rows.
+    ///
+    /// # Errors
+    /// [`Problems::interrupted`] if it was broken off.
+    pub fn shard(&self, shard: u64, progress: Progress<'_>) -> Result<Vec<u8>, Problems> {
+        let outcomes = self.outcomes(shard, progress)?;
+        parquet::written(self, &outcomes)
+    }
+}
+
+fn said(source: &Source) -> Result<(Said, Vec<Problem>), Problems> {
+    toml::parse(source, &[], &FORM, |root, _| document::said(root))
+}
+
+/// A hash of what a sweep is: its file, what was changed from outside, what the scenarios at its ends say, the version.
+fn identity(source: &Source, set: &[Change], digests: &[String]) -> String {
+    let mut file = Normal::Text(String::new());
+    // It was read before.
+    let _ = toml::parse(source, &[], &FORM, |root, _| {
+        file = root.normal().without(&["scenario"]);
+        Some(())
+    });
+    let texts = |texts: Vec<String>| Normal::List(texts.into_iter().map(Normal::Text).collect());
+    let set = set.iter().map(|change| change.text().to_owned()).collect();
+    let version = Normal::Text(env!("CARGO_PKG_VERSION").to_owned());
+    Normal::List(vec![version, file, texts(set), texts(digests.to_vec())]).digest()
+}
