@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use flexure::compare::{Search, Task, check_budget, check_seeds, entrants, tasks};
 use flexure::design::{SpecFile, Specified, design, spare_out};
-use flexure::files::{Problems, Reading, folder_of, prepare, write_atomic};
+use flexure::files::{Problems, folder_of, prepare, write_atomic};
 use flexure::progress::Parts;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
@@ -32,15 +32,13 @@ pub fn tune<'py>(
         prepare(folder_of(out)).map_err(unwritten)?;
     }
     let inputs: Vec<&Path> =
-        std::iter::once(Path::new(&*scenario.source.path_or_name)).chain(spec.as_deref()).collect();
+        std::iter::once(Path::new(&*scenario.source.name)).chain(spec.as_deref()).collect();
     let prepared = || {
         let spec = spec.as_deref().map_or_else(|| Ok(SpecFile::usual()), SpecFile::load)?;
-        let changes = scenario.source.parsed()?;
-        let reading = Reading { outside: outside(scenario.source.allow_outside), changes: &changes };
-        let specified = Specified::load(&scenario.source.path_or_name, reading, &spec)?;
+        let specified = Specified::of(&scenario.loaded, &scenario.source.bundle, &spec)?;
         if let Some(out) = &out {
             spare_out(out, &inputs)?;
-            specified.belongs(out, reading.outside)?;
+            specified.belongs(out, outside(scenario.source.allow_outside))?;
         }
         Ok((spec, specified))
     };

@@ -17,6 +17,7 @@ mod proofs;
 mod robot;
 mod run;
 mod scenario;
+mod sweep;
 mod watched;
 
 use pyo3::prelude::*;
@@ -44,6 +45,8 @@ mod _flexure {
     use super::run::simulate;
     #[pymodule_export]
     use super::scenario::Scenario;
+    #[pymodule_export]
+    use super::sweep::Sweep;
     #[pymodule_export]
     use super::watched::panic;
 

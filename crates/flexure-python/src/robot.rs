@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use flexure::robot::{Arm, PortHamiltonian, Robot as Loaded, load_robot_with, overview};
+use flexure::files::Bundle;
+use flexure::robot::{Arm, PortHamiltonian, Robot as Loaded, overview};
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -11,8 +12,8 @@ use pyo3::types::{PyDict, PyList, PyTuple};
 
 use crate::arrays::{Argument, Numbers, constant, shape, shaped, together, zeros};
 use crate::documents::document;
-use crate::failure::{documents, mismatch, raised, warn};
-use crate::scenario::{Scenario, changed, hashed, outside, whole};
+use crate::failure::{documents, mismatch, raised, refused, warn};
+use crate::scenario::{Scenario, changed, hashed, outside};
 
 type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 
@@ -29,8 +30,8 @@ pub struct Robot {
 
 /// What a robot was read from.
 pub enum Source {
-    /// A file or a name, and whether it may name files outside of its folder.
-    File(String, bool),
+    /// A file, with those that it names.
+    File(Bundle),
     /// It is that of a scenario.
     Scenario(Py<Scenario>),
 }
@@ -41,10 +42,9 @@ impl Robot {
         Ok(Self { loaded: Arc::new(loaded), arm, source })
     }
 
-    fn read(py: Python<'_>, path_or_name: String, allow_outside: bool) -> PyResult<Self> {
-        let loaded = load_robot_with(&path_or_name, outside(allow_outside))
-            .map_err(|problems| raised(py, &problems))?;
-        Self::of(py, loaded, Source::File(whole(path_or_name), allow_outside))
+    fn read(py: Python<'_>, bundle: Bundle) -> PyResult<Self> {
+        let loaded = Loaded::of(&bundle).map_err(|problems| raised(py, &problems))?;
+        Self::of(py, loaded, Source::File(bundle))
     }
 }
 
@@ -79,9 +79,10 @@ impl Robot {
     #[new]
     #[pyo3(signature = (path_or_name, *, allow_outside = false))]
     fn new(py: Python<'_>, path_or_name: PathBuf, allow_outside: bool) -> PyResult<Self> {
-        let robot = Self::read(py, path_or_name.to_string_lossy().into_owned(), allow_outside)?;
-        warn(py, &robot.loaded.warnings, 1)?;
-        Ok(robot)
+        let read = Loaded::bundled(&path_or_name.to_string_lossy(), outside(allow_outside));
+        let (loaded, bundle) = read.map_err(|problems| raised(py, &problems))?;
+        warn(py, &loaded.warnings, 1)?;
+        Self::of(py, loaded, Source::File(bundle))
     }
 
     /// Its name, as in its file.
@@ -275,12 +276,12 @@ impl Robot {
         hashed(self.loaded.digest())
     }
 
-    /// Files are read again where it is unpickled, and must say the same.
+    /// It goes with what stands in its files.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let (py, robot) = (slf.py(), slf.get());
         match &robot.source {
-            Source::File(path_or_name, allow_outside) => {
-                let arguments = (path_or_name, *allow_outside, robot.loaded.digest());
+            Source::File(bundle) => {
+                let arguments = (bundle.document(), robot.loaded.digest());
                 Ok((slf.get_type().getattr("_again")?, arguments.into_pyobject(py)?))
             }
             Source::Scenario(scenario) => {
@@ -291,8 +292,9 @@ impl Robot {
     }
 
     #[staticmethod]
-    fn _again(py: Python<'_>, path_or_name: String, allow_outside: bool, digest: &str) -> PyResult<Self> {
-        let again = Self::read(py, path_or_name, allow_outside)?;
+    fn _again(py: Python<'_>, document: &str, digest: &str) -> PyResult<Self> {
+        let bundle = Bundle::from_document(document).map_err(|problem| refused(py, &problem))?;
+        let again = Self::read(py, bundle)?;
         if again.loaded.digest() == digest { Ok(again) } else { Err(changed(py, &again.loaded.name)) }
     }
 }

@@ -41,14 +41,14 @@ pub fn simulate<'py>(
     if let Some(error) = of_law.and_then(|of_law| of_law.take()) {
         return Err(error);
     }
-    let (Run { summary, trace, divergence, broken_off, faults }, sampled) =
-        found.map_err(|problems: Problems| raised(py, &problems))?;
-    if broken_off.is_some() {
+    let (run, sampled) = found.map_err(|problems: Problems| raised(py, &problems))?;
+    if run.broken_off.is_some() {
         return Err(PyKeyboardInterrupt::new_err(()));
     }
-    if divergence.is_none() {
-        warn(py, &exceeded(&loaded.robot, &trace), OF_JOBS)?;
+    if run.divergence.is_none() {
+        warn(py, &exceeded(&loaded.robot, &run.trace), OF_JOBS)?;
     }
+    let Run { summary, trace, divergence, faults, .. } = run;
     let unstable = sampled.as_ref().and_then(|sampled| sampled.problem(&loaded));
     let objections: Vec<_> = unstable.into_iter().chain(beyond).collect();
     warn(py, &objections.iter().map(|problem| problem.clone().warning()).collect::<Vec<_>>(), OF_JOBS)?;

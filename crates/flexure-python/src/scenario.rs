@@ -1,10 +1,10 @@
 //! Scenarios.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
-use flexure::files::{Change, Outside, Problem, Problems, Reading};
-use flexure::scenario::{Scenario as Loaded, load_scenario_with};
+use flexure::files::{Bundle, Change, Outside, Problems, Reading};
+use flexure::scenario::Scenario as Loaded;
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -13,7 +13,7 @@ use crate::arrays::vector;
 use crate::changes::changes;
 use crate::controller::Controller;
 use crate::documents::document;
-use crate::failure::{documents, raised, said, warn};
+use crate::failure::{documents, raised, refused, said, warn};
 use crate::held::Loop;
 use crate::robot::{Robot, Source};
 
@@ -27,25 +27,15 @@ pub struct Scenario {
 /// What a scenario was read from.
 #[derive(Clone)]
 pub struct Origin {
-    pub path_or_name: String,
-    changes: Vec<String>,
+    /// Its path, or its name.
+    pub name: String,
     pub allow_outside: bool,
-}
-
-impl Origin {
-    /// The changes.
-    pub fn parsed(&self) -> Result<Vec<Change>, Problem> {
-        self.changes.iter().map(|change| Change::parse(change)).collect()
-    }
-
-    fn load(&self) -> Result<Loaded, Problems> {
-        let (outside, changes) = (outside(self.allow_outside), self.parsed()?);
-        load_scenario_with(&self.path_or_name, Reading { outside, changes: &changes })
-    }
+    /// What stands in its files.
+    pub bundle: Bundle,
 }
 
 /// A function and its arguments, by which pickle makes a scenario again.
-type Again<'py> = (Bound<'py, PyAny>, (String, Vec<String>, bool, String));
+type Again<'py> = (Bound<'py, PyAny>, (String, bool, String, String));
 
 /// Whether files may name files outside of their folders.
 pub fn outside(allowed: bool) -> Outside {
@@ -62,13 +52,16 @@ impl Scenario {
         set: Option<&Bound<'_, PyAny>>,
         allow_outside: bool,
     ) -> PyResult<Self> {
-        let path_or_name = path_or_name.to_string_lossy().into_owned();
-        let mut source = Origin { path_or_name, changes: changes(set)?, allow_outside };
-        let loaded = source.load().map_err(|problems| raised(py, &problems))?;
+        let changes: Vec<Change> = changes(set)?
+            .iter()
+            .map(|change| Change::parse(change))
+            .collect::<Result<_, _>>()
+            .map_err(|problem| refused(py, &problem))?;
+        let name = path_or_name.to_string_lossy().into_owned();
+        let reading = Reading { outside: outside(allow_outside), changes: &changes };
+        let (loaded, bundle) = Loaded::bundled(&name, reading).map_err(|problems| raised(py, &problems))?;
         warn(py, &loaded.warnings, 1)?;
-        // The current folder may be another when it is pickled.
-        source.path_or_name = whole(source.path_or_name);
-        Ok(Self { loaded: Arc::new(loaded), source })
+        Ok(Self { loaded: Arc::new(loaded), source: Origin { name, allow_outside, bundle } })
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {
@@ -186,44 +179,46 @@ impl Scenario {
         )
     }
 
-    /// Files are read again where it is unpickled, and must say the same.
+    /// It goes with what stands in its files.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Again<'py>> {
         let again = slf.get_type().getattr("_again")?;
-        let Origin { path_or_name, changes, allow_outside } = slf.get().source.clone();
-        Ok((again, (path_or_name, changes, allow_outside, slf.get().loaded.digest())))
+        let Origin { name, allow_outside, bundle } = &slf.get().source;
+        Ok((again, (name.clone(), *allow_outside, bundle.document(), slf.get().loaded.digest())))
     }
 
     #[staticmethod]
     fn _again(
         py: Python<'_>,
-        path_or_name: String,
-        changes: Vec<String>,
+        name: String,
         allow_outside: bool,
+        document: &str,
         digest: &str,
     ) -> PyResult<Self> {
-        let source = Origin { path_or_name, changes, allow_outside };
-        let loaded = source.load().map_err(|problems| raised(py, &problems))?;
+        let read = || {
+            let bundle = Bundle::from_document(document)?;
+            Ok((Loaded::of(&bundle)?, bundle))
+        };
+        let (loaded, bundle) = read().map_err(|problems: Problems| raised(py, &problems))?;
         if loaded.digest() == digest {
-            Ok(Self { loaded: Arc::new(loaded), source })
+            Ok(Self { loaded: Arc::new(loaded), source: Origin { name, allow_outside, bundle } })
         } else {
             Err(changed(py, &loaded.name))
         }
     }
 }
 
-/// A path that is good from any folder; a name as it is.
-pub fn whole(path_or_name: String) -> String {
-    let path = Path::new(&path_or_name);
-    match path.canonicalize() {
-        Ok(whole) if path.is_file() => whole.to_string_lossy().into_owned(),
-        _ => path_or_name,
+impl Scenario {
+    /// A scenario that stands in no file of its own.
+    pub fn of(bundle: Bundle) -> Result<Self, Problems> {
+        let loaded = Arc::new(Loaded::of(&bundle)?);
+        Ok(Self { loaded, source: Origin { name: String::new(), allow_outside: false, bundle } })
     }
 }
 
 /// Why something is not unpickled.
 pub fn changed(py: Python<'_>, name: &str) -> PyErr {
-    let message = format!("{name} was pickled when its files said something else");
-    said(py, "changed", &message, "pickle it again, or bring the files back")
+    let message = format!("{name} was pickled when built-in files said something else");
+    said(py, "changed", &message, "pickle it again with this version of Flexure")
 }
 
 /// A hash of a digest.

@@ -1,12 +1,11 @@
 //! `flexure sweep`: many runs of a scenario whose numbers change, and what came of them.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use flexure::files::Reading;
 use flexure::report::sweep_table;
-use flexure::sweep::{Folder, Statistics, Status, Sweep as Many, Unfinished};
+use flexure::sweep::{Folder, Statistics, Status, Sweep as Many, Told, Unfinished};
 use serde::Serialize;
 
 use super::{print, run};
@@ -29,24 +28,8 @@ struct Outcome<'a> {
     shards_there: u64,
     /// Shards that this command computed.
     computed: u64,
-    /// Rows that are there.
-    rows_there: u64,
-    /// How many of them have each status.
-    statuses: &'a BTreeMap<String, u64>,
-    metrics: BTreeMap<&'a str, Spread<'a>>,
-}
-
-/// How a metric is spread over the rows that have it.
-#[derive(Serialize)]
-struct Spread<'a> {
-    unit: &'a str,
-    count: u64,
-    mean: Option<f64>,
-    deviation: Option<f64>,
-    least: Option<f64>,
-    /// The values below which 5, 50 and 95 % of them lie, to half a percent.
-    quantiles: [Option<f64>; 3],
-    largest: Option<f64>,
+    #[serde(flatten)]
+    told: Told<'a>,
 }
 
 pub fn sweep(options: &Sweep, reading: Reading<'_>, json: bool) -> Result<(), Failure> {
@@ -157,19 +140,6 @@ fn outcome<'a>(
     there: u64,
     computed: u64,
 ) -> Outcome<'a> {
-    let spread = |metric: &&'static flexure::sweep::Metric| {
-        let figures = statistics.metrics.get(metric.name)?;
-        let spread = Spread {
-            unit: metric.unit,
-            count: figures.count,
-            mean: (figures.count > 0).then_some(figures.mean),
-            deviation: figures.deviation(),
-            least: figures.least,
-            quantiles: [0.05, 0.5, 0.95].map(|part| figures.quantile(part)),
-            largest: figures.largest,
-        };
-        Some((metric.name, spread))
-    };
     Outcome {
         name: sweep.name(),
         identity: sweep.identity(),
@@ -178,9 +148,7 @@ fn outcome<'a>(
         shards: sweep.shards(),
         shards_there: there,
         computed,
-        rows_there: statistics.rows,
-        statuses: &statistics.statuses,
-        metrics: sweep.metrics().iter().filter_map(spread).collect(),
+        told: statistics.told(sweep),
     }
 }
 

@@ -12,10 +12,11 @@ of the traces. Motors are seen from the link side of the gear. Arrays may have a
     'proved'
 """
 
-from ._flexure import Controller, FlexureError, FlexureWarning, Loop, Plant, Robot, Scenario, __version__
+from ._flexure import Controller, FlexureError, FlexureWarning, Loop, Plant, Robot, Scenario, Sweep, __version__
 from ._jobs import certify, compare, excite, identify, margins, replay, simulate, tune, verify
 from ._motion import Motion, motion, views
 from ._run import Run, Trace
+from ._sweep import Rows, sweep
 
 __all__ = [
     "Controller",
@@ -25,8 +26,10 @@ __all__ = [
     "Motion",
     "Plant",
     "Robot",
+    "Rows",
     "Run",
     "Scenario",
+    "Sweep",
     "Trace",
     "__version__",
     "certify",
@@ -37,6 +40,7 @@ __all__ = [
     "motion",
     "replay",
     "simulate",
+    "sweep",
     "tune",
     "verify",
     "views",

@@ -7,9 +7,9 @@ use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, value};
 use crate::design::spec::SpecFile;
 use crate::files::source::Source;
 use crate::files::traced::traced;
-use crate::files::{Outside, Problem, Problems, Reading, change, spare};
+use crate::files::{Bundle, Outside, Problem, Problems, Reading, change, spare};
 use crate::laws::Controller;
-use crate::scenario::{self, Hold, Scenario};
+use crate::scenario::{Hold, Scenario, document};
 
 /// What the first line of the files begins with that tuning writes, as a comment.
 pub(super) const TUNED: &str = "Tuned by flexure";
@@ -43,19 +43,26 @@ impl Specified {
         reading: impl Into<Reading<'a>>,
         spec: &SpecFile,
     ) -> Result<Self, Problems> {
-        let Reading { outside, changes } = reading.into();
-        let (source, base) = scenario::load::source(path_or_name, outside)?;
+        let (own, bundle) = Scenario::bundled(path_or_name, reading)?;
+        Self::of(&own, &bundle, spec)
+    }
+
+    /// The same from a scenario that was read, and its bundle.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn of(own: &Scenario, bundle: &Bundle, spec: &SpecFile) -> Result<Self, Problems> {
+        let Bundle { source, changes, .. } = bundle;
         if let Some(change) = changes.iter().find(|change| change.is_of_robot()) {
             return Err(change.of_another_file().into());
         }
-        // What is wrong with the scenario itself is told with its own lines.
-        let own = scenario::document::read(&source, &base, changes)?;
+        let base = bundle.base();
         if own.hold == Hold::Continuous {
             let help = "remove hold: the torque is then held between control instants";
             let message = "hold is \"continuous\": gains are tuned for loops with control periods";
             return Err(own.places.problem("hold", "unsupported", message, help).into());
         }
-        let mut document = change::edited(&source, changes);
+        let mut document = change::edited(source, changes);
         let replaced = spec.replace_in(&mut document);
         let references = spec.references();
         let read = |document: &DocumentMut, reference: &str| {
@@ -65,7 +72,7 @@ impl Specified {
                 of_spec().or_else(|| own.places.origin(key))
             };
             let source = traced(&source.name, &document.to_string(), origin);
-            scenario::document::read(&source, &base, &[])
+            document::read(&source, &base, &[])
         };
         let mut scenarios = Vec::new();
         for (name, reference) in references.iter().rev() {
@@ -112,7 +119,7 @@ impl Specified {
     pub fn belongs(&self, path: &Path, outside: Outside) -> Result<(), Problem> {
         let text = self.document.to_string();
         let base = crate::files::base::Base::of(path, outside);
-        let read = scenario::document::read(&Source::new(&path.display().to_string(), &text), &base, &[]);
+        let read = document::read(&Source::new(&path.display().to_string(), &text), &base, &[]);
         read.map(drop).map_err(|problems| {
             let message = format!(
                 "{} may not be written there: what the scenario names would not be found from that folder: {}",

@@ -6,7 +6,7 @@ use crate::files::base::Base;
 use crate::files::bounds;
 use crate::files::change::Change;
 use crate::files::source::{self, Source};
-use crate::files::{Outside, Problems, ROBOTS, builtin};
+use crate::files::{Bundle, Outside, Problems, ROBOTS, builtin};
 use crate::robot::document::{self, Robot};
 
 /// Loads the robot file at a path, or the built-in robot of that name.
@@ -25,11 +25,7 @@ pub fn load_robot(path_or_name: &str) -> Result<Robot, Problems> {
 /// # Errors
 /// With everything that is wrong.
 pub fn load_robot_with(path_or_name: &str, outside: Outside) -> Result<Robot, Problems> {
-    if builtin::is_name(path_or_name) {
-        return robot(path_or_name, &Base::BuiltIn, &[]);
-    }
-    let path = Path::new(path_or_name);
-    document::read(&source::read(path, bounds::LIMIT)?, &Base::of(path, outside), &[])
+    Ok(Robot::bundled(path_or_name, outside)?.0)
 }
 
 impl Robot {
@@ -39,6 +35,28 @@ impl Robot {
     /// With everything that is wrong.
     pub fn load(path_or_name: &str) -> Result<Self, Problems> {
         load_robot(path_or_name)
+    }
+
+    /// As [`load_robot_with`], with everything that was read.
+    ///
+    /// # Errors
+    /// With everything that is wrong.
+    pub fn bundled(path_or_name: &str, outside: Outside) -> Result<(Self, Bundle), Problems> {
+        let path = Path::new(path_or_name);
+        let is_name = builtin::is_name(path_or_name);
+        let base = if is_name { Base::BuiltIn } else { Base::of(path, outside) };
+        let source =
+            if is_name { source_at(path_or_name, &base)? } else { source::read(path, bounds::LIMIT)? };
+        let bundle = Bundle::new(source, base, &[]);
+        Ok((Self::of(&bundle)?, bundle))
+    }
+
+    /// The robot of a bundle.
+    ///
+    /// # Errors
+    /// With everything that is wrong.
+    pub fn of(bundle: &Bundle) -> Result<Self, Problems> {
+        document::read(&bundle.source, &bundle.base(), &bundle.changes)
     }
 }
 

@@ -6,7 +6,7 @@ use crate::files::base::Base;
 use crate::files::bounds;
 use crate::files::change::{Change, Numbers};
 use crate::files::source::{self, Source};
-use crate::files::{Outside, Problem, Problems, Reading, SCENARIOS, TASKS, builtin, suggest};
+use crate::files::{Bundle, Outside, Problem, Problems, Reading, SCENARIOS, TASKS, builtin, suggest};
 use crate::robot;
 use crate::scenario::document::{self, Scenario};
 
@@ -29,9 +29,7 @@ pub fn load_scenario_with<'a>(
     path_or_name: &str,
     reading: impl Into<Reading<'a>>,
 ) -> Result<Scenario, Problems> {
-    let Reading { outside, changes } = reading.into();
-    let (source, base) = source(path_or_name, outside)?;
-    document::read(&source, &base, changes)
+    Ok(Scenario::bundled(path_or_name, reading)?.0)
 }
 
 /// The text of the scenario at a path or of that name, and what paths in it are relative to.
@@ -53,20 +51,16 @@ pub(crate) fn source_at(path_or_name: &str, base: &Base) -> Result<(Source, Base
     Ok((base.read(path_or_name, bounds::LIMIT)?, base.beside(path_or_name)))
 }
 
-/// The numbers that stand at the key of `key` in the scenario of `source` after `changes`, or in the file of its robot.
-pub(crate) fn numbers(
-    key: &Change,
-    source: &Source,
-    base: &Base,
-    changes: &[Change],
-) -> Result<Numbers, Problems> {
+/// The numbers that stand at the key of `key` in the scenario of `bundle`, or in the file of its robot.
+pub(crate) fn numbers(key: &Change, bundle: &Bundle) -> Result<Numbers, Problems> {
+    let (source, changes) = (&bundle.source, &bundle.changes);
     let own: Vec<Change> = changes.iter().filter(|change| !change.is_of_robot()).cloned().collect();
     let found = match key.of_robot() {
         None => key.numbers(source, &own),
         Some(key) => {
             let of_robot: Vec<Change> = changes.iter().filter_map(Change::of_robot).collect();
             let robot = Change::parse("robot = 0")?.said(source, &own);
-            let robot = robot.map(|robot| robot::source_at(&robot, base)).transpose()?;
+            let robot = robot.map(|robot| robot::source_at(&robot, &bundle.base())).transpose()?;
             robot.and_then(|robot| key.numbers(&robot, &of_robot))
         }
     };
@@ -89,6 +83,28 @@ impl Scenario {
     /// With everything that is wrong, in the robot's file as well.
     pub fn load(path_or_name: &str) -> Result<Self, Problems> {
         load_scenario(path_or_name)
+    }
+
+    /// As [`load_scenario_with`], with everything that was read.
+    ///
+    /// # Errors
+    /// With everything that is wrong, in the robot's file as well.
+    pub fn bundled<'a>(
+        path_or_name: &str,
+        reading: impl Into<Reading<'a>>,
+    ) -> Result<(Self, Bundle), Problems> {
+        let Reading { outside, changes } = reading.into();
+        let (source, base) = source(path_or_name, outside)?;
+        let bundle = Bundle::new(source, base, changes);
+        Ok((Self::of(&bundle)?, bundle))
+    }
+
+    /// The scenario of a bundle.
+    ///
+    /// # Errors
+    /// With everything that is wrong.
+    pub fn of(bundle: &Bundle) -> Result<Self, Problems> {
+        document::read(&bundle.source, &bundle.base(), &bundle.changes)
     }
 }
 

@@ -24,7 +24,6 @@ mod plant;
 
 pub use accept::Accept;
 pub use any::{Checked, check};
-pub(crate) use document::read;
 pub use document::{Hold, Scenario, scenario_from_text};
 pub use draft::draft;
 pub use guard::{Believed, Collision, GuardSettings, Reaction, Rejoin};

@@ -169,11 +169,8 @@ impl Folder {
     pub fn statistics(&self, sweep: &Sweep) -> Result<Statistics, Problems> {
         let mut statistics = Statistics::none(sweep);
         for shard in self.parts()? {
-            let found = beside(self.part(shard)?).map_err(|error| self.damaged(shard, &error))?;
-            if found.identity != sweep.identity() {
-                return Err(self.damaged(shard, "it is of another sweep").into());
-            }
-            statistics.absorb(&found.statistics);
+            let found = beside(&self.part(shard)?).and_then(|found| found.of(sweep));
+            statistics.absorb(&found.map_err(|error| self.damaged(shard, &error))?);
         }
         Ok(statistics)
     }

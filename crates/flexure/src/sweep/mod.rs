@@ -16,7 +16,6 @@ mod sobol;
 mod statistics;
 mod streams;
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -27,10 +26,9 @@ use serde::{Deserialize, Serialize};
 use crate::files::base::Base;
 use crate::files::change::Change;
 use crate::files::document as toml;
-use crate::files::kept::Kept;
 use crate::files::normal::Normal;
 use crate::files::source::{self, Source};
-use crate::files::{Problem, Problems, Reading, bounds, suggest};
+use crate::files::{Bundle, Outside, Problem, Problems, Reading, bounds, suggest};
 use crate::progress::Progress;
 use crate::scenario::{self, Scenario};
 use document::{FORM, Said, Seeds};
@@ -42,7 +40,7 @@ pub use metric::{METRICS, Metric};
 pub use outcome::{Outcome, Status};
 pub use parameter::{Parameter, Value, Values};
 pub use parquet::{Column, Columns};
-pub use statistics::{Figures, Statistics};
+pub use statistics::{Figures, Spread, Statistics, Told};
 
 /// Many runs of a scenario, by their indices.
 ///
@@ -65,31 +63,28 @@ pub use statistics::{Figures, Statistics};
 pub struct Sweep {
     name: String,
     said: Said,
-    /// The text of the scenario.
-    scenario: Source,
-    /// Where files that it names are.
-    base: Base,
+    /// The scenario, with what is the same for all rows.
+    scenario: Bundle,
     identity: String,
-    manifest: Manifest,
+    /// The file, and changes from outside.
+    text: String,
+    set: Vec<String>,
 }
 
 /// A sweep with everything that it needs, as it stands in its folder: enough to go on with it anywhere.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Deserialize, Serialize)]
 struct Manifest {
     /// Version of Flexure.
     flexure: String,
     /// What it is, hashed.
     identity: String,
-    /// Name of the file.
+    /// Name of the file, and the file.
     name: String,
-    /// The file.
     text: String,
     /// Changes from outside.
     set: Vec<String>,
-    /// Name and text of the scenario.
-    scenario: [String; 2],
-    /// The files that the scenario names, those that these name, and so on.
-    files: BTreeMap<String, String>,
+    /// The scenario with the files that it names, as [`Bundle::document`] writes it.
+    scenario: serde_json::Value,
     rows: u64,
     shard: u64,
     columns: Vec<String>,
@@ -114,14 +109,14 @@ impl Sweep {
     /// # Errors
     /// As [`load`](Self::load).
     pub fn from_text(name: &str, text: &str, folder: &Path) -> Result<Self, Problems> {
-        let base = Base::Folder(folder.to_owned(), crate::files::Outside::Refused);
+        let base = Base::Folder(folder.to_owned(), Outside::Refused);
         Self::read(name, &Source::new(name, text), &base, &[])
     }
 
     fn read(name: &str, source: &Source, base: &Base, set: &[Change]) -> Result<Self, Problems> {
-        let (said, _) = said(source)?;
+        let said = said(source)?;
         let (scenario, base) = scenario::source_at(&said.scenario, base)?;
-        Self::assembled(name, source, said, scenario, &Kept::of(base), set)
+        Self::assembled(name, source, said, &Bundle::new(scenario, base, &[]), set)
     }
 
     /// From what [`document`](Self::document) wrote, anywhere.
@@ -140,17 +135,9 @@ impl Sweep {
             return Err(Problem::new("version", message, help).into());
         }
         let source = Source::new(&manifest.name, &manifest.text);
-        let [name, text] = &manifest.scenario;
         let set: Result<Vec<Change>, Problem> = manifest.set.iter().map(|set| Change::parse(set)).collect();
-        let kept = Kept::holding(&manifest.files);
-        let sweep = Self::assembled(
-            &manifest.name,
-            &source,
-            said(&source)?.0,
-            Source::new(name, text),
-            &kept,
-            &set?,
-        )?;
+        let scenario = Bundle::from_document(&manifest.scenario.to_string())?;
+        let sweep = Self::assembled(&manifest.name, &source, said(&source)?, &scenario, &set?)?;
         if sweep.identity == manifest.identity {
             return Ok(sweep);
         }
@@ -162,44 +149,26 @@ impl Sweep {
         name: &str,
         source: &Source,
         mut said: Said,
-        scenario: Source,
-        kept: &Kept,
+        scenario: &Bundle,
         set: &[Change],
     ) -> Result<Self, Problems> {
-        said.set.extend(set.iter().cloned());
-        let base = Base::Kept(kept.clone());
+        let fixed = scenario.with(&said.set).with(set);
         for parameter in said.parameters.iter_mut().filter(|parameter| parameter.relative) {
             let key = Change::parse(&format!("{} = 0", parameter.key))?;
-            parameter.base = Some(scenario::numbers(&key, &scenario, &base, &said.set)?);
+            parameter.base = Some(scenario::numbers(&key, &fixed)?);
         }
         let mut sweep = Self {
             name: name.to_owned(),
             said,
-            scenario,
-            base,
+            scenario: fixed,
             identity: String::new(),
-            manifest: Manifest {
-                flexure: env!("CARGO_PKG_VERSION").to_owned(),
-                identity: String::new(),
-                name: name.to_owned(),
-                text: source.of_file().to_owned(),
-                set: set.iter().map(|change| change.text().to_owned()).collect(),
-                scenario: [String::new(), String::new()],
-                files: BTreeMap::new(),
-                rows: 0,
-                shard: 0,
-                columns: Vec::new(),
-            },
+            text: source.of_file().to_owned(),
+            set: set.iter().map(|change| change.text().to_owned()).collect(),
         };
         let digests = sweep.looked_at()?;
+        sweep.identity = identity(source, &sweep.set, digests);
         // What no row near the ends of its parameters has read is read by none: rows do not depend on what becomes of files.
-        sweep.base = Base::Kept(kept.clone().closed());
-        sweep.identity = identity(source, set, &digests);
-        sweep.manifest.identity.clone_from(&sweep.identity);
-        sweep.manifest.scenario = [&sweep.scenario.name, &sweep.scenario.text].map(ToString::to_string);
-        sweep.manifest.files = kept.files();
-        (sweep.manifest.rows, sweep.manifest.shard) = (sweep.rows(), sweep.said.shard);
-        sweep.manifest.columns = sweep.columns();
+        sweep.scenario = sweep.scenario.closed();
         Ok(sweep)
     }
 
@@ -215,7 +184,7 @@ impl Sweep {
                 point
             }));
         }
-        points.iter().map(|point| Ok(self.changed(point, 0)?.digest())).collect()
+        points.iter().map(|point| Ok(Scenario::of(&self.changed(point, 0)?)?.digest())).collect()
     }
 
     /// Name of its file, without the ending.
@@ -230,7 +199,19 @@ impl Sweep {
 
     /// Everything that is needed to go on with it anywhere, as JSON.
     pub fn document(&self) -> String {
-        serde_json::to_string_pretty(&self.manifest).unwrap_or_default()
+        let manifest = Manifest {
+            flexure: env!("CARGO_PKG_VERSION").to_owned(),
+            identity: self.identity.clone(),
+            name: self.name.clone(),
+            text: self.text.clone(),
+            set: self.set.clone(),
+            // Changes of [set] and from outside are made when it is read.
+            scenario: serde_json::from_str(&self.scenario.unchanged().document()).unwrap_or_default(),
+            rows: self.rows(),
+            shard: self.said.shard,
+            columns: self.columns(),
+        };
+        serde_json::to_string_pretty(&manifest).unwrap_or_default()
     }
 
     /// What changes, in the order of the keys.
@@ -283,29 +264,34 @@ impl Sweep {
         }
     }
 
-    /// The scenario of a row.
+    /// The scenario of a row, with the files that it is made of.
     ///
     /// # Errors
-    /// If its numbers do not go together, and `range` if there is no such row.
-    pub fn scenario(&self, row: u64) -> Result<Scenario, Problems> {
+    /// `range` if there is no such row.
+    pub fn bundle(&self, row: u64) -> Result<Bundle, Problem> {
         if row >= self.rows() {
-            let message = format!(
-                "row {row}: {} has {} rows, counted from 0",
-                suggest::quoted(&self.name),
-                self.rows()
-            );
-            return Err(Problem::new("range", message, "name a row that is there").into());
+            let (name, rows) = (suggest::quoted(&self.name), self.rows());
+            let message = format!("row {row}: {name} has {rows} rows, counted from 0");
+            return Err(Problem::new("range", message, "name a row that is there"));
         }
         self.changed(&self.values(row), self.seed(row))
     }
 
-    fn changed(&self, values: &[Value], seed: u64) -> Result<Scenario, Problems> {
-        let mut changes = self.said.set.clone();
+    /// The scenario of a row.
+    ///
+    /// # Errors
+    /// If its numbers do not go together, or there is no such row.
+    pub fn scenario(&self, row: u64) -> Result<Scenario, Problems> {
+        Scenario::of(&self.bundle(row)?)
+    }
+
+    fn changed(&self, values: &[Value], seed: u64) -> Result<Bundle, Problem> {
+        let mut changes = Vec::with_capacity(values.len() + 1);
         for (parameter, value) in self.said.parameters.iter().zip(values) {
             changes.push(parameter.change(value)?);
         }
         changes.push(Change::parse_from("seeds", &format!("seed = {seed}"))?);
-        scenario::read(&self.scenario, &self.base, &changes)
+        Ok(self.scenario.with(&changes))
     }
 
     /// What comes of a row.
@@ -353,14 +339,32 @@ impl Sweep {
         let outcomes = self.outcomes(shard, progress)?;
         parquet::written(self, &outcomes)
     }
+
+    /// Columns of the rows in `files`, by their names, in the order of the files.
+    ///
+    /// # Errors
+    /// If there is no such column, or a file is damaged.
+    pub fn columns_of(&self, files: Vec<Vec<u8>>, names: &[String]) -> Result<Columns, Problems> {
+        let mut columns = parquet::empty(self, names)?;
+        for file in files {
+            parquet::read(bytes::Bytes::from(file), &mut columns).map_err(|error| {
+                Problem::new(
+                    "damaged",
+                    format!("a file of rows: {error}"),
+                    "remove it and run the sweep again",
+                )
+            })?;
+        }
+        Ok(columns)
+    }
 }
 
-fn said(source: &Source) -> Result<(Said, Vec<Problem>), Problems> {
-    toml::parse(source, &[], &FORM, |root, _| document::said(root))
+fn said(source: &Source) -> Result<Said, Problems> {
+    Ok(toml::parse(source, &[], &FORM, |root, _| document::said(root))?.0)
 }
 
 /// A hash of what a sweep is: its file, what was changed from outside, what the scenarios at its ends say, the version.
-fn identity(source: &Source, set: &[Change], digests: &[String]) -> String {
+fn identity(source: &Source, set: &[String], digests: Vec<String>) -> String {
     let mut file = Normal::Text(String::new());
     // It was read before.
     let _ = toml::parse(source, &[], &FORM, |root, _| {
@@ -368,7 +372,6 @@ fn identity(source: &Source, set: &[Change], digests: &[String]) -> String {
         Some(())
     });
     let texts = |texts: Vec<String>| Normal::List(texts.into_iter().map(Normal::Text).collect());
-    let set = set.iter().map(|change| change.text().to_owned()).collect();
     let version = Normal::Text(env!("CARGO_PKG_VERSION").to_owned());
-    Normal::List(vec![version, file, texts(set), texts(digests.to_vec())]).digest()
+    Normal::List(vec![version, file, texts(set.to_vec()), texts(digests)]).digest()
 }

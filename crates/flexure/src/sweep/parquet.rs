@@ -6,7 +6,7 @@ use ::parquet::basic::{Compression, Encoding, LogicalType, Repetition, Type as P
 use ::parquet::column::reader::ColumnReader;
 use ::parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
 use ::parquet::errors::ParquetError;
-use ::parquet::file::metadata::KeyValue;
+use ::parquet::file::metadata::{KeyValue, ParquetMetaData, ParquetMetaDataReader};
 use ::parquet::file::properties::WriterProperties;
 use ::parquet::file::reader::{ChunkReader, FileReader};
 use ::parquet::file::serialized_reader::SerializedFileReader;
@@ -94,6 +94,14 @@ pub(super) struct Beside {
     pub statistics: Statistics,
 }
 
+impl Beside {
+    /// The statistics, if the file is of this sweep.
+    pub fn of(self, sweep: &Sweep) -> Result<Statistics, String> {
+        let is_ours = self.identity == sweep.identity();
+        if is_ours { Ok(self.statistics) } else { Err("it is of another sweep".to_owned()) }
+    }
+}
+
 /// The file of some rows.
 pub(super) fn written(sweep: &Sweep, outcomes: &[Outcome]) -> Result<Vec<u8>, Problems> {
     let statistics = Statistics::of(sweep, outcomes);
@@ -163,9 +171,17 @@ fn file(sweep: &Sweep, outcomes: &[Outcome], statistics: &Statistics) -> Result<
 }
 
 /// What a file says beside its rows: only its end is read.
-pub(super) fn beside<R: ChunkReader + 'static>(file: R) -> Result<Beside, String> {
-    let reader = SerializedFileReader::new(file).map_err(|error| error.to_string())?;
-    let said = reader.metadata().file_metadata().key_value_metadata();
+pub(super) fn beside<R: ChunkReader>(file: &R) -> Result<Beside, String> {
+    said(&ParquetMetaDataReader::new().parse_and_finish(file).map_err(|error| error.to_string())?)
+}
+
+/// The same from the end of a file alone, without its last eight bytes: those say how long it is.
+pub(super) fn beside_of_end(end: &[u8]) -> Result<Beside, String> {
+    said(&ParquetMetaDataReader::decode_metadata(end).map_err(|error| error.to_string())?)
+}
+
+fn said(metadata: &ParquetMetaData) -> Result<Beside, String> {
+    let said = metadata.file_metadata().key_value_metadata();
     let find = |key: &str| {
         let found = said.and_then(|said| said.iter().find(|entry| entry.key == key));
         found.and_then(|entry| entry.value.clone()).ok_or_else(|| format!("it does not say {key}"))

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use sketches_ddsketch::{Config, DDSketch};
 
-use super::{Outcome, Status, Sweep};
+use super::parquet::beside_of_end;
+use super::{Metric, Outcome, Status, Sweep};
 
 /// Quantiles are off by this part of themselves at most.
 const ACCURACY: f64 = 0.005;
@@ -42,9 +43,58 @@ pub struct Figures {
     sketch: Option<DDSketch>,
 }
 
+/// What rows come to together, as it is told.
+#[derive(Clone, Debug, Serialize)]
+pub struct Told<'a> {
+    /// Rows that are there.
+    pub rows_there: u64,
+    /// How many of them have each status.
+    pub statuses: &'a BTreeMap<String, u64>,
+    /// The metrics, by their names.
+    pub metrics: BTreeMap<&'static str, Spread>,
+}
+
+/// How a metric is spread over the rows that have it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Spread {
+    /// Its unit.
+    pub unit: &'static str,
+    /// Rows that have it.
+    pub count: u64,
+    /// Their mean.
+    pub mean: Option<f64>,
+    /// Their standard deviation.
+    pub deviation: Option<f64>,
+    /// The smallest.
+    pub least: Option<f64>,
+    /// The values below which 5, 50 and 95 % of them lie, to half a percent.
+    pub quantiles: [Option<f64>; 3],
+    /// The largest.
+    pub largest: Option<f64>,
+}
+
 impl Statistics {
+    /// Of rows in a file, from its end without its last eight bytes.
+    ///
+    /// # Errors
+    /// If it is none, or of another sweep.
+    pub fn of_end(sweep: &Sweep, end: &[u8]) -> Result<Self, String> {
+        beside_of_end(end)?.of(sweep)
+    }
+
+    /// As it is told.
+    pub fn told(&self, sweep: &Sweep) -> Told<'_> {
+        let spread =
+            |metric: &&'static Metric| Some((metric.name, self.metrics.get(metric.name)?.spread(metric)));
+        Told {
+            rows_there: self.rows,
+            statuses: &self.statuses,
+            metrics: sweep.metrics().iter().filter_map(spread).collect(),
+        }
+    }
+
     /// Of no rows.
-    pub(super) fn none(sweep: &Sweep) -> Self {
+    pub fn none(sweep: &Sweep) -> Self {
         let metrics = sweep.metrics().iter().map(|metric| (metric.name.to_owned(), Figures::none()));
         Self {
             rows: 0,
@@ -70,7 +120,7 @@ impl Statistics {
     }
 
     /// Takes in those of other rows.
-    pub(super) fn absorb(&mut self, other: &Self) {
+    pub fn absorb(&mut self, other: &Self) {
         self.rows += other.rows;
         for (status, count) in &other.statuses {
             *self.statuses.entry(status.clone()).or_default() += count;
@@ -131,6 +181,18 @@ impl Figures {
             }
             (own @ None, other) => own.clone_from(other),
             (Some(_), None) => {}
+        }
+    }
+
+    fn spread(&self, metric: &'static Metric) -> Spread {
+        Spread {
+            unit: metric.unit,
+            count: self.count,
+            mean: (self.count > 0).then_some(self.mean),
+            deviation: self.deviation(),
+            least: self.least,
+            quantiles: [0.05, 0.5, 0.95].map(|part| self.quantile(part)),
+            largest: self.largest,
         }
     }
 
