@@ -10,7 +10,7 @@ use pyo3::types::{PyDict, PyTuple};
 
 use crate::arrays::{Numbers, shaped, together, vector, zeros};
 use crate::failure::{self, mismatch, said};
-use crate::own_law::{Raised, own_law};
+use crate::own_law::{Raised, Series, own_law, own_shaping};
 use crate::robot::MOTION;
 use crate::scenario::{Scenario, given};
 
@@ -23,18 +23,28 @@ pub struct Loop {
     scenario: Py<Scenario>,
     /// What a law in Python raised; none for that of the scenario.
     raised: Option<Raised>,
+    /// The shaping function of one's own, if there is one.
+    shaping: Option<Series>,
 }
 
 impl Loop {
-    pub fn open(py: Python<'_>, scenario: Py<Scenario>, law: Option<Py<PyAny>>) -> PyResult<Self> {
+    pub fn open(
+        py: Python<'_>,
+        scenario: Py<Scenario>,
+        law: Option<Py<PyAny>>,
+        shaping: Option<Series>,
+    ) -> PyResult<Self> {
         let loaded = scenario.get().loaded.clone();
+        let series = shaping.clone();
+        let shaping = own_shaping(shaping, law.is_some())?;
         let (law, raised) = law.map(own_law).unzip();
-        let open = || match law {
-            None => loaded.open(),
-            Some(law) => loaded.open_with(law),
+        let open = || match (law, shaping) {
+            (Some(law), _) => loaded.open_with(law),
+            (None, Some(shaping)) => loaded.open_shaped(&shaping),
+            (None, None) => loaded.open(),
         };
         let held = py.detach(open).map_err(|problems| failure::raised(py, &problems))?;
-        Ok(Self { held: Mutex::new(held), asking: Mutex::new(None), scenario, raised })
+        Ok(Self { held: Mutex::new(held), asking: Mutex::new(None), scenario, raised, shaping: series })
     }
 
     /// What the law in Python raised, else `result`.
@@ -69,9 +79,9 @@ impl Loop {
 #[pymethods]
 impl Loop {
     #[new]
-    #[pyo3(signature = (scenario, *, law = None))]
-    fn new(scenario: &Bound<'_, PyAny>, law: Option<Py<PyAny>>) -> PyResult<Self> {
-        Self::open(scenario.py(), given(scenario)?, law)
+    #[pyo3(signature = (scenario, *, law = None, shaping = None))]
+    fn new(scenario: &Bound<'_, PyAny>, law: Option<Py<PyAny>>, shaping: Option<Series>) -> PyResult<Self> {
+        Self::open(scenario.py(), given(scenario)?, law, shaping)
     }
 
     /// The scenario that it was opened from.
@@ -216,13 +226,19 @@ impl Loop {
                 "a loop with a law in Python: pickle its scenario and its state",
             ));
         }
-        let arguments = (slf.get().scenario(py), slf.get().state(py)?);
+        let shaping = slf.get().shaping.clone().map(Series::parts);
+        let arguments = (slf.get().scenario(py), slf.get().state(py)?, shaping);
         PyTuple::new(py, [slf.get_type().getattr("_again")?, arguments.into_pyobject(py)?.into_any()])
     }
 
     #[staticmethod]
-    fn _again(py: Python<'_>, scenario: Py<Scenario>, state: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let again = Self::open(py, scenario, None)?;
+    fn _again(
+        py: Python<'_>,
+        scenario: Py<Scenario>,
+        state: &Bound<'_, PyAny>,
+        shaping: Option<(f64, Vec<f64>)>,
+    ) -> PyResult<Self> {
+        let again = Self::open(py, scenario, None, shaping.map(Series::of))?;
         again.restore(py, state)?;
         Ok(again)
     }

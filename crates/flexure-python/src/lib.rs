@@ -10,6 +10,7 @@ mod documents;
 mod failure;
 mod gains;
 mod held;
+mod library;
 mod logs;
 mod own_law;
 mod plant;
@@ -33,6 +34,8 @@ mod _flexure {
     use super::gains::{compare, tune};
     #[pymodule_export]
     use super::held::Loop;
+    #[pymodule_export]
+    use super::library::{import_urdf, registered, reproduce};
     #[pymodule_export]
     use super::logs::{excite, identify, replay};
     #[pymodule_export]

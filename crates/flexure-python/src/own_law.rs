@@ -2,7 +2,9 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use flexure::simulate::OwnLaw;
+use flexure::core::control::TERMS;
+use flexure::simulate::{OwnLaw, OwnShaping};
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::arrays::{Numbers, shaped, vector};
@@ -61,4 +63,40 @@ fn torque(
 pub fn derivatives(series: &[[f64; 5]]) -> impl Iterator<Item = f64> {
     let factorials = [1.0, 1.0, 2.0, 6.0, 24.0];
     (0..5).flat_map(move |k| series.iter().map(move |joint| joint[k] * factorials[k]))
+}
+
+/// A shaping function as Python fits it: the error at which x = 1/√2, rad, and the coefficients of its series.
+#[derive(Clone, FromPyObject)]
+pub struct Series {
+    scale: f64,
+    coefficients: Vec<f64>,
+}
+
+impl Series {
+    /// What it is made of.
+    pub fn parts(self) -> (f64, Vec<f64>) {
+        (self.scale, self.coefficients)
+    }
+
+    /// From what it is made of.
+    pub fn of((scale, coefficients): (f64, Vec<f64>)) -> Self {
+        Self { scale, coefficients }
+    }
+}
+
+/// The shaping function of `series`, which a whole law leaves no place for.
+pub fn own_shaping(series: Option<Series>, is_beside_a_law: bool) -> PyResult<Option<OwnShaping>> {
+    let Some(Series { scale, coefficients }) = series else { return Ok(None) };
+    if is_beside_a_law {
+        return Err(PyTypeError::new_err(
+            "law and shaping: a law of one's own has no shaping function of the scenario's",
+        ));
+    }
+    let is_finite = coefficients.iter().all(|coefficient| coefficient.is_finite());
+    if !(scale > 0.0 && scale.is_finite() && is_finite && coefficients.len() <= TERMS) {
+        return Err(PyValueError::new_err(format!(
+            "shaping: no series of finite numbers with at most {TERMS} terms"
+        )));
+    }
+    Ok(Some(OwnShaping { scale, coefficients }))
 }

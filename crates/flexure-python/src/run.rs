@@ -3,7 +3,7 @@
 use flexure::feasible;
 use flexure::files::Problems;
 use flexure::sampled::probe;
-use flexure::simulate::{Run, Trace, exceeded, preload, run, run_with};
+use flexure::simulate::{Run, Trace, exceeded, preload, run, run_shaped, run_with};
 use numpy::IntoPyArray as _;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
@@ -11,18 +11,19 @@ use pyo3::types::PyDict;
 
 use crate::documents::document;
 use crate::failure::{OF_JOBS, documents, raised, warn};
-use crate::own_law::own_law;
+use crate::own_law::{Series, own_law, own_shaping};
 use crate::scenario::Scenario;
 use crate::watched::watched;
 
 /// Simulates a scenario: a dict with the summary, the columns of the trace as arrays, their units, when it diverged (None if it did
 /// not), whether the loop is stable as sampled, what speaks against it beside its errors, and what the guard kept of its stops.
 #[pyfunction]
-#[pyo3(signature = (scenario, *, law = None, progress = None))]
+#[pyo3(signature = (scenario, *, law = None, shaping = None, progress = None))]
 pub fn simulate<'py>(
     py: Python<'py>,
     scenario: &Scenario,
     law: Option<Py<PyAny>>,
+    shaping: Option<Series>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let loaded = scenario.loaded.clone();
@@ -32,11 +33,13 @@ pub fn simulate<'py>(
     };
     let (beyond, doubts) = py.detach(before).map_err(|problems: Problems| raised(py, &problems))?;
     warn(py, &doubts, OF_JOBS)?;
+    let shaping = own_shaping(shaping, law.is_some())?;
     let (law, of_law) = law.map(own_law).unzip();
-    let found = watched(py, progress, |progress| match law {
+    let found = watched(py, progress, |progress| match (law, shaping) {
         // What the sampled loop does is known of the scenario's own law.
-        None => Ok((run(&loaded, progress)?, probe(&loaded)?)),
-        Some(law) => Ok((run_with(&loaded, law, progress)?, None)),
+        (None, None) => Ok((run(&loaded, progress)?, probe(&loaded)?)),
+        (Some(law), _) => Ok((run_with(&loaded, law, progress)?, None)),
+        (None, Some(shaping)) => Ok((run_shaped(&loaded, &shaping, progress)?, None)),
     })?;
     if let Some(error) = of_law.and_then(|of_law| of_law.take()) {
         return Err(error);

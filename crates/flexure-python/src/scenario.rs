@@ -15,6 +15,7 @@ use crate::controller::Controller;
 use crate::documents::document;
 use crate::failure::{documents, raised, refused, said, warn};
 use crate::held::Loop;
+use crate::own_law::Series;
 use crate::robot::{Robot, Source};
 
 /// A robot, what it shall do, a law, and everything between law and robot.
@@ -33,6 +34,9 @@ pub struct Origin {
     /// What stands in its files.
     pub bundle: Bundle,
 }
+
+/// What samples of a path are called in messages.
+const PATH: &str = "the path in Python.csv";
 
 /// A function and its arguments, by which pickle makes a scenario again.
 type Again<'py> = (Bound<'py, PyAny>, (String, bool, String, String));
@@ -142,6 +146,16 @@ impl Scenario {
         vector(py, &numbers)
     }
 
+    /// The gains of its law, a number per joint each, by their keys below `[controller]`: those of the file, or of the starting rule.
+    #[getter]
+    fn gains<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let found = PyDict::new(py);
+        for (key, values) in self.loaded.controller.gains() {
+            found.set_item(key, vector(py, values))?;
+        }
+        Ok(found)
+    }
+
     /// Its law alone.
     fn controller(slf: PyRef<'_, Self>) -> PyResult<Controller> {
         let py = slf.py();
@@ -149,11 +163,24 @@ impl Scenario {
     }
 
     /// Its closed loop, to be stepped; with `law`, a function of t (s), x (4n,) and the reference with four derivatives (5, n) that returns torques
-    /// (n,), in the place of its own.
-    #[pyo3(signature = (*, law = None))]
-    fn open(slf: PyRef<'_, Self>, law: Option<Py<PyAny>>) -> PyResult<Loop> {
+    /// (n,), in the place of its own; with `shaping`, a `flexure.Shaping` in the place of that of its v-CBC law.
+    #[pyo3(signature = (*, law = None, shaping = None))]
+    fn open(slf: PyRef<'_, Self>, law: Option<Py<PyAny>>, shaping: Option<Series>) -> PyResult<Loop> {
         let py = slf.py();
-        Loop::open(py, slf.into(), law)
+        Loop::open(py, slf.into(), law, shaping)
+    }
+
+    /// The same with a path through samples, "t,q1,…" in lines of text, in the place of its reference.
+    fn _along(&self, py: Python<'_>, samples: &str, smooth_start: Option<f64>) -> PyResult<Self> {
+        let smooth_start = smooth_start
+            .map_or_else(String::new, |seconds| format!(", smooth_start = {{duration = {seconds:?}}}"));
+        let change = format!("reference = {{kind = \"samples\", file = \"{PATH}\"{smooth_start}}}");
+        let change = Change::parse(&change).map_err(|problem| refused(py, &problem))?;
+        let Origin { name, allow_outside, bundle } = &self.source;
+        let bundle = bundle.with_file(PATH, samples).with(&[change]);
+        let loaded = Loaded::of(&bundle).map_err(|problems| raised(py, &problems))?;
+        let source = Origin { name: name.clone(), allow_outside: *allow_outside, bundle };
+        Ok(Self { loaded: Arc::new(loaded), source })
     }
 
     /// Is the loop stable that holds its torque for a control period? A dict, as `sampled` of `flexure run --json`; None for a law in

@@ -84,7 +84,7 @@ impl Sweep {
         self.many.columns()
     }
 
-    /// What changes: dicts with key, relative, and from, to, scale or values.
+    /// What changes: dicts with key, relative, unit (empty for none), and from, to, scale or values.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let list = PyList::empty(py);
@@ -92,6 +92,7 @@ impl Sweep {
             let entry = PyDict::new(py);
             entry.set_item("key", &parameter.key)?;
             entry.set_item("relative", parameter.relative)?;
+            entry.set_item("unit", parameter.unit())?;
             match &parameter.values {
                 Values::Between { from, to, logarithmic, points } => {
                     entry.set_item("from", from)?;

@@ -19,6 +19,7 @@ pub mod plant;
 pub mod progress;
 pub mod prove;
 pub mod references;
+pub mod registered;
 pub mod replay;
 pub mod report;
 pub mod reproduce;

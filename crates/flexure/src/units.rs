@@ -96,7 +96,7 @@ pub const MOMENTUM: Unit = Unit::new("kg m^2/s", 1).raised("kg m²/s").sliding(&
 
 /// Keys of robot and scenario files whose numbers have a unit.
 const KEYS: [(&[&str], Unit); 13] = [
-    (&["duration", "control_period", "settle", "rise"], TIME),
+    (&["duration", "control_period", "settle", "rise", "computation", "actuation"], TIME),
     (&["gravity"], ACCELERATION),
     (&["mass"], MASS),
     (&["length", "com"], LENGTH),

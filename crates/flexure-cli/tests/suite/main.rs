@@ -26,6 +26,7 @@ mod run;
 mod set;
 mod shell;
 mod sixteen;
+mod sweep;
 mod tune;
 mod urdf;
 mod verify;

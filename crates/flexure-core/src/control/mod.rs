@@ -34,7 +34,7 @@ pub use passivity::Passivity;
 pub use pd::Pd;
 pub use pd_online_gravity::PdOnlineGravity;
 pub use rigid::RigidVcbc;
-pub use shaping::{CoupledTanh, Linear, Shaping, Tanh};
+pub use shaping::{CoupledTanh, Linear, OddSeries, Shaping, TERMS, Tanh};
 pub use singular_perturbation::SingularPerturbation;
 pub use torque_feedback::TorqueFeedback;
 pub use vcbc::{Command, Input, Vcbc};

@@ -13,9 +13,10 @@ of the traces. Motors are seen from the link side of the gear. Arrays may have a
 """
 
 from ._flexure import Controller, FlexureError, FlexureWarning, Loop, Plant, Robot, Scenario, Sweep, __version__
-from ._jobs import certify, compare, excite, identify, margins, replay, simulate, tune, verify
+from ._jobs import certify, compare, excite, identify, import_urdf, margins, registered, replay, reproduce, simulate, tune, verify
 from ._motion import Motion, motion, views
 from ._run import Run, Trace
+from ._shaping import Shaping, follow
 from ._sweep import Rows, sweep
 
 __all__ = [
@@ -29,16 +30,21 @@ __all__ = [
     "Rows",
     "Run",
     "Scenario",
+    "Shaping",
     "Sweep",
     "Trace",
     "__version__",
     "certify",
     "compare",
     "excite",
+    "follow",
     "identify",
+    "import_urdf",
     "margins",
     "motion",
+    "registered",
     "replay",
+    "reproduce",
     "simulate",
     "sweep",
     "tune",

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from os import PathLike
-from typing import Any, TypedDict, final
+from typing import Any, Protocol, TypedDict, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,14 +15,18 @@ __all__ = [
     "Plant",
     "Robot",
     "Scenario",
+    "Sweep",
     "__version__",
     "_panic",
     "certify",
     "compare",
     "excite",
     "identify",
+    "import_urdf",
     "margins",
+    "registered",
     "replay",
+    "reproduce",
     "simulate",
     "tune",
     "verify",
@@ -33,6 +37,10 @@ _Path = str | PathLike[str]
 _Numbers = ArrayLike
 _Told = Callable[[float], object] | None
 _Law = Callable[[float, _Array, _Array], ArrayLike]
+
+class _Shaping(Protocol):
+    scale: float
+    coefficients: list[float]
 
 __version__: str
 
@@ -128,8 +136,12 @@ class Scenario:
     def __deepcopy__(self, _memo: object) -> Scenario: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __hash__(self) -> int: ...
+    @property
+    def gains(self) -> dict[str, _Array]:
+        """(n,) each, by the keys below [controller]"""
     def controller(self) -> Controller: ...
-    def open(self, *, law: _Law | None = None) -> Loop: ...
+    def open(self, *, law: _Law | None = None, shaping: _Shaping | None = None) -> Loop: ...
+    def _along(self, samples: str, smooth_start: float | None) -> Scenario: ...
     def sampled(self) -> dict[str, Any] | None: ...
     def usage(self) -> list[dict[str, Any]]: ...
 
@@ -157,7 +169,7 @@ class Controller:
 class Loop:
     """The closed loop of a scenario, moved from one control instant to the next."""
 
-    def __new__(cls, scenario: Scenario | _Path, *, law: _Law | None = None) -> Loop: ...
+    def __new__(cls, scenario: Scenario | _Path, *, law: _Law | None = None, shaping: _Shaping | None = None) -> Loop: ...
     @property
     def scenario(self) -> Scenario: ...
     @property
@@ -235,7 +247,7 @@ class Sweep:
     def _statistics(self, ends: Sequence[bytes]) -> dict[str, Any]: ...
     def _table(self, files: Sequence[bytes], names: Sequence[str]) -> dict[str, Any]: ...
 
-def simulate(scenario: Scenario, *, law: _Law | None = None, progress: _Told = None) -> dict[str, Any]: ...
+def simulate(scenario: Scenario, *, law: _Law | None = None, shaping: _Shaping | None = None, progress: _Told = None) -> dict[str, Any]: ...
 def certify(
     scenario: Scenario,
     *,
@@ -304,5 +316,17 @@ def replay(
     horizon: float = ...,
     progress: _Told = None,
 ) -> dict[str, Any]: ...
+def registered() -> dict[str, dict[str, str]]: ...
+def import_urdf(
+    urdf: _Path,
+    *,
+    lock: Sequence[tuple[str, float]] = ...,
+    assume: str | None = None,
+    unknown_limits: bool = False,
+    scenario: bool = False,
+    out: _Path | None = None,
+    force: bool = False,
+) -> dict[str, Any]: ...
+def reproduce(out: _Path, *, progress: _Told = None) -> dict[str, Any]: ...
 def _panic() -> None:
     """Panics, for the tests."""

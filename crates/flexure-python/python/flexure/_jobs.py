@@ -1,8 +1,10 @@
 """What the command line does, under the same names."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,6 +13,9 @@ from . import _flexure
 from ._flexure import FlexureError, Scenario
 from ._progress import Bar, Progress
 from ._run import Run, Trace
+
+if TYPE_CHECKING:
+    from ._shaping import Shaping
 
 Path = str | PathLike[str]
 Numbers = ArrayLike
@@ -29,17 +34,20 @@ def _watched(name: str, progress: Progress, job: Callable[[Callable[[float], obj
     return job(progress or None)
 
 
-def simulate(scenario: Scenario | Path, *, law: Law | None = None, progress: Progress = None) -> Run:
+def simulate(
+    scenario: Scenario | Path, *, law: Law | None = None, shaping: Shaping | None = None, progress: Progress = None
+) -> Run:
     """Simulates a scenario from beginning to end, as `flexure run`: its trace and what it is judged by.
 
     With `law`, a function of the time in s, the motion that the controller sees, (4n,), and the reference with its first four derivatives,
     (5, n), which returns motor torques, (n,), N m, that is the law instead of the scenario's; sensors, delays, guard and drive stay. It
-    is called at every control instant from Python: some microseconds each, and what it raises comes out here.
+    is called at every control instant from Python: some microseconds each, and what it raises comes out here. With `shaping`, that is
+    the shaping function of the scenario's v-CBC law.
 
     A loop that does not follow its reference, diverges, or is unstable as sampled is a result and no error: see `Run.ok`.
     """
     scenario = _scenario(scenario)
-    found = _watched(scenario.name, progress, lambda told: _flexure.simulate(scenario, law=law, progress=told))
+    found = _watched(scenario.name, progress, lambda told: _flexure.simulate(scenario, law=law, shaping=shaping, progress=told))
     return Run(
         scenario=scenario,
         summary=found["summary"],
@@ -249,3 +257,35 @@ def replay(
     )
     found["trace"] = Trace(found["trace"], found.pop("units"))
     return found
+
+
+def registered() -> dict[str, dict[str, str]]:
+    """Built-in robots and scenarios, and the kinds that files choose from, as `flexure list`: sections, names, a line on each."""
+    return _flexure.registered()
+
+
+def import_urdf(
+    urdf: Path,
+    *,
+    lock: Mapping[str, float] | None = None,
+    assume: str | None = None,
+    unknown_limits: bool = False,
+    scenario: bool = False,
+    out: Path | None = None,
+    force: bool = False,
+) -> dict[str, Any]:
+    """A robot file from a URDF, and with `scenario` one to start with, as `flexure import`.
+
+    `lock` holds joints still at positions in rad or m; `assume` is a class of drives, of `registered()["drives"]`, for what a URDF does not
+    say. Files go to `out`, a folder or PATH.toml; without it a robot alone is only a text, `toml`. The dict has the keys of `--json`;
+    `missing` tells what is still to be supplied, and `files` what was written: the robot, the scenario, a copy of the URDF where one is
+    needed.
+    """
+    return _flexure.import_urdf(
+        urdf, lock=list((lock or {}).items()), assume=assume, unknown_limits=unknown_limits, scenario=scenario, out=out, force=force
+    )
+
+
+def reproduce(out: Path = "out", *, progress: Progress = None) -> dict[str, Any]:
+    """The experiments of the paper, as `flexure reproduce`: traces, figures, certificates and report.html in `out`."""
+    return _watched("reproduce", progress, lambda told: _flexure.reproduce(out, progress=told))

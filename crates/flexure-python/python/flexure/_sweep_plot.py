@@ -11,6 +11,7 @@ from ._plot import plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
 
@@ -25,7 +26,7 @@ NOTHING = "#bbbbbb"
 
 def heatmap(rows: Rows, x: str, y: str, value: str) -> Figure:
     """A metric over two parameters of a grid."""
-    data = rows.columns(x, y, value)
+    data = rows.columns(*dict.fromkeys((x, y, value)), "status")
     if data[x].size == 0:
         raise ValueError("there are no rows yet")
     across, columns = np.unique(data[x], return_inverse=True)
@@ -46,7 +47,11 @@ def heatmap(rows: Rows, x: str, y: str, value: str) -> Figure:
     panel.set_facecolor(NOTHING)
     edges = [_edges(axis, _is_logarithmic(rows, key)) for axis, key in ((across, x), (up, y))]
     drawn = panel.pcolormesh(*edges, cells, norm=_norm(cells), cmap="viridis", rasterized=True)
-    _bar(figure, panel, drawn, rows, value, bool(np.isnan(cells).any()))
+    lost = np.zeros_like(cells)
+    np.maximum.at(lost, (lines, columns), (data["status"] != "follows").astype(float))
+    if lost.any():
+        _hatch(panel, edges, lost)
+    _bar(figure, panel, drawn, rows, value, bool(np.isnan(cells).any()), bool(lost.any()))
     return figure
 
 
@@ -57,7 +62,7 @@ def scatter(rows: Rows, x: str, y: str, value: str) -> Figure:
     known = np.isfinite(data[value])
     panel.scatter(data[x][~known], data[y][~known], s=12, color=NOTHING, marker="x", linewidths=0.8)
     drawn = panel.scatter(data[x][known], data[y][known], c=data[value][known], s=14, norm=_norm(data[value][known]), cmap="viridis", linewidths=0)
-    _bar(figure, panel, drawn, rows, value, bool((~known).any()))
+    _bar(figure, panel, drawn, rows, value, bool((~known).any()), False)
     return figure
 
 
@@ -70,15 +75,36 @@ def _frame(rows: Rows, x: str, y: str) -> tuple[Figure, Axes]:
         axis(_label(rows, key))
         if _is_logarithmic(rows, key):
             scale("log")
+            _plain_ticks(panel.xaxis if key == x else panel.yaxis)
     panel.set_title(plain(rows.sweep.name), loc="left")
     return figure, panel
 
 
-def _bar(figure: Figure, panel: Axes, drawn: Any, rows: Rows, value: str, some_have_none: bool) -> None:
+def _hatch(panel: Axes, edges: list[NDArray[np.float64]], marked: NDArray[np.float64]) -> None:
+    """Cells that are marked."""
+    from matplotlib.collections import PolyCollection
+
+    x, y = edges
+    cells = [[(x[j], y[i]), (x[j + 1], y[i]), (x[j + 1], y[i + 1]), (x[j], y[i + 1])] for i, j in zip(*np.nonzero(marked), strict=True)]
+    panel.add_collection(PolyCollection(cells, facecolors="none", edgecolors="white", hatch="///", linewidths=0.0), autolim=False)
+
+
+def _plain_ticks(axis: Axis) -> None:
+    """1, 2, 5, 10 as they are, not as powers."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def _bar(figure: Figure, panel: Axes, drawn: Any, rows: Rows, value: str, some_have_none: bool, some_are_lost: bool) -> None:
     bar = figure.colorbar(drawn, ax=panel)
     bar.set_label(_label(rows, value))
+    words = ["hatched: a run that does not follow its reference"] if some_are_lost else []
     if some_have_none:
-        panel.annotate(f"grey: a run without {plain(value)}, as one that diverged", (0.0, -0.13), xycoords="axes fraction", fontsize=9, annotation_clip=False)
+        words.append(f"grey: a run without {plain(value)}, as one that diverged")
+    figure.supxlabel("; ".join(words), fontsize=9, x=0.02, ha="left")
 
 
 def _label(rows: Rows, key: str) -> str:
@@ -87,7 +113,8 @@ def _label(rows: Rows, key: str) -> str:
             return f"{plain(key)} [{metric['unit']}]"
     for parameter in rows.sweep.parameters:
         if parameter["key"] == key:
-            return f"{plain(key)} [× that of the file]" if parameter["relative"] else plain(key)
+            unit = "× that of the file" if parameter["relative"] else parameter["unit"]
+            return f"{plain(key)} [{unit}]" if unit else plain(key)
     return plain(key)
 
 

@@ -56,6 +56,11 @@ impl Bundle {
         Self { changes: [&self.changes[..], changes].concat(), ..self.clone() }
     }
 
+    /// The same with one more file, at `path` from the document, whether there is such a file elsewhere or not.
+    pub fn with_file(&self, path: &str, text: &str) -> Self {
+        Self { kept: self.kept.with(path, text), ..self.clone() }
+    }
+
     /// The same without changes.
     pub(crate) fn unchanged(&self) -> Self {
         Self { changes: Vec::new(), ..self.clone() }

@@ -31,6 +31,13 @@ impl Kept {
         Self { files: Arc::new(Mutex::new(sources)), from: None, here: PathBuf::new() }
     }
 
+    /// With one more, at `path` from the document.
+    pub fn with(&self, path: &str, text: &str) -> Self {
+        let mut files = self.files.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        files.insert(path.to_owned(), Source::new(path, text));
+        Self { files: Arc::new(Mutex::new(files)), ..self.clone() }
+    }
+
     /// What is kept so far.
     pub fn files(&self) -> BTreeMap<String, String> {
         let files = self.files.lock().unwrap_or_else(PoisonError::into_inner);

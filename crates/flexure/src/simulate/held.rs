@@ -9,7 +9,7 @@ use flexure_core::scalar::Jet;
 use crate::estimators::AnyEstimator;
 use crate::feasible;
 use crate::files::{Problem, Problems};
-use crate::laws::{self, AnyLaw, BlockRates, any_law};
+use crate::laws::{self, AnyLaw, BlockRates, VcbcGains, any_law};
 use crate::plant::{Plant, Push};
 use crate::references::AnyReference;
 use crate::robot::Mismatch;
@@ -22,7 +22,7 @@ use crate::simulate::controller::Feedback as _;
 use crate::simulate::fault_log::FaultLog;
 use crate::simulate::interface::{Commanded, Errors, Loop, Observed, Signal};
 use crate::simulate::names::Names;
-use crate::simulate::own_law::{HeldLaw, OwnLaw};
+use crate::simulate::own_law::{HeldLaw, OwnLaw, OwnShaping};
 use crate::simulate::signals::Columns;
 use crate::simulate::simulation::{Divergence, Simulation};
 
@@ -41,16 +41,34 @@ impl Scenario {
     /// # Errors
     /// As [`open`](Self::open).
     pub fn open_with(&self, law: OwnLaw) -> Result<Box<dyn Loop>, Problems> {
-        opened(self, Some(law))
+        opened(self, Some(Own::Law(law)))
+    }
+
+    /// The same with the shaping function of the caller in the place of that of its own law.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open), and if its law is no v-CBC.
+    pub fn open_shaped(&self, shaping: &OwnShaping) -> Result<Box<dyn Loop>, Problems> {
+        opened(self, Some(Own::Shaping(Box::new(self.vcbc()?.clone()), shaping.clone())))
     }
 }
 
-/// The loop of `scenario` with its own law, or with `law`.
-fn opened(scenario: &Scenario, law: Option<OwnLaw>) -> Result<Box<dyn Loop>, Problems> {
+/// What the caller has in the place of what is the scenario's own.
+enum Own {
+    Law(OwnLaw),
+    Shaping(Box<VcbcGains>, OwnShaping),
+}
+
+/// The loop of `scenario` with its own law, or with that of the caller.
+fn opened(scenario: &Scenario, own: Option<Own>) -> Result<Box<dyn Loop>, Problems> {
     let simulated = assembly::simulated(scenario);
     Ok(sized!(&scenario.robot, L, N => {
         let [model, simulated] = pair::<L<f64>, N>(&scenario.robot, &simulated)?;
-        let law = law.map_or_else(|| HeldLaw::Registered(any_law(&scenario.controller, |x| x)), HeldLaw::Own);
+        let law = match own {
+            None => HeldLaw::Registered(any_law(&scenario.controller, |x| x)),
+            Some(Own::Law(law)) => HeldLaw::Own(law),
+            Some(Own::Shaping(gains, shaping)) => HeldLaw::Shaped(Box::new(shaping.law(&gains))),
+        };
         Box::new(Held::new(scenario, model, simulated, law)?)
     }))
 }

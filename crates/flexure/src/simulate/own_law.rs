@@ -3,13 +3,14 @@
 use std::fmt;
 use std::sync::Arc;
 
+use flexure_core::control::{self, Input, LinkGains, MotorGains, OddSeries, TERMS};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion};
 use flexure_core::scalar::Jet;
 
-use crate::laws::{self, AnyLaw};
-use crate::robot::MAX_JOINTS;
+use crate::laws::{self, AnyLaw, Law, VcbcGains};
 use crate::robot::slices::{read, write, write_motion};
+use crate::robot::{MAX_JOINTS, vector};
 use crate::simulate::controller::Feedback;
 
 /// What a law is as a function on slices: of the time in s, the motion that it sees (4n numbers in rad and rad/s) and Taylor
@@ -44,6 +45,41 @@ impl OwnLaw {
     }
 }
 
+/// A shaping function of one's own, for [`Scenario::open_shaped`](crate::Scenario::open_shaped): [`OddSeries`] in the place of that of a
+/// v-CBC law, on both sides, with its Λ, metrics and damping.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OwnShaping {
+    /// The error at which x = 1/√2 \[rad\].
+    pub scale: f64,
+    /// Of the series, at most [`TERMS`].
+    pub coefficients: Vec<f64>,
+}
+
+/// A v-CBC law with a shaping function of one's own.
+pub(crate) type Shaped<const N: usize> = control::Vcbc<f64, OddSeries<f64, N>, OddSeries<f64, N>, N>;
+
+impl OwnShaping {
+    /// The law of `gains` with it.
+    pub(crate) fn law<const N: usize>(&self, gains: &VcbcGains) -> Shaped<N> {
+        let law: Law<f64, N> = laws::law(gains);
+        let mut coefficients = [0.0; TERMS];
+        coefficients.iter_mut().zip(&self.coefficients).for_each(|(all, own)| *all = *own);
+        let series = |gain: &[f64]| OddSeries { gain: vector(gain), scale: self.scale, coefficients };
+        control::Vcbc {
+            link: LinkGains {
+                metric: law.link.metric,
+                shaping: series(&gains.link.shaping),
+                damping: law.link.damping,
+            },
+            motor: MotorGains {
+                metric: law.motor.metric,
+                shaping: series(&gains.motor.shaping),
+                damping: law.motor.damping,
+            },
+        }
+    }
+}
+
 impl fmt::Debug for OwnLaw {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("OwnLaw")
@@ -55,6 +91,8 @@ impl fmt::Debug for OwnLaw {
 pub(crate) enum HeldLaw<const N: usize> {
     /// That of the scenario.
     Registered(AnyLaw<f64, N>),
+    /// That of the scenario with the caller's shaping function.
+    Shaped(Box<Shaped<N>>),
     /// The caller's.
     Own(OwnLaw),
 }
@@ -69,6 +107,7 @@ impl<L: Links<f64, N>, const N: usize> Feedback<L, N> for HeldLaw<N> {
     ) -> Vector<f64, N> {
         let law = match self {
             Self::Registered(law) => return laws::torque(law, robot, x, q_ld),
+            Self::Shaped(law) => return law.command(robot, x, q_ld, &Input::ZERO).u_m,
             Self::Own(OwnLaw(law)) => law,
         };
         let n = robot.links.joints();

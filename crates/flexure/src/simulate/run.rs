@@ -12,7 +12,7 @@ use crate::simulate::fault_log::FaultLog;
 use crate::simulate::figures::Figures;
 use crate::simulate::following::{Following, Watch};
 use crate::simulate::interface::{Loop, Observed};
-use crate::simulate::own_law::OwnLaw;
+use crate::simulate::own_law::{OwnLaw, OwnShaping};
 use crate::simulate::simulation::Divergence;
 use crate::simulate::summary::Summary;
 use crate::simulate::trace::Trace;
@@ -58,6 +58,21 @@ pub fn run(scenario: &Scenario, progress: Progress<'_>) -> Result<Run, Problems>
 pub fn run_with(scenario: &Scenario, law: OwnLaw, progress: Progress<'_>) -> Result<Run, Problems> {
     let mut run = simulated(scenario, scenario.open_with(law)?, &Criteria::of(scenario)?, progress, true);
     (run.summary.controller, run.summary.phi) = ("own".to_owned(), None);
+    Ok(run)
+}
+
+/// As [`run`], with the shaping function of the caller in the place of that of the scenario's v-CBC law.
+///
+/// # Errors
+/// As [`Scenario::open_shaped`].
+pub fn run_shaped(
+    scenario: &Scenario,
+    shaping: &OwnShaping,
+    progress: Progress<'_>,
+) -> Result<Run, Problems> {
+    let held = scenario.open_shaped(shaping)?;
+    let mut run = simulated(scenario, held, &Criteria::of(scenario)?, progress, true);
+    run.summary.phi = Some("own".to_owned());
     Ok(run)
 }
 

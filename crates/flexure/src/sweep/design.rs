@@ -76,6 +76,8 @@ impl Design {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use super::{Design, Kind};
     use crate::sweep::parameter::{Parameter, Value, Values};
 
@@ -110,16 +112,13 @@ mod tests {
     #[test]
     fn a_latin_hypercube_has_one_point_in_each_part() {
         let filled = |kind, axis: usize| {
-            let mut parts = vec![false; 200];
-            points(kind, 200).iter().for_each(|point| parts[(point[axis] * 200.0).floor() as usize] = true);
-            parts.iter().filter(|filled| **filled).count()
+            let points = points(kind, 200);
+            let parts: BTreeSet<String> =
+                points.iter().map(|point| format!("{:.0}", (point[axis] * 200.0).floor())).collect();
+            parts.len()
         };
         for axis in [0, 1] {
             assert_eq!(filled(Kind::LatinHypercube, axis), 200);
-            assert_eq!(
-                filled(Kind::Sobol, axis) / 10,
-                if axis < 2 { filled(Kind::Sobol, axis) / 10 } else { 0 }
-            );
             assert!((100..150).contains(&filled(Kind::Uniform, axis)));
         }
     }

@@ -121,7 +121,9 @@ const DIRECTIONS: [(u32, &[u32]); 63] = [
 
 #[cfg(test)]
 mod tests {
-    use super::{DIMENSIONS, coordinate, plain};
+    use std::collections::BTreeSet;
+
+    use super::{DIMENSIONS, coordinate, plain, scrambled};
 
     /// Point i of scipy.stats.qmc.Sobol(64, scramble=False, bits=32), which runs through the points in the order of Gray's code.
     const SCIPY: [(u32, usize, f64); 6] = [
@@ -146,22 +148,18 @@ mod tests {
     #[test]
     fn points_fill_evenly() {
         let seeds = [0x1234_5678, 0x9abc_def1];
+        // The upper bits say in which part a point lies: these are the same numbers as `coordinate` has.
+        let part = |i, dimension: usize, bits: u32| {
+            u64::from(scrambled(plain(i, dimension), seeds[dimension % 2])) >> (32 - bits)
+        };
         for dimension in 0..DIMENSIONS {
-            let mut parts = [0_u32; 256];
-            for i in 0..256 {
-                parts[(coordinate(i, dimension, seeds[0]) * 256.0).floor() as usize] += 1;
-            }
-            assert_eq!(parts, [1; 256], "dimension {dimension}");
+            let parts: BTreeSet<u64> = (0..256).map(|i| part(i, dimension, 8)).collect();
+            assert_eq!(parts.len(), 256, "dimension {dimension}");
         }
-        for wide in 0..=8_u32 {
-            let mut cells = vec![0; 256];
-            for i in 0..256 {
-                let at = |dimension: usize, cells: u32| {
-                    (coordinate(i, dimension, seeds[dimension]) * f64::from(cells)).floor() as usize
-                };
-                cells[at(0, 1 << wide) + (at(1, 256 >> wide) << wide)] += 1;
-            }
-            assert!(cells.iter().all(|count| *count == 1), "{wide}: {cells:?}");
+        for wide in 0..=8 {
+            let cells: BTreeSet<[u64; 2]> =
+                (0..256).map(|i| [part(i, 0, wide), part(i, 1, 8 - wide)]).collect();
+            assert_eq!(cells.len(), 256, "{wide}");
         }
     }
 

@@ -214,7 +214,9 @@ mod tests {
 
     fn of(values: &[f64]) -> Figures {
         let mut figures = Figures::none();
-        values.iter().for_each(|value| figures.take(*value));
+        for value in values {
+            figures.take(*value);
+        }
         figures
     }
 

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms of `src`, from the bottom up: each may use those above it in this list, and none below.
-const ROOMS: [&str; 26] = [
+const ROOMS: [&str; 28] = [
     "units",         // how numbers are measured and how that is written
     "files",         // text with places, problems that point at it, files that appear whole
     "linalg",        // matrices of run-time sizes
@@ -19,6 +19,7 @@ const ROOMS: [&str; 26] = [
     "imperfections", // what sensors, computers, drives and joints do
     "estimators",    // from readings to motion
     "scenario",      // all of these in one file
+    "registered",    // what has a name
     "feasible",      // does a reference keep the robot's limits, and how fast may it be
     "simulate",      // Loop, runs, traces
     "replay",        // a log over the simulation
@@ -31,6 +32,7 @@ const ROOMS: [&str; 26] = [
     "compare",       // laws on the same tasks
     "margins",       // what a loop bears
     "design",        // gains from a specification
+    "sweep",         // many runs whose numbers change
     "report",        // figures, tables, pages
 ];
 

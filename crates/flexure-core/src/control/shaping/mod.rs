@@ -2,10 +2,12 @@
 
 mod coupled_tanh;
 mod linear;
+mod odd_series;
 mod tanh;
 
 pub use coupled_tanh::CoupledTanh;
 pub use linear::Linear;
+pub use odd_series::{OddSeries, TERMS};
 pub use tanh::Tanh;
 
 use crate::linalg::{Matrix, Vector};

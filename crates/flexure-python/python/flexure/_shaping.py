@@ -1,0 +1,94 @@
+"""Shaping functions and references written in Python."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._flexure import Scenario
+from ._jobs import Path, _scenario
+
+if TYPE_CHECKING:
+    _Array = NDArray[np.float64]
+
+TERMS = 24
+"""Terms of a series."""
+
+BEYOND = 1e-3
+"""What the function is beyond its reach counts so much: the series is to be sane there, not exact."""
+
+
+class Shaping:
+    """A shaping function of one's own, from a function of errors in rad, (m,) → (m,), with f(-e) = -f(e): φ = Λ f, the Λ of the scenario.
+
+    The law needs its exact derivatives, and Python is no place for them: f is asked at some hundred errors, and φ is a series close to it,
+    on which the law runs at full speed. `error` says how close for errors up to `reach`, as a part of the largest value there; farther
+    out φ is bounded and no longer f. A law with it has no certificate: those are about shaping functions that are registered.
+    """
+
+    def __init__(self, function: Callable[[Any], ArrayLike], *, reach: float = 1.0) -> None:
+        if not (np.isfinite(reach) and reach > 0.0):
+            raise ValueError(f"reach: {reach}; expected a positive number, rad")
+        self.reach = float(reach)
+        """Up to which error it is f, rad."""
+        self.scale = 0.5 * self.reach
+        nodes = np.cos(np.pi * (np.arange(8 * TERMS) + 0.5) / (16 * TERMS))
+        errors = self.scale * nodes / np.sqrt(1.0 - nodes**2)
+        weights = np.where(errors <= self.reach, 1.0, BEYOND)
+        basis = np.cos(np.outer(np.arccos(nodes), 2 * np.arange(TERMS) + 1))
+        wanted = self._asked(function, np.minimum(errors, 4.0 * self.reach))
+        solution, *_ = np.linalg.lstsq(weights[:, None] * basis, weights * wanted, rcond=None)
+        self.coefficients: list[float] = solution.tolist()
+        """Of the polynomials of Chebyshev of odd degree in e / √(scale² + e²)."""
+        near = np.linspace(0.0, self.reach, 2001)
+        there = self._asked(function, near)
+        if np.abs(self._asked(function, -near) + there).max() > 1e-9 * np.abs(there).max():
+            raise ValueError("a shaping function is odd: f(-e) = -f(e)")
+        self.error = float(np.abs(self(near) - there).max() / np.abs(there).max())
+        """The largest difference from f within reach, as a part of its largest value there."""
+
+    @staticmethod
+    def _asked(function: Callable[[Any], ArrayLike], errors: _Array) -> _Array:
+        found = np.asarray(function(errors), dtype=float)
+        if found.shape != errors.shape:
+            raise ValueError(f"the shaping function's value: shape {found.shape}; expected {errors.shape}, a number for each error")
+        if not np.isfinite(found).all():
+            raise ValueError(f"the shaping function is no finite number at {errors[~np.isfinite(found)][0]:g} rad")
+        return found
+
+    def __call__(self, error: ArrayLike) -> _Array:
+        """The series, where Λ is 1."""
+        e = np.asarray(error, dtype=float)
+        angle = np.arccos(e / np.sqrt(self.scale**2 + e**2))
+        return np.cos(angle[..., None] * (2 * np.arange(TERMS) + 1)) @ np.asarray(self.coefficients)
+
+    def __repr__(self) -> str:
+        return f"Shaping(reach {self.reach:g} rad, off by {self.error:.1e} of the largest value at most)"
+
+
+def follow(scenario: Scenario | Path, path: Callable[[float], ArrayLike], *, period: float = 0.01, smooth_start: float | None = None) -> Scenario:
+    """The scenario with a reference of one's own: `path`, a function of the time in s that gives positions of all joints, (n,), rad.
+
+    It is asked every `period` s, for twenty periods before the beginning and after the end too, and the reference is the septic spline
+    through these samples: its fourth derivative exists and is continuous, as the law needs it. Every law, proof and sweep goes on from
+    there at full speed. With `smooth_start`, s, the robot joins the path from rest.
+    """
+    scenario = _scenario(scenario)
+    if not (np.isfinite(period) and period > 0.0):
+        raise ValueError(f"period: {period}; expected a positive number, s")
+    joints = len(scenario.robot)
+    last = int(np.ceil(scenario.duration / period)) + MARGIN
+    lines = [",".join(["t", *(f"q{i + 1}" for i in range(joints))])]
+    for k in range(-MARGIN, last + 1):
+        position = np.asarray(path(k * period), dtype=float)
+        if position.shape != (joints,):
+            raise ValueError(f"the path at {k * period:g} s: shape {position.shape}; expected ({joints},), a position for each joint")
+        lines.append(",".join(repr(float(x)) for x in [k * period, *position]))
+    return scenario._along("\n".join(lines) + "\n", smooth_start)
+
+
+MARGIN = 20
+"""Samples on either side of the run: what a spline does at its ends fades by half from one to the next."""
