@@ -1,13 +1,9 @@
 """Your own arm from its URDF: import it, let the check say which gain its control period does not bear, change that, run it."""
 
-import json
-import os
-import shutil
-import subprocess
 import sys
 import tempfile
-import tomllib  # Python 3.11 or newer
 from pathlib import Path
+from typing import Any
 
 import flexure
 import matplotlib.pyplot as plt
@@ -18,25 +14,16 @@ folder = Path(sys.argv[1]) if len(sys.argv) > 1 else here
 plt.style.use(here / "style.mplstyle")
 URDF = here.parents[1] / "robots" / "panda.urdf"  # or yours
 
-command = os.environ.get("FLEXURE") or shutil.which("flexure")
-if command is None:
-    print("skipped: a URDF is imported by the command `flexure`, which is neither on PATH nor named by the variable FLEXURE")
-    sys.exit()
-
 with tempfile.TemporaryDirectory() as scratch:
     # A URDF knows no springs, motors and sensors: typical strain wave gears, 1 kHz, encoders, a delay and friction are assumed.
-    drafted: list[str | Path] = [command, "import", URDF, "--assume", "harmonic-drive", "--scenario", "--out", scratch]
-    subprocess.run(drafted, check=True, stdout=subprocess.DEVNULL)
-    scenario = Path(scratch) / f"{URDF.stem}-scenario.toml"
-
-    # Exit code 1 would be a no with reasons, not a failure.
-    checked = subprocess.run([command, "check", scenario, "--json"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False)
-    answer = json.loads(checked.stdout)[0]
-    advice, changes = answer["sampled"], tomllib.loads(answer["starting_gains"])
-    if not advice["stable"]:
+    robot_file, scenario_file, *_ = flexure.import_urdf(URDF, assume="harmonic-drive", scenario=True, out=scratch)["files"]
+    drafted = flexure.Scenario(scenario_file)
+    changes: dict[str, Any] = {f"controller.{key}": gain.tolist() for key, gain in drafted.gains.items()}
+    advice = drafted.sampled()
+    if advice is not None and not advice["stable"]:
         print(f"unstable with starting gains at this control period: {advice['move']} {advice['gain']}, factor {advice['factor']:g}")
         changes[advice["gain"]] = [advice["factor"] * gain for gain in advice["now"]]
-    run = flexure.simulate(flexure.Scenario(scenario, set=changes))
+    run = flexure.simulate(flexure.Scenario(scenario_file, set={"controller.phi": "linear", **changes}))
 
 trace, robot = run.trace, run.scenario.robot
 share = 100.0 * trace.joints("u_m") / robot.limits["torque"]

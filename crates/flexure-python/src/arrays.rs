@@ -3,6 +3,7 @@
 //! The last axis of an array holds the numbers of one robot; axes before it are a batch. Arrays of f64 without gaps are read where
 //! they are; anything else that NumPy can make numbers of is copied.
 
+use flexure::robot::Mismatch;
 use numpy::{
     IntoPyArray as _, PyArray1, PyArrayDyn, PyArrayMethods as _, PyReadonlyArrayDyn,
     PyUntypedArrayMethods as _,
@@ -10,6 +11,27 @@ use numpy::{
 use pyo3::exceptions::{PyMemoryError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
+
+use crate::failure::mismatch;
+
+/// Rows of a batch between two looks at Ctrl-C: some ten milliseconds of work.
+const PIECE: usize = 1024;
+
+/// Fills `found`, rows of `size` numbers, piece by piece beside the interpreter: `fill` gets the first row of a piece, and the piece.
+pub fn in_pieces(
+    py: Python<'_>,
+    found: &mut [f64],
+    size: usize,
+    fill: impl Fn(usize, &mut [f64]) -> Result<(), Mismatch> + Sync,
+) -> PyResult<()> {
+    for (i, piece) in found.chunks_mut(PIECE * size).enumerate() {
+        if i > 0 {
+            py.check_signals()?;
+        }
+        py.detach(|| fill(i * PIECE, piece)).map_err(mismatch)?;
+    }
+    Ok(())
+}
 
 /// An argument that holds arrays.
 pub struct Numbers<'py> {

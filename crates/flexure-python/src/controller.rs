@@ -5,7 +5,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arrays::{Numbers, Times, shape, shaped, vector, zeros};
+use crate::arrays::{Numbers, Times, in_pieces, shape, shaped, vector, zeros};
 use crate::failure::{mismatch, raised};
 use crate::own_law::derivatives;
 use crate::robot::MOTION;
@@ -61,12 +61,20 @@ impl Controller {
         let motions = numbers.slice()?;
         let mut u_m = zeros(motions.len() / 4)?;
         match Times::new(t)? {
-            Times::All(t) if batch.is_empty() => self.held.torque(t, motions, &mut u_m),
-            Times::All(t) => py.detach(|| self.held.torque(t, motions, &mut u_m)),
+            Times::All(t) if batch.is_empty() => {
+                self.held.torque(t, motions, &mut u_m).map_err(mismatch)?;
+            }
+            Times::All(t) => in_pieces(py, &mut u_m, n, |first, u_m| {
+                self.held.torque(t, &motions[4 * n * first..][..4 * u_m.len()], u_m)
+            })?,
             Times::Each(times) if times.axes() == batch => {
                 let times = times.slice()?;
-                let rows = motions.chunks_exact(4 * n).zip(u_m.chunks_exact_mut(n));
-                py.detach(|| rows.zip(times).try_for_each(|((x, u_m), &t)| self.held.torque(t, x, u_m)))
+                in_pieces(py, &mut u_m, n, |first, u_m| {
+                    let rows = motions[4 * n * first..].chunks_exact(4 * n).zip(&times[first..]);
+                    u_m.chunks_exact_mut(n)
+                        .zip(rows)
+                        .try_for_each(|(u_m, (x, t))| self.held.torque(*t, x, u_m))
+                })?;
             }
             Times::Each(times) => {
                 let (own, expected) = (shape(times.axes()), shape(&batch));
@@ -75,7 +83,6 @@ impl Controller {
                 )));
             }
         }
-        .map_err(mismatch)?;
         shaped(py, u_m, &batch, &[n])
     }
 

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use flexure::progress::{Progress, unwatched};
 use flexure::simulate::Driven;
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
@@ -12,6 +13,10 @@ use crate::arrays::{Numbers, shape, shaped, zeros};
 use crate::failure::{mismatch, raised};
 use crate::robot::MOTION;
 use crate::scenario::{Scenario, given};
+use crate::watched::watched;
+
+/// Periods beyond which Ctrl-C is looked at: some ten milliseconds of work.
+const MANY: usize = 4096;
 
 /// The robot that a scenario simulates, driven by torques of the caller: friction, coupled rotors, springs that are not linear, torque
 /// constants that are off and pushes included; no sensors, no controller, no torque limit.
@@ -80,17 +85,22 @@ impl Plant {
         let firsts = Self::firsts(first, &batch)?;
         let mut found = zeros((batch.iter().product::<usize>() * periods).saturating_mul(4 * n))?;
         if !found.is_empty() {
-            py.detach(|| {
+            let many = found.len() > MANY * 4 * n;
+            let roll = |progress: Progress<'_>| {
                 let rows =
                     starts.par_chunks_exact(4 * n).zip(torques.par_chunks_exact(periods * n)).zip(firsts);
                 rows.zip(found.par_chunks_exact_mut(periods * 4 * n)).try_for_each(
                     |(((x, u_m), first), motions)| {
-                        motions.copy_from_slice(&self.driven.motion(x, first, period, u_m)?);
+                        // What it breaks off raises a KeyboardInterrupt.
+                        if progress(0.0).is_continue() {
+                            motions.copy_from_slice(&self.driven.motion(x, first, period, u_m)?);
+                        }
                         Ok(())
                     },
                 )
-            })
-            .map_err(mismatch)?;
+            };
+            let rolled = if many { watched(py, None, roll)? } else { py.detach(|| roll(&unwatched)) };
+            rolled.map_err(mismatch)?;
         }
         shaped(py, found, &batch, &[periods, 4 * n])
     }

@@ -10,7 +10,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple};
 
-use crate::arrays::{Argument, Numbers, constant, shape, shaped, together, zeros};
+use crate::arrays::{Argument, Numbers, constant, in_pieces, shape, shaped, together, zeros};
 use crate::documents::document;
 use crate::failure::{documents, mismatch, raised, refused, warn};
 use crate::scenario::{Scenario, changed, hashed, outside};
@@ -61,16 +61,15 @@ fn each<'py>(
     let size: usize = last.iter().product();
     let many: usize = batch.iter().product();
     let mut found = zeros(many.saturating_mul(size))?;
-    py.detach(|| {
+    in_pieces(py, &mut found, size, |first, found| {
         let mut row: Vec<&[f64]> = Vec::with_capacity(slices.len());
-        for (k, found) in found.chunks_exact_mut(size).enumerate() {
+        for (k, found) in (first..).zip(found.chunks_exact_mut(size)) {
             row.clear();
             row.extend(slices.iter().zip(&counts).map(|(all, count)| &all[k * count..(k + 1) * count]));
             each(&row, found)?;
         }
         Ok(())
-    })
-    .map_err(mismatch)?;
+    })?;
     shaped(py, found, &batch, last)
 }
 

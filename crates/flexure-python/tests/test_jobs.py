@@ -7,6 +7,7 @@ import time
 from typing import Any
 
 import flexure
+import numpy as np
 import pytest
 
 
@@ -22,7 +23,15 @@ class TestLongJobs:
         with pytest.raises(RuntimeError, match="enough"):
             flexure.simulate("panda-tanh-smooth", progress=refuse)
 
-    @pytest.mark.parametrize("job", [lambda: flexure.compare(), lambda: flexure.tune("panda-tanh-smooth")])
+    @pytest.mark.parametrize(
+        "job",
+        [
+            lambda: flexure.compare(),
+            lambda: flexure.tune("panda-tanh-smooth"),
+            lambda: flexure.Scenario("panda-tanh-smooth").controller().torque(np.zeros((1_000_000, 28)), 0.5),
+            lambda: flexure.Plant("panda-tanh-smooth").roll(np.zeros((2000, 28)), np.zeros((2000, 100, 7))),
+        ],
+    )
     def test_ctrl_c(self, job: Any) -> None:
         """Within 0.2 s on a free machine; 2 s here, where others work, too."""
         asked: list[float] = []

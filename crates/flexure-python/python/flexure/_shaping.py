@@ -17,8 +17,14 @@ if TYPE_CHECKING:
 TERMS = 24
 """Terms of a series."""
 
-BEYOND = 1e-3
-"""What the function is beyond its reach counts so much: the series is to be sane there, not exact."""
+FITS = [(scale, beyond) for beyond in (1e-5, 1e-3) for scale in (0.5, 0.3, 1.0)]
+"""Scales that are tried, as parts of the reach, and what the function counts beyond it: the series is to be sane there, not exact."""
+
+SANE = 2.0
+"""So much larger than the function beyond its reach a series may be."""
+
+FAR = 4.0
+"""So many times its reach the function is asked."""
 
 
 class Shaping:
@@ -34,21 +40,33 @@ class Shaping:
             raise ValueError(f"reach: {reach}; expected a positive number, rad")
         self.reach = float(reach)
         """Up to which error it is f, rad."""
-        self.scale = 0.5 * self.reach
-        nodes = np.cos(np.pi * (np.arange(8 * TERMS) + 0.5) / (16 * TERMS))
-        errors = self.scale * nodes / np.sqrt(1.0 - nodes**2)
-        weights = np.where(errors <= self.reach, 1.0, BEYOND)
-        basis = np.cos(np.outer(np.arccos(nodes), 2 * np.arange(TERMS) + 1))
-        wanted = self._asked(function, np.minimum(errors, 4.0 * self.reach))
-        solution, *_ = np.linalg.lstsq(weights[:, None] * basis, weights * wanted, rcond=None)
-        self.coefficients: list[float] = solution.tolist()
-        """Of the polynomials of Chebyshev of odd degree in e / √(scale² + e²)."""
         near = np.linspace(0.0, self.reach, 2001)
         there = self._asked(function, near)
         if np.abs(self._asked(function, -near) + there).max() > 1e-9 * np.abs(there).max():
             raise ValueError("a shaping function is odd: f(-e) = -f(e)")
-        self.error = float(np.abs(self(near) - there).max() / np.abs(there).max())
+        self.error = np.inf
         """The largest difference from f within reach, as a part of its largest value there."""
+        for part, beyond in FITS:
+            scale, coefficients, error = self._fitted(function, part * self.reach, beyond, near, there)
+            if error < self.error:
+                self.scale, self.error = scale, error
+                self.coefficients: list[float] = coefficients.tolist()
+                """Of the polynomials of Chebyshev of odd degree in e / √(scale² + e²)."""
+
+    def _fitted(
+        self, function: Callable[[Any], ArrayLike], scale: float, beyond: float, near: _Array, there: _Array
+    ) -> tuple[float, _Array, float]:
+        """A series, and how far it is off; infinite where it is not sane."""
+        nodes = np.cos(np.pi * (np.arange(8 * TERMS) + 0.5) / (16 * TERMS))
+        errors = scale * nodes / np.sqrt(1.0 - nodes**2)
+        weights = np.where(errors <= self.reach, 1.0, beyond)
+        wanted = self._asked(function, np.minimum(errors, FAR * self.reach))
+        basis = _basis(errors, scale)
+        coefficients, *_ = np.linalg.lstsq(weights[:, None] * basis, weights * wanted, rcond=None)
+        far = _basis(np.geomspace(self.reach, 100.0 * self.reach, 1001), scale) @ coefficients
+        is_sane = np.abs(far).max() <= SANE * np.abs(wanted).max()
+        off = np.abs(_basis(near, scale) @ coefficients - there).max() / np.abs(there).max()
+        return scale, np.asarray(coefficients, dtype=np.float64), float(off) if is_sane else np.inf
 
     @staticmethod
     def _asked(function: Callable[[Any], ArrayLike], errors: _Array) -> _Array:
@@ -61,18 +79,22 @@ class Shaping:
 
     def __call__(self, error: ArrayLike) -> _Array:
         """The series, where Λ is 1."""
-        e = np.asarray(error, dtype=float)
-        angle = np.arccos(e / np.sqrt(self.scale**2 + e**2))
-        return np.cos(angle[..., None] * (2 * np.arange(TERMS) + 1)) @ np.asarray(self.coefficients)
+        return np.asarray(_basis(np.asarray(error, dtype=float), self.scale) @ np.asarray(self.coefficients))
 
     def __repr__(self) -> str:
         return f"Shaping(reach {self.reach:g} rad, off by {self.error:.1e} of the largest value at most)"
 
 
+def _basis(error: _Array, scale: float) -> _Array:
+    """Polynomials of Chebyshev of odd degree in e / √(scale² + e²)."""
+    angle = np.arccos(error / np.sqrt(scale**2 + error**2))
+    return np.asarray(np.cos(angle[..., None] * (2 * np.arange(TERMS) + 1)))
+
+
 def follow(scenario: Scenario | Path, path: Callable[[float], ArrayLike], *, period: float = 0.01, smooth_start: float | None = None) -> Scenario:
     """The scenario with a reference of one's own: `path`, a function of the time in s that gives positions of all joints, (n,), rad.
 
-    It is asked every `period` s, for twenty periods before the beginning and after the end too, and the reference is the septic spline
+    It is asked every `period` s, for sixty periods before the beginning and after the end too, and the reference is the septic spline
     through these samples: its fourth derivative exists and is continuous, as the law needs it. Every law, proof and sweep goes on from
     there at full speed. With `smooth_start`, s, the robot joins the path from rest.
     """
@@ -90,5 +112,5 @@ def follow(scenario: Scenario | Path, path: Callable[[float], ArrayLike], *, per
     return scenario._along("\n".join(lines) + "\n", smooth_start)
 
 
-MARGIN = 20
-"""Samples on either side of the run: what a spline does at its ends fades by half from one to the next."""
+MARGIN = 60
+"""Samples on either side of the run: what a spline does at its ends fades by half from one to the next, below rounding."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
-from functools import lru_cache
 from pathlib import Path as _Local
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
@@ -22,8 +21,6 @@ if TYPE_CHECKING:
 
 MANIFEST = "sweep.json"
 """The file that says what sweep a folder is of."""
-
-Engine = Literal["local", "ray"]
 
 
 class Store(Protocol):
@@ -198,7 +195,7 @@ def sweep(
     out: Path | None = None,
     *,
     shards: range | None = None,
-    engine: Engine = "local",
+    engine: Literal["local", "ray"] = "local",
     threads: int | None = None,
     storage_options: Mapping[str, Any] | None = None,
     set: Any = None,
@@ -234,9 +231,15 @@ def sweep(
     return Rows(where, storage_options=storage_options)
 
 
-@lru_cache(maxsize=4)
+_READ: dict[str, Sweep] = {}
+"""The last sweep of a worker, by its document: it gets many shards of one."""
+
+
 def _again(document: str) -> Sweep:
-    return Sweep.from_document(document)
+    if document not in _READ:
+        _READ.clear()
+        _READ[document] = Sweep.from_document(document)
+    return _READ[document]
 
 
 def _shard(document: str, where: str, options: Mapping[str, Any] | None, shard: int) -> int:
@@ -263,8 +266,10 @@ def _by_ray(sweep: Sweep, where: str, options: Mapping[str, Any] | None, shards:
     try:
         work = ray.remote(num_cpus=1, max_retries=3)(_shard)
         document = ray.put(sweep.document())
-        ahead = AHEAD * max(int(ray.cluster_resources().get("CPU", 1)), 1)
-        waiting, running, done = iter(shards), [], 0
+        resources: dict[str, float] = ray.cluster_resources()  # type: ignore[no-untyped-call, unused-ignore]
+        ahead = AHEAD * max(int(resources.get("CPU", 1)), 1)
+        waiting, done = iter(shards), 0
+        running: list[Any] = []
         try:
             while True:
                 running += [work.remote(document, where, options, shard) for _, shard in zip(range(ahead - len(running)), waiting)]

@@ -70,8 +70,11 @@ fn visit(
 ) -> Option<()> {
     for (key, field) in table.fields() {
         let key = if prefix.is_empty() { key.to_owned() } else { format!("{prefix}.{key}") };
+        let is_there = || known.plain.iter().any(|known| known.path == key);
         if field.value.is_table() {
             visit(&field.any_table()?, &key, known, places, assumed)?;
+        } else if field.log.source.has_replaced(&key) && !is_there() {
+            // It was about a number that is no longer there.
         } else if let Some(note) = field.text()?.strip_prefix("assumed:") {
             let (key, value) = named_by(&key, &field, known)?;
             let note = note.trim().to_owned();

@@ -82,6 +82,18 @@ impl Source {
         self.parts.iter().skip(1).map(|part| part.start)
     }
 
+    /// Whether a change replaced a table that `key` was in.
+    pub fn has_replaced(&self, key: &str) -> bool {
+        let changed = self
+            .parts
+            .iter()
+            .skip(1)
+            .filter_map(|part| Some(part.source.text.split_once('=')?.0.trim().to_owned()));
+        changed
+            .into_iter()
+            .any(|table| key.strip_prefix(&table).is_some_and(|rest| rest.starts_with(['.', '['])))
+    }
+
     /// The part, file or change, that `span` is in, and where in it.
     pub fn part_with(&self, span: Range<usize>) -> (Self, Range<usize>) {
         match self.parts.iter().rfind(|part| part.start <= span.start) {
