@@ -43,7 +43,8 @@ class TestSameAsTheCommandLine:
 
     def test_margins(self, command: Command) -> None:
         name = "two-link-hardware"
-        assert timeless(flexure.margins(name)) == timeless(command("margins", name)["loops"][0])
+        short = flexure.Scenario(name, set={"duration": 5.0})
+        assert timeless(flexure.margins(short)) == timeless(command("margins", name, "--set", "duration=5.0")["loops"][0])
 
     def test_states(self, scenario: flexure.Scenario, command: Command) -> None:
         rng = np.random.default_rng(1)
@@ -62,7 +63,7 @@ class TestSameAsTheCommandLine:
 
     def test_the_road_from_a_motion_to_numbers(self, tmp_path: Path, command: Command) -> None:
         out = tmp_path / "excite.toml"
-        motion = flexure.excite("planar-2r", out, budget=5)
+        motion = flexure.excite("planar-2r", out, budget=5, duration=8.0)
         assert motion["toml"] == out.read_text() and motion["objections"] == []
         assert command("run", str(out), "--out", str(tmp_path))["follows"]
         log = tmp_path / "excite.csv"

@@ -39,12 +39,18 @@ fn examples(help: &str) -> Vec<&str> {
 }
 
 /// Every command has an example in its help, and every example does what it says.
+/// Runs of two instants each.
+const SWEEP: &str = "scenario = \"pendulum-tanh\"\ndesign = \"uniform\"\npoints = 8200\nset.duration = 0.001\n[parameters]\n\
+                     \"robot.joints.stiffness\" = { from = 0.9, to = 1.1, relative = true }\n";
+
 #[test]
 fn examples_of_every_help_run() {
     let place = Place::new();
     place.write("panda.urdf", include_str!("../../../../robots/panda.urdf"));
     let state = "{\"t\": 0, \"q_l\": [0.1, 0], \"q_m\": [0.1, 0], \"dq_l\": [0, 0], \"dq_m\": [0, 0]}\n";
     place.write("states.jsonl", state);
+    // A sweep of which row 8123 is the last that the examples speak of.
+    place.write("sweep.toml", SWEEP);
     let help = place.run(&["--help"]).done().stdout;
     let mut lines: Vec<String> = examples(&help).into_iter().map(str::to_owned).collect();
     assert!(!lines.is_empty(), "{help}");
