@@ -15,7 +15,7 @@ plt.style.use(here / "style.mplstyle")
 STIFFNESS, DELAY = "robot.joints.stiffness", "imperfection.delay.actuation"
 SWEEP = f"""
 scenario = "two-link-hardware"
-metrics = ["rms_e_l", "sampled_growth"]
+metrics = ["rms_e_l", "sampled_rate"]
 [set]
 duration = 3.0
 [parameters]
@@ -29,7 +29,7 @@ with tempfile.TemporaryDirectory() as place:
     columns = rows.columns()
 shape = (11, 21)  # keys in alphabetical order, the last changing first
 delay, stiffness = 1e3 * columns[DELAY].reshape(shape), columns[STIFFNESS].reshape(shape)
-error, growth = 1e3 * columns["rms_e_l"].reshape(shape), columns["sampled_growth"].reshape(shape)
+error, growth = 1e3 * columns["rms_e_l"].reshape(shape), columns["sampled_rate"].reshape(shape)
 follows = (columns["status"] == "follows").reshape(shape)
 
 # A certificate is about the ideal loop: continuous time, exact measurements, no delay. That is one edge of this plane, and it is
@@ -37,13 +37,13 @@ follows = (columns["status"] == "follows").reshape(shape)
 proofs = [flexure.certify(flexure.Scenario("two-link-hardware", set={STIFFNESS: (k * flexure.Robot("two-link-plausible").stiffness).tolist()})) for k in stiffness[0, ::5]]
 rates = [proof["contraction_rate"] for proof in proofs]
 assert all(proof["verdict"].startswith("proved") for proof in proofs) and np.ptp(rates) < 1e-6
-assert follows[growth < 0.999].mean() > follows[growth > 1.001].mean()
+assert follows[shrinking > 0.5].mean() > follows[shrinking < -0.5].mean()
 
 figure, panel = plt.subplots(figsize=(8.5, 5.4))
 shades = panel.pcolormesh(stiffness, delay, error, norm="log", cmap="cividis_r", shading="nearest", rasterized=True)
 plt.rcParams["hatch.color"] = "white"
 panel.contourf(stiffness, delay, ~follows, levels=[0.5, 1.5], colors="none", hatches=["///"])
-border = panel.contour(stiffness, delay, growth, levels=[1.0], colors="C1", linewidths=2.2)
+border = panel.contour(stiffness, delay, shrinking, levels=[0.0], colors="C1", linewidths=2.2)
 panel.plot(stiffness[0, [0, -1]], [0.0, 0.0], "C0", linewidth=6.0, solid_capstyle="butt", clip_on=False, zorder=5)
 panel.set(xscale="log", xlim=(0.1, 10.0), ylim=(0.0, 40.0), xlabel="stiffness of both joints [× that of the arm]", ylabel="delay from command to torque [ms]")
 panel.set_title("One set of gains, 231 arms: encoders, filter and torque limits, 500 Hz")

@@ -12,7 +12,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::changes::changes;
 use crate::documents::document;
-use crate::failure::{raised, refused, unwritten};
+use crate::failure::{raised, refused, said, unwritten, warn};
 use crate::scenario::{Scenario, outside};
 use crate::watched::watched;
 
@@ -39,6 +39,7 @@ impl Sweep {
             .map_err(|problem| refused(py, &problem))?;
         let reading = Reading { outside: outside(allow_outside), changes: &set };
         let many = Many::load(&path.to_string_lossy(), reading).map_err(|problems| raised(py, &problems))?;
+        warn(py, many.warnings(), 1)?;
         Ok(Self { many })
     }
 
@@ -189,21 +190,24 @@ impl Sweep {
         })
     }
 
-    /// What the rows of files come to, of which only the ends are given, as bytes.
-    fn _statistics<'py>(&self, py: Python<'py>, ends: Vec<Vec<u8>>) -> PyResult<Bound<'py, PyAny>> {
+    /// What the rows of shards come to, of whose files only the ends are given, as bytes.
+    fn _statistics<'py>(&self, py: Python<'py>, ends: Vec<(u64, Vec<u8>)>) -> PyResult<Bound<'py, PyAny>> {
         let mut statistics = Statistics::none(&self.many);
-        for end in &ends {
-            let found = Statistics::of_end(&self.many, end).map_err(PyValueError::new_err)?;
+        for (shard, end) in &ends {
+            let found = Statistics::of_end(&self.many, *shard, end).map_err(|error| {
+                let message = format!("{}: {error}", part_name(*shard));
+                said(py, "damaged", &message, "remove the file and run the sweep again: it is computed anew")
+            })?;
             statistics.absorb(&found);
         }
         document(py, &statistics.told(&self.many))
     }
 
-    /// Columns of the rows of files, given as bytes, in their order.
+    /// Columns of the rows of shards, whose files are given as bytes, in their order.
     fn _table<'py>(
         &self,
         py: Python<'py>,
-        files: Vec<Vec<u8>>,
+        files: Vec<(u64, Vec<u8>)>,
         names: Vec<String>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let columns = py.detach(|| self.many.columns_of(files, &names));
@@ -241,10 +245,13 @@ impl Sweep {
     }
 }
 
+/// Most threads.
+const MOST_THREADS: usize = 1024;
+
 /// Threads that work side by side: so many, or one for each core.
 fn pool(threads: Option<usize>) -> PyResult<ThreadPool> {
-    if threads == Some(0) {
-        return Err(PyValueError::new_err("threads: 0; expected at least 1"));
+    if let Some(threads) = threads.filter(|threads| !(1..=MOST_THREADS).contains(threads)) {
+        return Err(PyValueError::new_err(format!("threads: {threads}; expected 1 to {MOST_THREADS}")));
     }
     let built = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
     built.map_err(|error| PyValueError::new_err(format!("threads: {error}")))

@@ -50,6 +50,7 @@ class TestShaping:
             (lambda e: e**2, "is odd"),
             (lambda e: e[:2], "shape .2,.; expected"),
             (lambda e: np.log(e), "no finite number at|is odd"),
+            (lambda e: -e, "pulls back"),
         ):
             with pytest.raises(ValueError, match=message), np.errstate(all="ignore"):
                 shape(function)

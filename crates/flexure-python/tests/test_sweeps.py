@@ -103,6 +103,42 @@ class TestRows:
         assert row == sweep.scenario(3)
 
 
+    def test_damaged_and_foreign_files_are_told(self, file: Path, tmp_path: Path) -> None:
+        rows = flexure.sweep(file, tmp_path / "a")
+        part = tmp_path / "a" / "part-00001.parquet"
+        whole = part.read_bytes()
+        told, columns = rows.summary(), rows.columns()
+        rng = np.random.default_rng(1)
+        for place in [*rng.integers(4, len(whole), 200), 4, len(whole) - 9]:
+            part.write_bytes(whole[:place] + bytes([whole[place] ^ (1 << int(rng.integers(8)))]) + whole[place + 1 :])
+            # Told by its name, or what was flipped says nothing: never other numbers.
+            try:
+                found, summary = rows.columns(), rows.summary()
+            except flexure.FlexureError as error:
+                assert "part-00001.parquet" in str(error)
+            else:
+                assert summary == told and all(np.array_equal(found[name], columns[name], equal_nan=name in ("rms_e_l", "diverged_at")) for name in columns)
+        for other in ("part-00000.parquet", "part-00002.parquet"):
+            part.write_bytes((tmp_path / "a" / other).read_bytes())
+            for read in (rows.columns, rows.summary, rows.to_pandas):
+                with pytest.raises(flexure.FlexureError, match="part-00001.parquet: it has the rows of shard"):
+                    read()
+        elsewhere = flexure.sweep(flexure.Sweep(file, set={"control_period": 0.002}), tmp_path / "b")
+        part.write_bytes(elsewhere.store.read("part-00001.parquet"))
+        with pytest.raises(flexure.FlexureError, match="another sweep"):
+            rows.columns()
+
+    def test_factors_on_what_joints_have_by_themselves(self, tmp_path: Path) -> None:
+        urdf = Path(__file__).parents[3] / "robots" / "panda.urdf"
+        scenario = flexure.import_urdf(urdf, assume="harmonic-drive", scenario=True, out=tmp_path)["files"][1]
+        text = 'scenario = "panda-scenario.toml"\n[parameters]\n"robot.joints.stiffness" = { values = [0.5, 2.0], relative = true }\n'
+        (tmp_path / "soft.toml").write_text(text)
+        sweep = flexure.Sweep(tmp_path / "soft.toml")
+        own = flexure.Scenario(scenario).robot.stiffness
+        for row, factor in ((0, 0.5), (1, 2.0)):
+            np.testing.assert_allclose(sweep.scenario(row).robot.stiffness, factor * own, rtol=1e-15)
+
+
 class TestElsewhere:
     def test_a_url(self, file: Path, tmp_path: Path) -> None:
         pytest.importorskip("fsspec")
@@ -121,6 +157,10 @@ class TestElsewhere:
             sweep(file, tmp_path / "a", shards=range(2, 9))
         with pytest.raises(ValueError, match="engine: 'dask'"):
             sweep(file, tmp_path / "a", engine="dask")
+        with pytest.raises(TypeError, match=r"shards: \[1\]; expected a range"):
+            sweep(file, tmp_path / "a", shards=[1])
+        with pytest.raises(ValueError, match="threads: 1000000000"):
+            sweep(file, tmp_path / "a", threads=10**9)
         with pytest.raises(ValueError, match="threads: 0"):
             sweep(file, tmp_path / "a", threads=0)
         with pytest.raises(flexure.FlexureError, match="it is no folder of a sweep"):
@@ -161,6 +201,8 @@ class TestFigures:
         here = (columns["imperfection.noise.motor"] == 5e-5) & (columns["robot.joints.stiffness"] == 2.0)
         assert here.sum() == 2 and cells[3, 1] == pytest.approx(columns["rms_e_l"][here].mean())
         rows.scatter("rms_e_l", "max_abs_u_m", "settling_time").savefig(tmp_path / "a.png")
+        with pytest.raises(ValueError, match="status is text"):
+            rows.scatter("rms_e_l", "max_abs_u_m", "status")
         with pytest.raises(ValueError, match="form no grid"):
             rows.heatmap("rms_e_l", "max_abs_u_m")
 

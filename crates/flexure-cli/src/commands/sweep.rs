@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::{print, run};
 use crate::args::{OfFolder, Sweep};
-use crate::failure::Failure;
+use crate::failure::{Failure, say};
 use crate::progress::Progress;
 
 /// What there is of a sweep.
@@ -51,9 +51,12 @@ pub fn sweep(options: &Sweep, reading: Reading<'_>, json: bool) -> Result<(), Fa
         };
     }
     let sweep = Many::load(options.file.as_deref().unwrap_or_default(), reading)?;
+    say(sweep.warnings());
     let range = shards(options.shards.as_deref(), sweep.shards())?;
     let path = options.out.clone().unwrap_or_else(|| PathBuf::from("out").join(sweep.name()));
     let folder = Folder::of(&sweep, &path)?;
+    let there = || folder.parts().map(|parts| parts.range(range.clone()).count());
+    let before = there()?;
     let computed = {
         let progress = Progress::of_one(sweep.name());
         folder.complete(&sweep, range.clone(), &|fraction| progress.set(0, fraction))
@@ -61,8 +64,8 @@ pub fn sweep(options: &Sweep, reading: Reading<'_>, json: bool) -> Result<(), Fa
     match computed {
         Ok(computed) => show(&sweep, &folder, computed, json),
         Err(Unfinished::Problems(problems)) if problems.is_interrupted() => {
-            show(&sweep, &folder, 0, json)?;
-            let there = folder.parts()?.range(range.clone()).count();
+            let there = there()?;
+            show(&sweep, &folder, (there - before.min(there)) as u64, json)?;
             let message = format!("broken off: {there} of {} shards are there", range.end - range.start);
             Err(Failure::interrupted(message, "the same command goes on where it was"))
         }
@@ -129,7 +132,7 @@ fn words(status: Status) -> &'static str {
         Status::Follows => "follow their reference",
         Status::Strays => "do not follow",
         Status::Diverges => "diverge",
-        Status::Refused => "were refused: their numbers do not go together",
+        Status::Refused => "were refused: their numbers do not go together (`flexure sweep replay` says why)",
     }
 }
 

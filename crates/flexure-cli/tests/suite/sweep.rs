@@ -14,7 +14,7 @@ design = \"latin-hypercube\"
 points = 20
 seeds = 2
 shard = 5
-metrics = [\"rms_e_l\", \"max_abs_u_m\", \"sampled_growth\"]
+metrics = [\"rms_e_l\", \"max_abs_u_m\", \"sampled_rate\"]
 [set]
 duration = 0.05
 [parameters]
@@ -78,7 +78,7 @@ fn a_sweep_goes_on_and_is_told() {
     assert!((least..=largest).contains(&row["rms_e_l"].as_f64().unwrap()), "{row}");
     assert_eq!(place.names("out"), ["sweep-row-17.csv", "sweep-row-17.png", "sweep-row-17.svg"]);
     let told = place.run(&["sweep", "show", "o"]).done().stdout;
-    assert!(told.contains("40 of 40 runs are there") && told.contains("sampled_growth"), "{told}");
+    assert!(told.contains("40 of 40 runs are there") && told.contains("sampled_rate"), "{told}");
 }
 
 /// Comments and blanks are nothing; everything else is another sweep.
@@ -180,7 +180,8 @@ fn nasty_sweeps() {
         ("seeds = 2", "seeds = -1", "seeds is -1"),
         ("shard = 5", "shard = 1.5", "must be a whole number"),
         ("\"rms_e_l\"", "\"rms\"", "metrics[0] is 'rms', which is not known"),
-        ("scale = \"log\"", "scale = \"log\", points = 1e9", "points is a number, must be a whole number"),
+        ("shard = 5", "shard = 1e3", "shard is a number, must be a whole number"),
+        ("relative = true", "relative = true, points = 7", "has points, and the design is no grid"),
         ("from = 0.5", "from = -0.5", "scale is log"),
         ("from = 0.5", "from = nan", "must be a number"),
         ("to = 2.0", "too = 2.0", "unknown key 'too'"),
@@ -192,6 +193,12 @@ fn nasty_sweeps() {
         ("from = 0.0, to = 1e-4", "values = [0.0, 0.0]", "more than once"),
         ("from = 0.0, to = 1e-4", "values = [0.0], points = 2", "has values and points"),
         ("duration = 0.05", "duration = \"soon\"", "must be a number"),
+        ("duration = 0.05", "seed = 3", "seed is set, and every row has one of its own"),
+        (
+            "duration = 0.05",
+            "imperfection.noise.motor = 1e-5",
+            "'imperfection.noise.motor' is set, and a parameter",
+        ),
         ("pendulum-tanh", "pendulum-tan", "did you mean 'pendulum-tanh'?"),
         ("pendulum-tanh", "../../etc/passwd", "outside"),
     ] {
@@ -220,6 +227,8 @@ fn nasty_sweeps() {
     let part = fs::read(place.path().join("good/part-00000.parquet")).unwrap();
     place.write("good/part-00001.parquet", &part[..part.len() / 2]);
     place.run(&["sweep", "show", "good"]).refused(&["good/part-00001.parquet", "remove the file"]);
+    place.write("good/part-00001.parquet", &part);
+    place.run(&["sweep", "show", "good"]).refused(&["good/part-00001.parquet: it has the rows of shard 0"]);
     let manifest = altered(&place.read("good/sweep.json"), &[("points = 20", "points = 30")]);
     place.write("good/sweep.json", manifest);
     place.run(&["sweep", "show", "good"]).refused(&["sweep.json was changed"]);

@@ -36,14 +36,16 @@ class Shaping:
     """
 
     def __init__(self, function: Callable[[Any], ArrayLike], *, reach: float = 1.0) -> None:
-        if not (np.isfinite(reach) and reach > 0.0):
-            raise ValueError(f"reach: {reach}; expected a positive number, rad")
+        if not 1e-6 <= reach <= 1e3:
+            raise ValueError(f"reach: {reach}; expected a number from 1e-6 to 1e3, rad")
         self.reach = float(reach)
         """Up to which error it is f, rad."""
         near = np.linspace(0.0, self.reach, 2001)
         there = self._asked(function, near)
         if np.abs(self._asked(function, -near) + there).max() > 1e-9 * np.abs(there).max():
             raise ValueError("a shaping function is odd: f(-e) = -f(e)")
+        if not there[1] > 0.0:
+            raise ValueError("a shaping function pulls back: f(e) > 0 for small e > 0")
         self.error = np.inf
         """The largest difference from f within reach, as a part of its largest value there."""
         for part, beyond in FITS:
@@ -52,6 +54,9 @@ class Shaping:
                 self.scale, self.error = scale, error
                 self.coefficients: list[float] = coefficients.tolist()
                 """Of the polynomials of Chebyshev of odd degree in e / √(scale² + e²)."""
+
+        if not np.isfinite(self.error):
+            raise ValueError("the shaping function is not smooth enough for a series: it has to have derivatives")
 
     def _fitted(
         self, function: Callable[[Any], ArrayLike], scale: float, beyond: float, near: _Array, there: _Array
@@ -70,7 +75,10 @@ class Shaping:
 
     @staticmethod
     def _asked(function: Callable[[Any], ArrayLike], errors: _Array) -> _Array:
-        found = np.asarray(function(errors), dtype=float)
+        try:
+            found = np.asarray(function(errors), dtype=float)
+        except TypeError as error:
+            raise TypeError(f"the shaping function has to take arrays, as those of NumPy do: {error}") from None
         if found.shape != errors.shape:
             raise ValueError(f"the shaping function's value: shape {found.shape}; expected {errors.shape}, a number for each error")
         if not np.isfinite(found).all():

@@ -129,6 +129,11 @@ def _store(where: str, options: Mapping[str, Any] | None) -> Store:
     return Remote(where, options or {}) if "://" in where else Folder(where)
 
 
+def _shard_of(name: str) -> int:
+    """The shard whose file has this name, part-00012.parquet."""
+    return int(name[5:-8])
+
+
 class Rows:
     """The rows of a sweep that are there: what `sweep` computed, or a folder or URL of one."""
 
@@ -142,7 +147,7 @@ class Rows:
     @property
     def parts(self) -> list[str]:
         """The files that are there, in the order of their rows."""
-        return sorted((name for name in self.store.names() if name.startswith("part-") and name.endswith(".parquet")), key=lambda name: int(name[5:-8]))
+        return sorted((name for name in self.store.names() if name.startswith("part-") and name.endswith(".parquet")), key=_shard_of)
 
     @property
     def complete(self) -> bool:
@@ -155,13 +160,13 @@ class Rows:
         for name in self.parts:
             last = self.store.end(name, 1 << 16)
             size = int.from_bytes(last[-8:-4], "little") + 8
-            ends.append((last if len(last) >= size else self.store.end(name, size))[-size:-8])
+            ends.append((_shard_of(name), (last if len(last) >= size else self.store.end(name, size))[-size:-8]))
         return self.sweep._statistics(ends)
 
     def columns(self, *names: str) -> dict[str, NDArray[Any]]:
         """Columns of the rows by their names, all of them if none is named: row, seed, status, parameters, metrics (NaN where a run has
         none)."""
-        return {name: np.asarray(column) for name, column in self.sweep._table([self.store.read(name) for name in self.parts], list(names or self.sweep.columns)).items()}
+        return {name: np.asarray(column) for name, column in self.sweep._table([(_shard_of(name), self.store.read(name)) for name in self.parts], list(names or self.sweep.columns)).items()}
 
     def to_pandas(self) -> _DataFrame:
         """A DataFrame with the row as index. Needs pandas."""
@@ -213,6 +218,8 @@ def sweep(
     elif set is not None:
         raise TypeError("set: changes are made where a sweep is read: Sweep(path, set=...)")
     asked = range(sweep.shards) if shards is None else shards
+    if not isinstance(asked, range):
+        raise TypeError(f"shards: {asked!r}; expected a range, as range(0, 8)")
     if asked.step != 1 or not 0 <= asked.start <= asked.stop <= sweep.shards:
         raise ValueError(f"shards: {asked}; expected a range within 0 to {sweep.shards}")
     where = os.path.join("out", sweep.name) if out is None else os.fspath(out)
@@ -226,6 +233,10 @@ def sweep(
         names = store.names()
         missing = [shard for shard in asked if sweep.part_name(shard) not in names]
         _watched(sweep.name, progress, lambda told: _by_ray(sweep, where, storage_options, missing, told))
+        names = store.names()
+        lost = [shard for shard in asked if sweep.part_name(shard) not in names]
+        if lost:
+            raise FlexureError(f"{where}: {len(lost)} shards were computed and are not there\n  help: name a place that all workers see, no memory of their own")
     else:
         raise ValueError(f'engine: {engine!r}; expected "local" or "ray"')
     return Rows(where, storage_options=storage_options)

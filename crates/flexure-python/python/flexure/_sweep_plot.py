@@ -26,7 +26,7 @@ NOTHING = "#bbbbbb"
 
 def heatmap(rows: Rows, x: str, y: str, value: str) -> Figure:
     """A metric over two parameters of a grid."""
-    data = rows.columns(*dict.fromkeys((x, y, value)), "status")
+    data = _numbers(rows, x, y, value)
     if data[x].size == 0:
         raise ValueError("there are no rows yet")
     across, columns = np.unique(data[x], return_inverse=True)
@@ -57,13 +57,22 @@ def heatmap(rows: Rows, x: str, y: str, value: str) -> Figure:
 
 def scatter(rows: Rows, x: str, y: str, value: str) -> Figure:
     """Every row at two of its parameters or metrics, coloured by a metric."""
-    data = rows.columns(*dict.fromkeys((x, y, value)))
+    data = _numbers(rows, x, y, value)
     figure, panel = _frame(rows, x, y)
     known = np.isfinite(data[value])
     panel.scatter(data[x][~known], data[y][~known], s=12, color=NOTHING, marker="x", linewidths=0.8)
     drawn = panel.scatter(data[x][known], data[y][known], c=data[value][known], s=14, norm=_norm(data[value][known]), cmap="viridis", linewidths=0)
     _bar(figure, panel, drawn, rows, value, bool((~known).any()), False)
     return figure
+
+
+def _numbers(rows: Rows, *names: str) -> dict[str, NDArray[Any]]:
+    """Columns that can be drawn, and the status."""
+    data = rows.columns(*dict.fromkeys([*names, "status"]))
+    for name in names:
+        if data[name].dtype.kind not in "if":
+            raise ValueError(f"{name} is text; expected a column of numbers")
+    return data
 
 
 def _frame(rows: Rows, x: str, y: str) -> tuple[Figure, Axes]:

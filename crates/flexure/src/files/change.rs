@@ -59,6 +59,15 @@ enum What {
     Index(usize),
 }
 
+impl What {
+    fn key(&self) -> Option<&str> {
+        match self {
+            Self::Key(key) => Some(key),
+            Self::Index(_) => None,
+        }
+    }
+}
+
 impl Change {
     /// Reads `KEY=VALUE`.
     ///
@@ -152,6 +161,28 @@ impl Change {
             }
             one => number(one).map(Numbers::One),
         })
+    }
+
+    /// Keys like `robot.joints.stiffness` for the tables beside it, as `robot.joints."elbow".stiffness`, where these have one.
+    pub(crate) fn of_each(&self, robot: &Source, changes: &[Self]) -> Vec<String> {
+        let names: Option<[&str; 3]> = match self.steps.as_slice() {
+            [robot, table, key] => [robot, table, key]
+                .map(|step| step.what.key())
+                .into_iter()
+                .collect::<Option<Vec<_>>>()
+                .and_then(|names| names.try_into().ok()),
+            _ => None,
+        };
+        let Some([of, table, key]) = names else { return Vec::new() };
+        let Ok(parent) = Self::parse(&format!("{table} = 0")) else { return Vec::new() };
+        let entries = parent.found(robot, changes, |value| {
+            let DeValue::Table(entries) = value else { return None };
+            let has = |value: &DeValue<'_>| value.get(key).is_some();
+            let named =
+                entries.iter().filter(|(_, value)| value.get_ref().is_table() && has(value.get_ref()));
+            Some(named.map(|(name, _)| format!("{of}.{table}.\"{}\".{key}", name.get_ref())).collect())
+        });
+        entries.unwrap_or_default()
     }
 
     /// The text that stands there.

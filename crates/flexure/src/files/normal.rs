@@ -119,13 +119,18 @@ impl Normal {
 
     /// SHA-256 of the text, in hexadecimal.
     pub fn digest(&self) -> String {
-        let mut hexadecimal = String::new();
-        for byte in hmac_sha256::Hash::hash(self.text().as_bytes()) {
-            // Writing to a text does not fail.
-            let _ = write!(hexadecimal, "{byte:02x}");
-        }
-        hexadecimal
+        hexadecimal(hmac_sha256::Hash::hash(self.text().as_bytes()))
     }
+}
+
+/// A hash in digits.
+pub(crate) fn hexadecimal(bytes: [u8; 32]) -> String {
+    let mut digits = String::new();
+    for byte in bytes {
+        // Writing to a text does not fail.
+        let _ = write!(digits, "{byte:02x}");
+    }
+    digits
 }
 
 /// The fewest digits that restore `x`, laid out as ECMAScript does.

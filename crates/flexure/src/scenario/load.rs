@@ -51,29 +51,36 @@ pub(crate) fn source_at(path_or_name: &str, base: &Base) -> Result<(Source, Base
     Ok((base.read(path_or_name, bounds::LIMIT)?, base.beside(path_or_name)))
 }
 
-/// The numbers that stand at the key of `key` in the scenario of `bundle`, or in the file of its robot.
-pub(crate) fn numbers(key: &Change, bundle: &Bundle) -> Result<Numbers, Problems> {
+/// The numbers that stand at the key of `key` in the scenario of `bundle`, or in the file of its robot, there also those that its joints
+/// have at that key by themselves, each with its key.
+pub(crate) fn numbers(key: &Change, bundle: &Bundle) -> Result<Vec<(String, Numbers)>, Problems> {
     let (source, changes) = (&bundle.source, &bundle.changes);
     let own: Vec<Change> = changes.iter().filter(|change| !change.is_of_robot()).cloned().collect();
-    let found = match key.of_robot() {
-        None => key.numbers(source, &own),
-        Some(key) => {
+    let mut found = Vec::new();
+    match key.of_robot() {
+        None => found.extend(key.numbers(source, &own).map(|numbers| (key.key().to_owned(), numbers))),
+        Some(of_file) => {
             let of_robot: Vec<Change> = changes.iter().filter_map(Change::of_robot).collect();
             let robot = Change::parse("robot = 0")?.said(source, &own);
-            let robot = robot.map(|robot| robot::source_at(&robot, &bundle.base())).transpose()?;
-            robot.and_then(|robot| key.numbers(&robot, &of_robot))
+            if let Some(robot) = robot.map(|robot| robot::source_at(&robot, &bundle.base())).transpose()? {
+                let all = of_file.numbers(&robot, &of_robot);
+                found.extend(all.map(|numbers| (key.key().to_owned(), numbers)));
+                for own in key.of_each(&robot, &of_robot) {
+                    let numbers = Change::parse(&format!("{own} = 0"))?
+                        .of_robot()
+                        .and_then(|own| own.numbers(&robot, &of_robot));
+                    found.extend(numbers.map(|numbers| (own, numbers)));
+                }
+            }
         }
-    };
-    found.ok_or_else(|| {
+    }
+    if found.is_empty() {
         let message =
             format!("{} is relative, and the file has no numbers there", suggest::quoted(key.key()));
-        Problem::new(
-            "missing-number",
-            message,
-            "give the key in the file, or in [set], or leave relative out",
-        )
-        .into()
-    })
+        let hint = "give the key in the file, or in [set], or leave relative out";
+        return Err(Problem::new("missing-number", message, hint).into());
+    }
+    Ok(found)
 }
 
 impl Scenario {

@@ -86,7 +86,7 @@ mod tests {
             key: "a".to_owned(),
             values: Values::Between { from: 0.0, to: 1.0, logarithmic: false, points },
             relative: false,
-            base: None,
+            base: Vec::new(),
         };
         points.map(axis).to_vec()
     }

@@ -90,6 +90,7 @@ pub(super) fn said(root: &Table<'_>) -> Option<Said> {
     let shard = root.optional("shard", |field| field.whole("rows of a file", 1, MOST_IN_A_SHARD));
     let metrics = root.optional("metrics", metrics);
     let (parameters, kind) = (parameters?, kind?);
+    refuse_grid_points(root, kind)?;
     let points = points_of(root, kind, points?, &parameters)?;
     let seeds = seeds?;
     if points.saturating_mul(seeds.count()) > MOST_ROWS {
@@ -106,6 +107,26 @@ pub(super) fn said(root: &Table<'_>) -> Option<Said> {
         shard: shard?.unwrap_or(SHARD),
         metrics: metrics?.unwrap_or_else(|| METRICS.iter().filter(|metric| metric.usual).collect()),
     })
+}
+
+/// That values on a grid are counted where there is none.
+fn refuse_grid_points(root: &Table<'_>, kind: Kind) -> Option<()> {
+    let entries = flat(&root.get("parameters")?.any_table()?, &is_leaf)?;
+    for (key, field) in entries {
+        let Some(points) = field.any_table()?.get("points").filter(|_| kind != Kind::Grid) else { continue };
+        let message = format!("{key} has points, and the design is no grid");
+        points.error("contradiction", message, "points of all parameters stand above [parameters]");
+        return None;
+    }
+    Some(())
+}
+
+/// Whether a table is a parameter, not a part of keys.
+fn is_leaf(field: &Field<'_>) -> bool {
+    match field.value {
+        DeValue::Table(entries) => LEAF.iter().any(|key| entries.contains_key(*key)),
+        _ => true,
+    }
 }
 
 /// How many points there are.
@@ -213,10 +234,6 @@ fn change(field: &Field<'_>, from: &'static str, key: &str, text: &str) -> Optio
 
 fn parameters_of(field: &Field<'_>) -> Option<Vec<Parameter>> {
     let table = field.any_table()?;
-    let is_leaf = |field: &Field<'_>| match field.value {
-        DeValue::Table(entries) => LEAF.iter().any(|key| entries.contains_key(*key)),
-        _ => true,
-    };
     let entries = flat(&table, &is_leaf)?;
     if entries.is_empty() || entries.len() > MOST_PARAMETERS {
         let message = format!("[parameters] has {} keys, must have 1 to {MOST_PARAMETERS}", entries.len());
@@ -282,7 +299,7 @@ fn parameter(key: String, field: &Field<'_>) -> Option<Parameter> {
         }
         None => between(&table)?,
     };
-    let parameter = Parameter { key, values, relative, base: None };
+    let parameter = Parameter { key, values, relative, base: Vec::new() };
     if relative && !parameter.is_number() {
         let message = format!("{} is relative, and its values are no numbers", parameter.key);
         field.error("type", message, "factors on what the file says are numbers");

@@ -169,7 +169,7 @@ impl Folder {
     pub fn statistics(&self, sweep: &Sweep) -> Result<Statistics, Problems> {
         let mut statistics = Statistics::none(sweep);
         for shard in self.parts()? {
-            let found = beside(&self.part(shard)?).and_then(|found| found.of(sweep));
+            let found = beside(&self.part(shard)?).and_then(|found| found.of(sweep, shard));
             statistics.absorb(&found.map_err(|error| self.damaged(shard, &error))?);
         }
         Ok(statistics)
@@ -182,7 +182,9 @@ impl Folder {
     pub fn columns(&self, sweep: &Sweep, names: &[String]) -> Result<Columns, Problems> {
         let mut columns = empty(sweep, names)?;
         for shard in self.parts()? {
-            read(self.part(shard)?, &mut columns).map_err(|error| self.damaged(shard, &error))?;
+            let file = fs::read(self.path.join(part_name(shard))).map_err(|error| error.to_string());
+            let read = file.and_then(|file| read(sweep, shard, file, &mut columns));
+            read.map_err(|error| self.damaged(shard, &error))?;
         }
         Ok(columns)
     }

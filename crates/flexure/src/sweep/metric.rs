@@ -68,11 +68,12 @@ pub const METRICS: [Metric; 15] = [
     Metric::new("suspended_fraction", "1", "part of the control periods in which no certificate of the law could hold", of!(s => s.suspended_fraction)).on_demand(),
     Metric::new("energy_drift", "1", "error of the energy balance of the simulation, relative to the energy that went through", of!(s => s.energy_drift)).on_demand(),
     Metric::new("steps", "1", "integration steps", of!(s => s.steps as f64)).on_demand(),
-    Metric::new("sampled_growth", "1", "by what small errors grow in a control period, by the exact linearisation of the sampled loop: they shrink below 1", |scenario, _| {
-        Ok(Outlook::new(scenario)?.growth(&scenario.controller))
+    Metric::new("sampled_rate", "1/s", "rate at which small errors shrink in the loop as it is sampled, by its exact linearisation; negative where they grow", |scenario, _| {
+        let growth = Outlook::new(scenario)?.growth(&scenario.controller);
+        Ok(growth.map(|growth| -growth.ln() / scenario.control_period))
     })
     .on_demand(),
-    Metric::new("certified_rate", "1/s", "contraction rate that is proved of the ideal loop, in continuous time, of robot and gains; none if none is", |scenario, _| {
+    Metric::new("certified_rate", "1/s", "contraction rate (`contraction_rate` of `certify`) that is proved of the ideal loop, in continuous time, of robot and gains; none if none is", |scenario, _| {
         certified_rate(scenario)
     })
     .on_demand(),

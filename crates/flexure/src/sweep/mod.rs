@@ -29,6 +29,7 @@ use crate::files::document as toml;
 use crate::files::normal::Normal;
 use crate::files::source::{self, Source};
 use crate::files::{Bundle, Outside, Problem, Problems, Reading, bounds, suggest};
+use crate::imperfections::Imperfection;
 use crate::progress::Progress;
 use crate::scenario::{self, Scenario};
 use document::{FORM, Said, Seeds};
@@ -66,6 +67,8 @@ pub struct Sweep {
     /// The scenario, with what is the same for all rows.
     scenario: Bundle,
     identity: String,
+    /// What is suspicious in the scenario of the first row.
+    warnings: Vec<Problem>,
     /// The file, and changes from outside.
     text: String,
     set: Vec<String>,
@@ -152,29 +155,40 @@ impl Sweep {
         scenario: &Bundle,
         set: &[Change],
     ) -> Result<Self, Problems> {
+        for change in said.set.iter().chain(set) {
+            refuse_overlap(change, &said.parameters)?;
+        }
         let fixed = scenario.with(&said.set).with(set);
         for parameter in said.parameters.iter_mut().filter(|parameter| parameter.relative) {
             let key = Change::parse(&format!("{} = 0", parameter.key))?;
-            parameter.base = Some(scenario::numbers(&key, &fixed)?);
+            parameter.base = scenario::numbers(&key, &fixed)?;
         }
         let mut sweep = Self {
             name: name.to_owned(),
             said,
             scenario: fixed,
             identity: String::new(),
+            warnings: Vec::new(),
             text: source.of_file().to_owned(),
             set: set.iter().map(|change| change.text().to_owned()).collect(),
         };
-        let digests = sweep.looked_at()?;
+        let looked_at = sweep.looked_at()?;
+        sweep.warnings = looked_at.first().map(|scenario| scenario.warnings.clone()).unwrap_or_default();
+        let draws = |scenario: &Scenario| scenario.imperfections.iter().any(Imperfection::draws);
+        if sweep.said.seeds.count() > 1 && !looked_at.iter().any(draws) {
+            let message = "nothing is random in these runs: every seed of a point gives the same";
+            let hint = "leave seeds out, or add an [[imperfection]] that draws, as noise";
+            sweep.warnings.push(Problem::new("same", message, hint).warning());
+        }
+        let digests = looked_at.iter().map(Scenario::digest).collect();
         sweep.identity = identity(source, &sweep.set, digests);
         // What no row near the ends of its parameters has read is read by none: rows do not depend on what becomes of files.
         sweep.scenario = sweep.scenario.closed();
         Ok(sweep)
     }
 
-    /// Reads the scenario of the first row, and with each end of each parameter: what is wrong with them is wrong with the sweep. Returns
-    /// what they say, hashed.
-    fn looked_at(&self) -> Result<Vec<String>, Problems> {
+    /// Reads the scenario of the first row, and with each end of each parameter: what is wrong with them is wrong with the sweep.
+    fn looked_at(&self) -> Result<Vec<Scenario>, Problems> {
         let first = self.said.design.point(0, &self.said.parameters);
         let mut points = vec![first.clone()];
         for (i, parameter) in self.said.parameters.iter().enumerate() {
@@ -184,12 +198,17 @@ impl Sweep {
                 point
             }));
         }
-        points.iter().map(|point| Ok(Scenario::of(&self.changed(point, 0)?)?.digest())).collect()
+        points.iter().map(|point| Scenario::of(&self.changed(point, 0)?)).collect()
     }
 
     /// Name of its file, without the ending.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// What is suspicious in the scenario of its first row.
+    pub fn warnings(&self) -> &[Problem] {
+        &self.warnings
     }
 
     /// What it is, hashed: the same for files that differ in comments and spaces only.
@@ -237,6 +256,11 @@ impl Sweep {
     /// Shards in all.
     pub fn shards(&self) -> u64 {
         self.rows().div_ceil(self.said.shard)
+    }
+
+    /// The shard that a row is in.
+    pub fn shard_of(&self, row: u64) -> u64 {
+        row / self.said.shard
     }
 
     /// Rows of a shard.
@@ -288,7 +312,7 @@ impl Sweep {
     fn changed(&self, values: &[Value], seed: u64) -> Result<Bundle, Problem> {
         let mut changes = Vec::with_capacity(values.len() + 1);
         for (parameter, value) in self.said.parameters.iter().zip(values) {
-            changes.push(parameter.change(value)?);
+            changes.extend(parameter.changes(value)?);
         }
         changes.push(Change::parse_from("seeds", &format!("seed = {seed}"))?);
         Ok(self.scenario.with(&changes))
@@ -340,23 +364,42 @@ impl Sweep {
         parquet::written(self, &outcomes)
     }
 
-    /// Columns of the rows in `files`, by their names, in the order of the files.
+    /// Columns of the rows in `files`, the shards by their numbers, by the names of the columns, in the order of the files.
     ///
     /// # Errors
-    /// If there is no such column, or a file is damaged.
-    pub fn columns_of(&self, files: Vec<Vec<u8>>, names: &[String]) -> Result<Columns, Problems> {
+    /// If there is no such column, or a file is damaged or another one.
+    pub fn columns_of(&self, files: Vec<(u64, Vec<u8>)>, names: &[String]) -> Result<Columns, Problems> {
         let mut columns = parquet::empty(self, names)?;
-        for file in files {
-            parquet::read(bytes::Bytes::from(file), &mut columns).map_err(|error| {
+        for (shard, file) in files {
+            parquet::read(self, shard, file, &mut columns).map_err(|error| {
+                let message = format!("{}: {error}", part_name(shard));
                 Problem::new(
                     "damaged",
-                    format!("a file of rows: {error}"),
-                    "remove it and run the sweep again",
+                    message,
+                    "remove the file and run the sweep again: it is computed anew",
                 )
             })?;
         }
         Ok(columns)
     }
+}
+
+/// That what is the same for all rows is neither a parameter nor the seed.
+fn refuse_overlap(change: &Change, parameters: &[Parameter]) -> Result<(), Problem> {
+    let key = change.key();
+    if key == "seed" {
+        let message = "seed is set, and every row has one of its own".to_owned();
+        return Err(Problem::new(
+            "contradiction",
+            message,
+            "seeds = 10, or seeds = [1, 2, 3], in the sweep file",
+        ));
+    }
+    if parameters.iter().any(|parameter| parameter.key == key) {
+        let message = format!("{} is set, and a parameter", suggest::quoted(key));
+        return Err(Problem::new("contradiction", message, "leave one of them out"));
+    }
+    Ok(())
 }
 
 fn said(source: &Source) -> Result<Said, Problems> {

@@ -21,8 +21,8 @@ pub struct Parameter {
     pub values: Values,
     /// Whether they are factors on what the file says there.
     pub relative: bool,
-    /// What the file says there, for factors.
-    pub(super) base: Option<Numbers>,
+    /// The keys that factors are on, and what the file says there; none for values.
+    pub(super) base: Vec<(String, Numbers)>,
 }
 
 /// The values of a parameter.
@@ -121,27 +121,33 @@ impl Parameter {
         }
     }
 
-    /// The change of the scenario that gives it this value.
+    /// The changes of the scenario that give it this value.
     ///
     /// # Errors
     /// If the key is none.
-    pub(super) fn change(&self, value: &Value) -> Result<Change, Problem> {
-        let text = match (value, &self.base) {
-            (Value::Number(x), None) => decimal(*x),
-            (Value::Number(x), Some(Numbers::One(base))) => decimal(x * base),
-            (Value::Number(x), Some(Numbers::Array(base))) => {
-                let entries: Vec<String> = base.iter().map(|base| decimal(x * base)).collect();
-                format!("[{}]", entries.join(", "))
+    pub(super) fn changes(&self, value: &Value) -> Result<Vec<Change>, Problem> {
+        let change = |key: &str, text: &str| Change::parse_from(PARAMETERS, &format!("{key} = {text}"));
+        match (value, self.base.as_slice()) {
+            (Value::Number(x), []) => Ok(vec![change(&self.key, &decimal(*x))?]),
+            (Value::Number(x), base) => {
+                let times = |(key, base): &(String, Numbers)| match base {
+                    Numbers::One(base) => change(key, &decimal(x * base)),
+                    Numbers::Array(base) => {
+                        let entries: Vec<String> = base.iter().map(|base| decimal(x * base)).collect();
+                        change(key, &format!("[{}]", entries.join(", ")))
+                    }
+                };
+                base.iter().map(times).collect()
             }
-            (Value::Text(text), _) => match &self.values {
+            (Value::Text(text), _) => {
                 // As it was written, with its quotes.
-                Values::Listed(values) => {
-                    values.iter().find(|(listed, _)| listed == value).map_or(text, |(_, text)| text).clone()
-                }
-                Values::Between { .. } => text.clone(),
-            },
-        };
-        Change::parse_from(PARAMETERS, &format!("{} = {text}", self.key))
+                let written = match &self.values {
+                    Values::Listed(values) => values.iter().find(|(listed, _)| listed == value),
+                    Values::Between { .. } => None,
+                };
+                Ok(vec![change(&self.key, written.map_or(text, |(_, text)| text))?])
+            }
+        }
     }
 }
 
@@ -158,7 +164,7 @@ mod tests {
 
     fn between(from: f64, to: f64, logarithmic: bool, points: u64) -> Parameter {
         let values = Values::Between { from, to, logarithmic, points };
-        Parameter { key: "a.b".to_owned(), values, relative: false, base: None }
+        Parameter { key: "a.b".to_owned(), values, relative: false, base: Vec::new() }
     }
 
     fn number(value: &Value) -> f64 {
@@ -185,14 +191,14 @@ mod tests {
 
     #[test]
     fn values_become_changes() {
-        let text = |parameter: &Parameter, value| parameter.change(&value).unwrap().text().to_owned();
+        let text = |parameter: &Parameter, value| parameter.changes(&value).unwrap()[0].text().to_owned();
         let mut parameter = between(0.0, 1.0, false, 2);
         assert_eq!(text(&parameter, Value::Number(0.1 + 0.2)), "a.b = 0.30000000000000004");
         assert_eq!(text(&parameter, Value::Number(3.0)), "a.b = 3");
-        parameter.base = Some(Numbers::Array(vec![9.0, 4.0]));
+        parameter.base = vec![("a.b".to_owned(), Numbers::Array(vec![9.0, 4.0]))];
         assert_eq!(text(&parameter, Value::Number(0.5)), "a.b = [4.5, 2]");
         let listed = ["pd", "vcbc"].map(|text| (Value::Text(text.to_owned()), format!("{text:?}"))).to_vec();
-        let parameter = Parameter { values: Values::Listed(listed), base: None, ..parameter };
+        let parameter = Parameter { values: Values::Listed(listed), base: Vec::new(), ..parameter };
         assert_eq!(parameter.along(0.6), Value::Text("vcbc".to_owned()));
         assert_eq!(text(&parameter, parameter.on_grid(0)), "a.b = \"pd\"");
     }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use ::bytes::Bytes;
 use ::parquet::basic::{Compression, Encoding, LogicalType, Repetition, Type as Physical};
 use ::parquet::column::reader::ColumnReader;
 use ::parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
@@ -14,11 +15,15 @@ use ::parquet::file::writer::SerializedFileWriter;
 use ::parquet::schema::types::{ColumnPath, Type, TypePtr};
 
 use super::{Outcome, Parameter, Statistics, Sweep, Value};
+use crate::files::normal::hexadecimal;
 use crate::files::{Problem, Problems, suggest};
 
 /// Keys of what stands beside the rows.
 const IDENTITY: &str = "flexure.sweep";
+const SHARD: &str = "flexure.shard";
 const STATISTICS: &str = "flexure.statistics";
+/// How many bytes of the file come before what is said, and their hash with that: what says so is not damaged.
+const SEAL: &str = "flexure.seal";
 
 /// A column of rows.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,15 +95,23 @@ pub(super) fn empty(sweep: &Sweep, names: &[String]) -> Result<Columns, Problem>
 
 /// What a file says beside its rows.
 pub(super) struct Beside {
-    pub identity: String,
-    pub statistics: Statistics,
+    identity: String,
+    shard: u64,
+    statistics: Statistics,
+    /// Bytes of rows, and their hash.
+    rows: (usize, String),
 }
 
 impl Beside {
-    /// The statistics, if the file is of this sweep.
-    pub fn of(self, sweep: &Sweep) -> Result<Statistics, String> {
-        let is_ours = self.identity == sweep.identity();
-        if is_ours { Ok(self.statistics) } else { Err("it is of another sweep".to_owned()) }
+    /// The statistics, if the file is of this shard of this sweep.
+    pub fn of(self, sweep: &Sweep, shard: u64) -> Result<Statistics, String> {
+        if self.identity != sweep.identity() {
+            return Err("it is of another sweep".to_owned());
+        }
+        if self.shard != shard {
+            return Err(format!("it has the rows of shard {}", self.shard));
+        }
+        Ok(self.statistics)
     }
 }
 
@@ -119,11 +132,13 @@ fn file(sweep: &Sweep, outcomes: &[Outcome], statistics: &Statistics) -> Result<
     let said = |key: &str, value: String| KeyValue::new(key.to_owned(), value);
     let beside = vec![
         said(IDENTITY, sweep.identity().to_owned()),
+        said(SHARD, outcomes.first().map_or(0, |first| sweep.shard_of(first.row)).to_string()),
         said(STATISTICS, serde_json::to_string(statistics).unwrap_or_default()),
     ];
+    let seal = |rows: &[u8]| said(SEAL, sealed(rows, beside.iter().filter_map(|said| said.value.as_deref())));
     let mut properties = WriterProperties::builder()
         .set_compression(Compression::UNCOMPRESSED)
-        .set_key_value_metadata(Some(beside))
+        .set_key_value_metadata(Some(beside.clone()))
         .set_created_by(format!("flexure {}", env!("CARGO_PKG_VERSION")));
     let row = ColumnPath::from(vec![names[0].clone()]);
     properties = properties
@@ -166,8 +181,21 @@ fn file(sweep: &Sweep, outcomes: &[Outcome], statistics: &Statistics) -> Result<
         column.close()?;
     }
     group.close()?;
+    writer.flush()?;
+    let seal = seal(writer.inner());
+    writer.append_key_value_metadata(seal);
     writer.close()?;
     Ok(bytes)
+}
+
+/// How many bytes the rows are, their hash, and a hash of what is said beside them.
+fn sealed<'a>(rows: &[u8], said: impl Iterator<Item = &'a str>) -> String {
+    let mut hash = hmac_sha256::Hash::new();
+    for text in said {
+        hash.update((text.len() as u64).to_le_bytes());
+        hash.update(text);
+    }
+    format!("{} {} {}", rows.len(), hexadecimal(hmac_sha256::Hash::hash(rows)), hexadecimal(hash.finalize()))
 }
 
 /// What a file says beside its rows: only its end is read.
@@ -181,21 +209,41 @@ pub(super) fn beside_of_end(end: &[u8]) -> Result<Beside, String> {
 }
 
 fn said(metadata: &ParquetMetaData) -> Result<Beside, String> {
+    const DAMAGED: &str = "its end is damaged";
     let said = metadata.file_metadata().key_value_metadata();
     let find = |key: &str| {
         let found = said.and_then(|said| said.iter().find(|entry| entry.key == key));
         found.and_then(|entry| entry.value.clone()).ok_or_else(|| format!("it does not say {key}"))
     };
-    let statistics = serde_json::from_str(&find(STATISTICS)?).map_err(|error| error.to_string())?;
-    Ok(Beside { identity: find(IDENTITY)?, statistics })
+    let (identity, shard, statistics, seal) = (find(IDENTITY)?, find(SHARD)?, find(STATISTICS)?, find(SEAL)?);
+    let texts = [&identity, &shard, &statistics].map(String::as_str);
+    let expected = sealed(&[], texts.into_iter());
+    let (Some((rows, own)), Some((_, expected))) = (seal.rsplit_once(' '), expected.rsplit_once(' ')) else {
+        return Err(DAMAGED.to_owned());
+    };
+    let rows = rows.split_once(' ').and_then(|(count, hash)| Some((count.parse().ok()?, hash.to_owned())));
+    match (rows, shard.parse(), serde_json::from_str(&statistics)) {
+        (Some(rows), Ok(shard), Ok(statistics)) if own == expected => {
+            Ok(Beside { identity, shard, statistics, rows })
+        }
+        _ => Err(DAMAGED.to_owned()),
+    }
 }
 
-/// Adds the rows of a file to `columns`, which have names.
-pub(super) fn read<R: ChunkReader + 'static>(file: R, columns: &mut Columns) -> Result<(), String> {
+/// Adds the rows of the file of a shard to `columns`, which have names.
+pub(super) fn read(sweep: &Sweep, shard: u64, file: Vec<u8>, columns: &mut Columns) -> Result<(), String> {
+    let file = Bytes::from(file);
+    let beside = beside(&file)?;
+    let (count, hash) = &beside.rows;
+    let is_whole = file.get(..*count).is_some_and(|rows| hexadecimal(hmac_sha256::Hash::hash(rows)) == *hash);
+    beside.of(sweep, shard)?;
+    if !is_whole {
+        return Err("its rows are damaged".to_owned());
+    }
     read_columns(file, columns).map_err(|error| error.to_string())
 }
 
-fn read_columns<R: ChunkReader + 'static>(file: R, columns: &mut Columns) -> Result<(), ParquetError> {
+fn read_columns(file: Bytes, columns: &mut Columns) -> Result<(), ParquetError> {
     let reader = SerializedFileReader::new(file)?;
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
     for g in 0..reader.num_row_groups() {

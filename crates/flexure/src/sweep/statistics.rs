@@ -67,19 +67,19 @@ pub struct Spread {
     pub deviation: Option<f64>,
     /// The smallest.
     pub least: Option<f64>,
-    /// The values below which 5, 50 and 95 % of them lie, to half a percent.
+    /// The smallest that at least 5, 50 and 95 % of them do not exceed, to half a percent.
     pub quantiles: [Option<f64>; 3],
     /// The largest.
     pub largest: Option<f64>,
 }
 
 impl Statistics {
-    /// Of rows in a file, from its end without its last eight bytes.
+    /// Of the rows of a shard, from the end of its file without the last eight bytes.
     ///
     /// # Errors
-    /// If it is none, or of another sweep.
-    pub fn of_end(sweep: &Sweep, end: &[u8]) -> Result<Self, String> {
-        beside_of_end(end)?.of(sweep)
+    /// If it is none, or of another sweep or shard.
+    pub fn of_end(sweep: &Sweep, shard: u64, end: &[u8]) -> Result<Self, String> {
+        beside_of_end(end)?.of(sweep, shard)
     }
 
     /// As it is told.
@@ -201,9 +201,12 @@ impl Figures {
         (self.count > 1).then(|| (self.squares / (self.count - 1) as f64).sqrt())
     }
 
-    /// The value below which this part of them lies, to half a percent; what is less than 1e-9 is 0.
+    /// The smallest of them that at least this part of them does not exceed, to half a percent; what is less than 1e-9 is 0.
     pub fn quantile(&self, part: f64) -> Option<f64> {
-        let found = self.sketch.as_ref()?.quantile(part).ok().flatten()?;
+        let last = self.count.saturating_sub(1) as f64;
+        // The sketch takes ranks from 0 to the last, rounded down.
+        let rank = ((part * self.count as f64).ceil() - 1.0).clamp(0.0, last) + 0.5;
+        let found = self.sketch.as_ref()?.quantile((rank / last.max(1.0)).min(1.0)).ok().flatten()?;
         Some(found.clamp(self.least?, self.largest?))
     }
 }
@@ -238,7 +241,7 @@ mod tests {
         assert_eq!((together.least, together.largest), (whole.least, whole.largest));
         let mut sorted = values;
         sorted.sort_by(f64::total_cmp);
-        for (part, i) in [(0.05, 49), (0.5, 499), (0.95, 949)] {
+        for (part, i) in [(0.05, 49), (0.5, 499), (0.95, 949), (1.0, 999)] {
             let (found, truth) = (together.quantile(part).unwrap(), sorted[i]);
             assert!((found - truth).abs() <= 0.011 * truth, "{part}: {found}, not {truth}");
             assert_eq!(whole.quantile(part).map(f64::to_bits), Some(found.to_bits()));
@@ -246,6 +249,15 @@ mod tests {
         let mean = sorted.iter().sum::<f64>() / 1000.0;
         let deviation = (sorted.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / 999.0).sqrt();
         assert!(near(whole.mean, mean) && near(whole.deviation().unwrap(), deviation));
+    }
+
+    /// Of few values, too: the largest of three is what 95 % do not exceed.
+    #[test]
+    fn few_values_have_their_quantiles() {
+        let few = of(&[1.0, 2.0, 30.0]);
+        for (part, truth) in [(0.05, 1.0), (0.5, 2.0), (0.95, 30.0)] {
+            assert!((few.quantile(part).unwrap() - truth).abs() <= 0.01 * truth, "{part}");
+        }
     }
 
     #[test]
