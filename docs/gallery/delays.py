@@ -29,7 +29,7 @@ with tempfile.TemporaryDirectory() as place:
     columns = rows.columns()
 shape = (11, 21)  # keys in alphabetical order, the last changing first
 delay, stiffness = 1e3 * columns[DELAY].reshape(shape), columns[STIFFNESS].reshape(shape)
-error, growth = 1e3 * columns["rms_e_l"].reshape(shape), columns["sampled_rate"].reshape(shape)
+error, shrinking = 1e3 * columns["rms_e_l"].reshape(shape), columns["sampled_rate"].reshape(shape)
 follows = (columns["status"] == "follows").reshape(shape)
 
 # A certificate is about the ideal loop: continuous time, exact measurements, no delay. That is one edge of this plane, and it is
