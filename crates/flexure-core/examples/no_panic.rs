@@ -1,6 +1,6 @@
 //! Links only if the optimiser proves that law, dynamics, estimators, guard and arithmetic cannot panic:
 //!
-//! `cargo build -p flexure-core --profile no-panic --example no_panic`
+//! `RUSTFLAGS="--cfg link_check" cargo build -p flexure-core --profile no-panic --example no_panic`
 //!
 //! An "undefined symbol" at the end of the build names the function in which a panic is reachable.
 
@@ -21,7 +21,7 @@ use flexure_core::model::{FeedForward, Fjr, Links, Motion, RotorCoupling, State}
 use flexure_core::robots::{PlanarTwoLink, Tree};
 use flexure_core::scalar::{Jet, Scalar};
 use flexure_core::virtual_system::virtual_dynamics;
-#[cfg(not(debug_assertions))]
+#[cfg(link_check)]
 use no_panic::no_panic;
 
 type Law<const N: usize> = Vcbc<f64, CoupledTanh<f64, N>, CoupledTanh<f64, N>, N>;
@@ -29,12 +29,12 @@ type Arm = Fjr<f64, PlanarTwoLink<f64>, 2>;
 /// Of up to seven joints: how many is known at run time.
 type Chain = Fjr<f64, Tree<f64, 7>, 7>;
 
-#[cfg_attr(not(debug_assertions), no_panic)]
+#[cfg_attr(link_check, no_panic)]
 fn law_of_the_arm(robot: &Arm, law: &Law<2>, x: &Motion<f64, 2>, q_d: &V<Jet<f64, 5>, 2>) -> V<f64, 2> {
     law.command(robot, x, q_d, &Input::ZERO).u_m
 }
 
-#[cfg_attr(not(debug_assertions), no_panic)]
+#[cfg_attr(link_check, no_panic)]
 fn law_of_a_tree(robot: &Chain, law: &Law<7>, x: &Motion<f64, 7>, q_d: &V<Jet<f64, 5>, 7>) -> V<f64, 7> {
     law.command(robot, x, q_d, &Input::ZERO).u_m
 }
@@ -42,7 +42,7 @@ fn law_of_a_tree(robot: &Chain, law: &Law<7>, x: &Motion<f64, 7>, q_d: &V<Jet<f6
 /// Defines a function that runs a law on a tree.
 macro_rules! law_on_a_tree {
     ($($name:ident: $law:ty),+ $(,)?) => {$(
-        #[cfg_attr(not(debug_assertions), no_panic)]
+        #[cfg_attr(link_check, no_panic)]
         fn $name(robot: &Chain, law: &$law, x: &Motion<f64, 7>, q_d: &V<Jet<f64, 5>, 7>) -> V<f64, 7> {
             law.torque(robot, x, q_d)
         }
@@ -65,33 +65,33 @@ law_on_a_tree!(
     torque_feedback: TorqueFeedback<f64, 7>,
 );
 
-#[cfg_attr(not(debug_assertions), no_panic)]
+#[cfg_attr(link_check, no_panic)]
 fn dynamics(robot: &Chain, x: &State<f64, 7>, u_m: &V<f64, 7>) -> [State<f64, 7>; 2] {
     let plant = robot.hamiltonian_dynamics(x, u_m);
     [plant, virtual_dynamics(robot, x, &robot.motion(x), u_m)]
 }
 
-#[cfg_attr(not(debug_assertions), no_panic)]
+#[cfg_attr(link_check, no_panic)]
 fn inverse_dynamics(robot: &Chain, q_l: &V<Jet<f64, 7>, 7>) -> FeedForward<f64, 7, 3, 5> {
     robot.inverse_dynamics(q_l)
 }
 
-#[cfg_attr(not(debug_assertions), no_panic)]
+#[cfg_attr(link_check, no_panic)]
 fn torque_along(robot: &Chain, derivatives: &[V<f64, 7>; 5]) -> [V<f64, 7>; 3] {
     robot.links.torque_along(&V::from_derivatives(derivatives)).derivatives()
 }
 
-#[cfg_attr(not(debug_assertions), no_panic)]
+#[cfg_attr(link_check, no_panic)]
 fn forward_dynamics(robot: &Chain, q: &V<f64, 7>, v: &V<f64, 7>, torque: &V<f64, 7>) -> V<f64, 7> {
     robot.links.forward_dynamics(q, v, torque)
 }
 
-#[cfg_attr(not(debug_assertions), no_panic)]
+#[cfg_attr(link_check, no_panic)]
 fn factor_and_solve(robot: &Chain, q: &V<f64, 7>, b: &V<f64, 7>) -> V<f64, 7> {
     robot.links.mass_matrix(q).ldl().solve(b)
 }
 
-#[cfg_attr(not(debug_assertions), no_panic)]
+#[cfg_attr(link_check, no_panic)]
 fn rotors(
     coupling: &RotorCoupling<f64, 7>,
     robot: &Chain,
@@ -104,7 +104,7 @@ fn rotors(
 /// Encoder readings in rad and the torque that was applied [N m].
 type Read = [V<f64, 7>; 3];
 
-#[cfg_attr(not(debug_assertions), no_panic)]
+#[cfg_attr(link_check, no_panic)]
 fn difference(
     estimator: &mut FilteredDifference<f64, 7>,
     robot: &Chain,
@@ -113,12 +113,12 @@ fn difference(
     estimator.update(robot, q_l, q_m, u)
 }
 
-#[cfg_attr(not(debug_assertions), no_panic)]
+#[cfg_attr(link_check, no_panic)]
 fn observer(estimator: &mut Observer<f64, 7>, robot: &Chain, [q_l, q_m, u]: &Read) -> Motion<f64, 7> {
     estimator.update(robot, q_l, q_m, u)
 }
 
-#[cfg_attr(not(debug_assertions), no_panic)]
+#[cfg_attr(link_check, no_panic)]
 fn motor_observer(
     estimator: &mut MotorObserver<f64, 7>,
     robot: &Chain,
@@ -127,7 +127,7 @@ fn motor_observer(
     estimator.update(robot, q_l, q_m, u)
 }
 
-#[cfg_attr(not(debug_assertions), no_panic)]
+#[cfg_attr(link_check, no_panic)]
 fn disturbance(
     observer: &mut DisturbanceObserver<f64, 7>,
     robot: &Chain,
@@ -137,13 +137,13 @@ fn disturbance(
     observer.update(robot, x, u)
 }
 
-#[cfg_attr(not(debug_assertions), no_panic)]
+#[cfg_attr(link_check, no_panic)]
 fn guarded(guard: &mut Guard<f64, 7>, robot: &Chain, seen: &Seen<f64, 7>) -> Decision<f64, 7> {
     let law = |x: &Motion<f64, 7>| robot.link_torque(x);
     guard.step(seen, &mut (law, |q: &V<f64, 7>| robot.links.gravity_torque(q)))
 }
 
-#[cfg_attr(not(debug_assertions), no_panic)]
+#[cfg_attr(link_check, no_panic)]
 fn coasting(
     coasting: &mut Coasting<f64, 7>,
     robot: &Chain,
@@ -155,17 +155,17 @@ fn coasting(
     coasting.fill(robot, readings, age, [true; 2], u)
 }
 
-#[cfg_attr(not(debug_assertions), no_panic)]
+#[cfg_attr(link_check, no_panic)]
 fn watched(watchdog: &mut Watchdog<f64, 7>, command: Option<V<f64, 7>>) -> V<f64, 7> {
     watchdog.step(command)
 }
 
-#[cfg_attr(not(debug_assertions), no_panic)]
+#[cfg_attr(link_check, no_panic)]
 fn saved(observer: &mut Observer<f64, 7>, joints: usize, numbers: &mut [f64]) -> Result<(), Unfit> {
     save(observer, joints, numbers)
 }
 
-#[cfg_attr(not(debug_assertions), no_panic)]
+#[cfg_attr(link_check, no_panic)]
 fn restored(observer: &mut Observer<f64, 7>, joints: usize, numbers: &[f64]) -> Result<(), Unfit> {
     restore(observer, joints, numbers)
 }
@@ -188,7 +188,7 @@ impl Port<f64> for Zeros {
     }
 }
 
-#[cfg_attr(not(debug_assertions), no_panic)]
+#[cfg_attr(link_check, no_panic)]
 fn guard_forgets(
     guard: &mut Guard<f64, 7>,
     coasting: &mut Coasting<f64, 7>,
@@ -200,7 +200,7 @@ fn guard_forgets(
     watchdog.memory(&mut Zeros);
 }
 
-#[cfg_attr(not(debug_assertions), no_panic)]
+#[cfg_attr(link_check, no_panic)]
 fn estimators_forget(
     difference: &mut FilteredDifference<f64, 7>,
     motor: &mut MotorObserver<f64, 7>,
@@ -211,7 +211,7 @@ fn estimators_forget(
     disturbance.memory(&mut Zeros);
 }
 
-#[cfg_attr(not(debug_assertions), no_panic)]
+#[cfg_attr(link_check, no_panic)]
 fn jets(x: Jet<f64, 5>) -> Jet<f64, 5> {
     (x.sin() * x.exp() + x.tanh() / x.ln()).sqrt().atan().ln_cosh().square()
 }

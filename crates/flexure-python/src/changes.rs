@@ -11,20 +11,23 @@ const DEEPEST: usize = 16;
 pub fn changes(set: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<String>> {
     let Some(set) = set else { return Ok(Vec::new()) };
     if let Ok(keys) = set.cast::<PyDict>() {
-        return keys.iter().map(|(key, value)| Ok(format!("{}={}", text(&key)?, toml(&value, 0)?))).collect();
+        return keys
+            .iter()
+            .map(|(key, value)| Ok(format!("{}={}", text("set", &key)?, toml("set", &value)?)))
+            .collect();
     }
     if set.is_instance_of::<PyString>() {
-        return Ok(vec![text(set)?]);
+        return Ok(vec![text("set", set)?]);
     }
-    set.try_iter()?.map(|change| text(&change?)).collect()
+    set.try_iter()?.map(|change| text("set", &change?)).collect()
 }
 
 /// A key or a change as it is.
-fn text(given: &Bound<'_, PyAny>) -> PyResult<String> {
+fn text(name: &str, given: &Bound<'_, PyAny>) -> PyResult<String> {
     given.extract().map_err(|_| {
         let kind = kind(given);
         PyTypeError::new_err(format!(
-            "set: {kind} is no text; expected a dict of dotted keys, or texts \"key=value\""
+            "{name}: {kind} is no text; expected a dict of dotted keys, or texts \"key=value\""
         ))
     })
 }
@@ -33,17 +36,22 @@ fn kind(given: &Bound<'_, PyAny>) -> String {
     given.get_type().name().map_or_else(|_| "?".to_owned(), |name| name.to_string())
 }
 
-/// A value as TOML has it, inside of `depth` others.
-fn toml(value: &Bound<'_, PyAny>, depth: usize) -> PyResult<String> {
+/// The value of the argument `name` as TOML has it.
+pub fn toml(name: &str, value: &Bound<'_, PyAny>) -> PyResult<String> {
+    inside(name, value, 0)
+}
+
+/// A value inside of `depth` others.
+fn inside(name: &str, value: &Bound<'_, PyAny>, depth: usize) -> PyResult<String> {
     if depth > DEEPEST {
         return Err(PyValueError::new_err(format!(
-            "set: lists or dicts inside of more than {DEEPEST} others"
+            "{name}: lists or dicts inside of more than {DEEPEST} others"
         )));
     }
     let join = |entries: PyResult<Vec<String>>| entries.map(|entries| entries.join(", "));
     if let Ok(table) = value.cast::<PyDict>() {
         let entry = |(key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
-            Ok(format!("{} = {}", quoted(&text(&key)?), toml(&value, depth + 1)?))
+            Ok(format!("{} = {}", quoted(&text(name, &key)?), inside(name, &value, depth + 1)?))
         };
         return Ok(format!("{{{}}}", join(table.iter().map(entry).collect())?));
     }
@@ -52,7 +60,7 @@ fn toml(value: &Bound<'_, PyAny>, depth: usize) -> PyResult<String> {
         return Ok(quoted(&path.to_string_lossy()));
     }
     if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
-        let entries = value.try_iter()?.map(|value| toml(&value?, depth + 1)).collect();
+        let entries = value.try_iter()?.map(|value| inside(name, &value?, depth + 1)).collect();
         return Ok(format!("[{}]", join(entries)?));
     }
     if value.is_instance_of::<PyBool>() {
@@ -69,11 +77,11 @@ fn toml(value: &Bound<'_, PyAny>, depth: usize) -> PyResult<String> {
     if value.hasattr("tolist")? {
         let plain = value.call_method0("tolist")?;
         if !plain.get_type().is(value.get_type()) && !plain.hasattr("tolist")? {
-            return toml(&plain, depth + 1);
+            return inside(name, &plain, depth + 1);
         }
     }
     Err(PyTypeError::new_err(format!(
-        "set: a value of type {} is none of a scenario; expected text, numbers, bools, lists, dicts, arrays",
+        "{name}: a value of type {} is none of a file; expected text, numbers, bools, lists, dicts, arrays",
         kind(value)
     )))
 }

@@ -35,7 +35,7 @@ mod _flexure {
     #[pymodule_export]
     use super::held::Loop;
     #[pymodule_export]
-    use super::library::{import_urdf, registered, reproduce};
+    use super::library::{check, import_urdf, registered, reproduce};
     #[pymodule_export]
     use super::logs::{excite, identify, replay};
     #[pymodule_export]

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use flexure::check::Findings;
 use flexure::files::prepare;
 use flexure::progress::Parts;
 use flexure::prove::summary::ProofSummary;
@@ -18,7 +19,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::documents::document;
-use crate::failure::{OF_JOBS, raised, refused, unwritten, warn};
+use crate::failure::{OF_JOBS, documents, raised, refused, unwritten, warn};
+use crate::robot::Robot;
+use crate::scenario::{Scenario, outside};
 use crate::watched::watched;
 
 /// Built-in robots and scenarios, and the kinds that files choose from: a dict for each section, from names to a line on each.
@@ -28,6 +31,31 @@ pub fn registered(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     for (section, members) in flexure::registered::registered() {
         found.set_item(section, members.into_iter().collect::<BTreeMap<_, _>>())?;
     }
+    Ok(found)
+}
+
+/// What is in a scenario, a robot, or the file of one, as `flexure check`: a dict.
+#[pyfunction]
+#[pyo3(signature = (given, *, allow_outside = false))]
+pub fn check<'py>(
+    py: Python<'py>,
+    given: &Bound<'py, PyAny>,
+    allow_outside: bool,
+) -> PyResult<Bound<'py, PyAny>> {
+    let found = if let Ok(scenario) = given.cast::<Scenario>() {
+        let loaded = scenario.get().loaded.clone();
+        py.detach(|| Findings::of_scenario(&loaded))
+    } else if let Ok(robot) = given.cast::<Robot>() {
+        Findings::of_robot(&robot.get().loaded)
+    } else {
+        let path: PathBuf = given.extract()?;
+        py.detach(|| Findings::of_file(&path.to_string_lossy(), outside(allow_outside)))
+    };
+    let findings = found.map_err(|problems| raised(py, &problems))?;
+    let found = document(py, &findings)?;
+    found.set_item("ok", findings.exceeded.is_empty())?;
+    found.set_item("warnings", documents(py, findings.warnings.iter())?)?;
+    found.set_item("errors", documents(py, findings.exceeded.iter())?)?;
     Ok(found)
 }
 

@@ -23,7 +23,7 @@ pub const MOTION: &str = "(q_l, q_m, dq_l, dq_m)";
 /// A flexible-joint robot: links, and a motor and a spring for each of its joints.
 #[pyclass(frozen, module = "flexure")]
 pub struct Robot {
-    loaded: Arc<Loaded>,
+    pub loaded: Arc<Loaded>,
     arm: Box<dyn Arm>,
     source: Source,
 }

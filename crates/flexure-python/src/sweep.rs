@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use crate::changes::changes;
+use crate::changes::{changes, toml};
 use crate::documents::document;
 use crate::failure::{raised, refused, said, unwritten, warn};
 use crate::scenario::{Scenario, outside};
@@ -39,6 +39,44 @@ impl Sweep {
             .map_err(|problem| refused(py, &problem))?;
         let reading = Reading { outside: outside(allow_outside), changes: &set };
         let many = Many::load(&path.to_string_lossy(), reading).map_err(|problems| raised(py, &problems))?;
+        warn(py, many.warnings(), 1)?;
+        Ok(Self { many })
+    }
+
+    /// Of a scenario in hand: what stands in a sweep file, as arguments.
+    #[staticmethod]
+    #[pyo3(signature = (scenario, parameters, *, name = None, design = None, points = None, seed = None, seeds = None, metrics = None,
+                        shard = None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords")]
+    fn of(
+        py: Python<'_>,
+        scenario: &Scenario,
+        parameters: &Bound<'_, PyDict>,
+        name: Option<&str>,
+        design: Option<Bound<'_, PyAny>>,
+        points: Option<Bound<'_, PyAny>>,
+        seed: Option<Bound<'_, PyAny>>,
+        seeds: Option<Bound<'_, PyAny>>,
+        metrics: Option<Bound<'_, PyAny>>,
+        shard: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let given = [
+            ("design", design),
+            ("points", points),
+            ("seed", seed),
+            ("seeds", seeds),
+            ("metrics", metrics),
+            ("shard", shard),
+            ("parameters", Some(parameters.clone().into_any())),
+        ];
+        let mut text = String::new();
+        for (key, value) in given {
+            let Some(value) = value else { continue };
+            text = text + key + " = " + &toml(key, &value)? + "\n";
+        }
+        let name = name.unwrap_or(&scenario.loaded.name);
+        let many =
+            Many::of(&scenario.source.bundle, name, &text).map_err(|problems| raised(py, &problems))?;
         warn(py, many.warnings(), 1)?;
         Ok(Self { many })
     }

@@ -41,6 +41,15 @@ class TestSameAsTheCommandLine:
         assert timeless(found) == timeless(answer)
         assert (tmp_path / "c.json").read_text() == (tmp_path / "p.json").read_text()
 
+    def test_check(self, command: Command) -> None:
+        for name in (SCENARIO, "two-link-hardware", "panda"):
+            answer = timeless(command("check", name)[0])
+            assert timeless(flexure.check(name)) == answer
+        scenario = flexure.Scenario("two-link-hardware", set={"imperfection.delay": {"kind": "delay", "actuation": 0.02}})
+        found = flexure.check(scenario)
+        assert not found["ok"] and found["errors"] and not found["sampled"]["stable"]
+        assert flexure.check(scenario.robot)["kind"] == "robot"
+
     def test_margins(self, command: Command) -> None:
         name = "two-link-hardware"
         short = flexure.Scenario(name, set={"duration": 5.0})

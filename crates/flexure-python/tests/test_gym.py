@@ -45,6 +45,23 @@ def test_many_are_as_one() -> None:
     assert reward[0] == 0.0 and not lost[0] and not truncated[0]
 
 
+def test_each_of_many_has_its_seed() -> None:
+    """Gymnasium's convention: one seed s is s + i for the i-th, a list is one each; an arm that begins again goes on with its own."""
+    many = flexure.gym.ElasticArmVectorEnv("planar-2r-tanh", 3, episode=4)
+    for seed, each in ((7, (7, 8, 9)), ([5, 2, 5], (5, 2, 5))):
+        firsts, _ = many.reset(seed=seed)
+        ones = [flexure.gym.ElasticArmEnv("planar-2r-tanh", episode=4) for _ in each]
+        for i, (one, its) in enumerate(zip(ones, each, strict=True)):
+            np.testing.assert_array_equal(one.reset(seed=its)[0], firsts[i])
+        for _ in range(4):
+            many.step(np.zeros((3, 2)))
+        again = many.step(np.zeros((3, 2)))[0]
+        for i, one in enumerate(ones):
+            np.testing.assert_array_equal(one.reset()[0], again[i])
+    with pytest.raises(ValueError, match="one for each of 3"):
+        many.reset(seed=[1])
+
+
 def test_the_law_is_rewarded_and_nothing_is_not() -> None:
     law = flexure.gym.ElasticArmVectorEnv("planar-2r-tanh", 16, residual=0.1)
     still = flexure.gym.ElasticArmVectorEnv("planar-2r-tanh", 16)

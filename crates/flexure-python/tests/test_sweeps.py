@@ -128,6 +128,51 @@ class TestRows:
         with pytest.raises(flexure.FlexureError, match="another sweep"):
             rows.columns()
 
+    def test_of_a_scenario_in_hand(self, file: Path, tmp_path: Path) -> None:
+        """With arguments for keys it is the sweep of the file, to the bytes of its shards."""
+        scenario = flexure.Scenario("pendulum-tanh", set={"duration": 0.05})
+        parameters = {
+            "robot.joints.stiffness": {"from": 0.5, "to": 2.0, "relative": True},
+            "controller.phi": {"values": ["tanh", "linear"]},
+        }
+        sweep = flexure.Sweep.of(scenario, parameters, design="uniform", points=24, shard=5, metrics=["rms_e_l", "diverged_at"])
+        theirs = flexure.Sweep(file)
+        assert sweep.name == "pendulum-tanh" and sweep.columns == theirs.columns
+        for row in (0, 23):
+            assert sweep.row(row) == theirs.row(row)
+        again = pickle.loads(pickle.dumps(sweep))
+        assert again == sweep and again.scenario(1).duration == 0.05 and again.shard(1) == sweep.shard(1)
+        rows = flexure.sweep(sweep, tmp_path / "a")
+        assert flexure.Rows(tmp_path / "a").sweep == rows.sweep == sweep
+
+    def test_of_a_path_of_ones_own(self, tmp_path: Path) -> None:
+        scenario = flexure.follow("pendulum-tanh", lambda t: [0.2 * np.sin(3 * t)])
+        sweep = flexure.Sweep.of(scenario, {"robot.joints.stiffness": {"values": [0.5, 2.0], "relative": True}}, name="soft")
+        rows = flexure.sweep(sweep, tmp_path / "a")
+        assert rows.replay(0).summary["rms_e_l"] == rows.columns("rms_e_l")["rms_e_l"][0]
+        assert (tmp_path / "a" / "sweep.json").read_text().count("Python.csv") >= 1
+
+    def test_what_is_wrong_in_arguments(self) -> None:
+        scenario = flexure.Scenario("pendulum-tanh")
+        good = {"robot.joints.stiffness": {"values": [0.5, 2.0], "relative": True}}
+        of: Any = flexure.Sweep.of
+        for parameters, keywords, fragment in (
+            ({}, {}, "parameters"),
+            ({"controller.phi": {}}, {}, "0 keys"),
+            ({1: {"values": [1.0]}}, {}, "int is no text"),
+            (good, {"design": "sobel"}, "sobol"),
+            (good, {"design": "sobol"}, "points"),
+            (good, {"points": 3}, "grid"),
+            (good, {"seeds": []}, "seeds"),
+            (good, {"metrics": ["rms"]}, "rms"),
+            (good, {"shard": object()}, "shard: a value of type object"),
+            (good | {"scenario": {"values": ["two-link-tanh"]}}, {}, "scenario"),
+        ):
+            with pytest.raises((flexure.FlexureError, TypeError), match=fragment):
+                of(scenario, parameters, **keywords)
+        with pytest.raises(TypeError, match="Scenario"):
+            of("pendulum-tanh", good)
+
     def test_factors_on_what_joints_have_by_themselves(self, tmp_path: Path) -> None:
         urdf = Path(__file__).parents[3] / "robots" / "panda.urdf"
         scenario = flexure.import_urdf(urdf, assume="harmonic-drive", scenario=True, out=tmp_path)["files"][1]

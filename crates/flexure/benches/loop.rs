@@ -92,3 +92,25 @@ mod whole_loop {
         bencher.counter(count).bench_local(|| measure(&scenario).expect("two joints"));
     }
 }
+
+/// The law at 10,000 motions in one call, as `python crates/flexure-python/benches/calls.py` has it from Python; `--profile release`
+/// compiles it as the wheel is.
+mod law {
+    use super::Bencher;
+    use divan::counter::ItemsCount;
+    use flexure::Scenario;
+
+    const MOTIONS: usize = 10_000;
+
+    #[divan::bench(args = ["two-link-tanh", "panda-tanh-smooth"], sample_count = 40, sample_size = 1)]
+    fn batch(bencher: Bencher, name: &str) {
+        let scenario = Scenario::load(name).expect("built in");
+        let held = scenario.open().expect("a loop");
+        let start = &scenario.initial;
+        let motions = [&start.q_l[..], &start.q_m, &start.dq_l, &start.dq_m].concat().repeat(MOTIONS);
+        let mut u_m = vec![0.0; MOTIONS * held.joints()];
+        bencher
+            .counter(ItemsCount::new(MOTIONS))
+            .bench_local(|| held.torque(0.5, &motions, &mut u_m).expect("lengths fit"));
+    }
+}

@@ -2,6 +2,7 @@
 
 pub use flexure_core as core;
 
+pub mod check;
 pub mod compare;
 pub mod design;
 pub mod estimators;

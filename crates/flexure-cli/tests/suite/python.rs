@@ -1,7 +1,7 @@
 //! The Python package: its wheel is built, put into an environment of the test's own, and what is claimed of it is run by pytest; its
 //! types are held against it.
 //!
-//! The wheel is of the profile that everything else is tested in. Set `FLEXURE_OFFLINE=1` to leave the test out where PyPI is out of reach.
+//! The wheel is of the profile and the features that everything else is tested with, so that it shares the library. Set `FLEXURE_OFFLINE=1` to leave the test out where PyPI is out of reach.
 
 use std::path::Path;
 use std::process::Command;
@@ -39,7 +39,19 @@ fn the_wheel_does_what_is_claimed() {
     let interpreter = python.to_str().unwrap();
     must(
         &bin.join("maturin"),
-        &["build", "--quiet", "--profile", "dev", "--target-dir", target, "--out", out, "-i", interpreter],
+        &[
+            "build",
+            "--quiet",
+            "--release",
+            "--features",
+            "as-tested",
+            "--target-dir",
+            target,
+            "--out",
+            out,
+            "-i",
+            interpreter,
+        ],
     );
     let wheel = std::fs::read_dir(&wheels).unwrap().next().expect("a wheel").unwrap().path();
     let install =

@@ -145,7 +145,7 @@ fn nothing_is_lost_or_doubled_by_kill_9() {
 
 #[test]
 #[cfg(unix)]
-#[ignore = "a minute: cargo test -p flexure-cli --test suite -- --ignored kill_9 --nocapture"]
+#[ignore = "a minute: cargo test --release -p flexure-cli --test suite -- --ignored kill_9 --nocapture"]
 fn nothing_is_lost_or_doubled_by_a_thousand_kill_9() {
     killed(1000);
 }

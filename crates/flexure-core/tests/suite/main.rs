@@ -1,6 +1,6 @@
 //! Tests of the kernel: a module each, the robots and numbers that they share in `common`.
 //!
-//! `cargo test -p flexure-core --test suite models::` runs those of a module.
+//! `cargo test --release -p flexure-core --test suite models::` runs those of a module.
 
 mod allocations;
 #[cfg(feature = "interval")]

@@ -13,7 +13,7 @@ of the traces. Motors are seen from the link side of the gear. Arrays may have a
 """
 
 from ._flexure import Controller, FlexureError, FlexureWarning, Loop, Plant, Robot, Scenario, Sweep, __version__
-from ._jobs import certify, compare, excite, identify, import_urdf, margins, registered, replay, reproduce, simulate, tune, verify
+from ._jobs import certify, check, compare, excite, identify, import_urdf, margins, registered, replay, reproduce, simulate, tune, verify
 from ._motion import Motion, motion, views
 from ._run import Run, Trace
 from ._shaping import Shaping, follow
@@ -35,6 +35,7 @@ __all__ = [
     "Trace",
     "__version__",
     "certify",
+    "check",
     "compare",
     "excite",
     "follow",

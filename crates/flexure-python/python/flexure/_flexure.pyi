@@ -19,6 +19,7 @@ __all__ = [
     "__version__",
     "_panic",
     "certify",
+    "check",
     "compare",
     "excite",
     "identify",
@@ -219,6 +220,21 @@ class Sweep:
 
     def __new__(cls, path: _Path, *, set: dict[str, Any] | Sequence[str] | None = None, allow_outside: bool = False) -> Sweep: ...
     @staticmethod
+    def of(
+        scenario: Scenario,
+        parameters: dict[str, Any],
+        *,
+        name: str | None = None,
+        design: str | None = None,
+        points: int | None = None,
+        seed: int | None = None,
+        seeds: int | Sequence[int] | None = None,
+        metrics: Sequence[str] | None = None,
+        shard: int | None = None,
+    ) -> Sweep:
+        """Of a scenario in hand: what stands in a sweep file, as arguments."""
+
+    @staticmethod
     def from_document(text: str) -> Sweep: ...
     def document(self) -> str: ...
     @property
@@ -316,6 +332,7 @@ def replay(
     horizon: float = ...,
     progress: _Told = None,
 ) -> dict[str, Any]: ...
+def check(given: Scenario | Robot | _Path, *, allow_outside: bool = False) -> dict[str, Any]: ...
 def registered() -> dict[str, dict[str, str]]: ...
 def import_urdf(
     urdf: _Path,

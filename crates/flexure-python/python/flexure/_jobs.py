@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _flexure
-from ._flexure import FlexureError, Scenario
+from ._flexure import FlexureError, Robot, Scenario
 from ._progress import Bar, Progress
 from ._run import Run, Trace
 
@@ -58,6 +58,15 @@ def simulate(
         objections=found["objections"],
         faults=found["faults"],
     )
+
+
+def check(given: Scenario | Robot | Path, *, allow_outside: bool = False) -> dict[str, Any]:
+    """Looks at a scenario, a robot, or the file of one, as `flexure check`: joints, assumed numbers, what the reference uses of the limits,
+    whether the loop is stable that holds its torque for a control period.
+
+    `ok` tells whether it is, and no limit is exceeded: `errors` says what. Raises FlexureError for a file that cannot be used.
+    """
+    return _flexure.check(given, allow_outside=allow_outside)
 
 
 def certify(

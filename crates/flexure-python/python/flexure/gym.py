@@ -12,11 +12,13 @@ limits or errors leave 1 rad, with a reward of minus what the rest of it could c
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, SupportsFloat
 
 import gymnasium
 import numpy as np
 from gymnasium import spaces
+from gymnasium.utils.seeding import np_random
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
@@ -74,11 +76,13 @@ class _Arms:
         inertia = self.scenario.robot.motor_inertia * np.abs(references[:, 2]).max(axis=0)
         return np.asarray(np.maximum(3.0 * (np.abs(taken).max(axis=0) + inertia), 1.0))
 
-    def begin(self, rng: np.random.Generator, count: int) -> tuple[Array, NDArray[np.int64]]:
-        """Motions at an instant of the reference, the springs as at the scenario's start, off by `start`; and the instants."""
-        instants = rng.integers(0, max(1, round(self.scenario.duration / self.plant.period)), count)
+    def begin(self, rngs: Sequence[np.random.Generator]) -> tuple[Array, NDArray[np.int64]]:
+        """Motions at an instant of the reference, the springs as at the scenario's start, off by `start`; and the instants. Each arm draws
+        from a generator of its own."""
+        last = max(1, round(self.scenario.duration / self.plant.period))
+        draws = [(rng.integers(0, last), rng.uniform(-self.start, self.start, self.n)) for rng in rngs]
+        instants, off = np.array([instant for instant, _ in draws]), np.array([off for _, off in draws])
         references = self.law.reference(instants * self.plant.period)
-        off = rng.uniform(-self.start, self.start, (count, self.n))
         q_l = references[:, 0] + off
         sag = self.scenario.robot.inverse_dynamics(q_l, references[:, 1], references[:, 2]) / self.scenario.robot.stiffness
         return np.concatenate([q_l, q_l + sag, references[:, 1], references[:, 1]], axis=-1), instants
@@ -134,7 +138,7 @@ class ElasticArmEnv(gymnasium.Env[Array, Array]):
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
         super().reset(seed=seed)
-        self._x, self._instants = self.arms.begin(self.np_random, 1)
+        self._x, self._instants = self.arms.begin([self.np_random])
         self._steps = 0
         return self.arms.observe(self._x, self._instants)[0], {}
 
@@ -148,7 +152,10 @@ class ElasticArmEnv(gymnasium.Env[Array, Array]):
 
 
 class ElasticArmVectorEnv(gymnasium.vector.VectorEnv[Array, Array, NDArray[Any]]):
-    """The same many times, moved in one call on all cores; an arm whose episode has ended begins again at the next step."""
+    """The same many times, moved in one call on all cores; an arm whose episode has ended begins again at the next step.
+
+    `reset(seed=s)` seeds arm i with s + i, `reset(seed=[...])` each with its own: arm i does what `ElasticArmEnv` does with that seed.
+    """
 
     metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": gymnasium.vector.AutoresetMode.NEXT_STEP}
 
@@ -172,12 +179,18 @@ class ElasticArmVectorEnv(gymnasium.vector.VectorEnv[Array, Array, NDArray[Any]]
         self.single_observation_space, self.single_action_space = self.arms.observation, self.arms.action
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
+        self._rngs: list[np.random.Generator] = []
 
     def reset(
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Array, dict[str, Any]]:
-        super().reset(seed=seed[0] if isinstance(seed, list) else seed)
-        self._x, self._instants = self.arms.begin(self.np_random, self.num_envs)
+        seeds = [None] * self.num_envs if seed is None else seed if isinstance(seed, list) else [seed + i for i in range(self.num_envs)]
+        if len(seeds) != self.num_envs:
+            raise ValueError(f"seed has {len(seeds)} entries: one for each of {self.num_envs} environments")
+        super().reset(seed=seeds[0])
+        fresh: list[np.random.Generator | None] = self._rngs or [None] * self.num_envs
+        self._rngs = [np_random(seed)[0] if rng is None or seed is not None else rng for rng, seed in zip(fresh, seeds, strict=True)]
+        self._x, self._instants = self.arms.begin(self._rngs)
         self._steps = np.zeros(self.num_envs, np.int64)
         self._ended = np.zeros(self.num_envs, np.bool_)
         return self.arms.observe(self._x, self._instants), {}
@@ -189,7 +202,7 @@ class ElasticArmVectorEnv(gymnasium.vector.VectorEnv[Array, Array, NDArray[Any]]
         x, observed, reward, lost = self.arms.step(self._x, self._instants, np.asarray(actions))
         self._x, self._instants, self._steps = x, self._instants + self.arms.frame_skip, self._steps + 1
         if again.any():
-            self._x[again], self._instants[again] = self.arms.begin(self.np_random, int(again.sum()))
+            self._x[again], self._instants[again] = self.arms.begin([self._rngs[i] for i in np.flatnonzero(again)])
             self._steps[again], reward[again], lost[again] = 0, 0.0, False
             observed[again] = self.arms.observe(self._x[again], self._instants[again])
         reward -= np.where(lost, WORST * (self.arms.episode - self._steps), 0.0)

@@ -61,9 +61,9 @@ impl Bundle {
         Self { kept: self.kept.with(path, text), ..self.clone() }
     }
 
-    /// The same without changes.
-    pub(crate) fn unchanged(&self) -> Self {
-        Self { changes: Vec::new(), ..self.clone() }
+    /// The same with the first `count` changes only.
+    pub(crate) fn with_first(&self, count: usize) -> Self {
+        Self { changes: self.changes[..count].to_vec(), ..self.clone() }
     }
 
     /// All of it, as JSON.

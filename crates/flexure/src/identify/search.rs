@@ -74,19 +74,16 @@ impl Search<'_> {
     /// If it was broken off.
     pub fn run(&self, mut values: Values, progress: Progress<'_>) -> Result<Found, Problems> {
         let n = values.joints.len();
-        let mut levels = vec![self.first(); n];
-        let mut weighing = self.weighed(&values, &levels);
         let told = |round: usize, step: usize| {
             let fraction =
                 (round as f64 + step as f64 / STEPS as f64) / (ROUNDS + LOOKS + DOUBTING.len()) as f64;
             if progress(fraction).is_break() { Err(Problems::interrupted()) } else { Ok(()) }
         };
-        for round in 0..ROUNDS {
+        let (mut levels, mut weighing);
+        (values, levels, weighing) = self.first(&values, &|step| told(0, step))?;
+        for round in 1..ROUNDS {
             (values, _) = self.climb(values, &mut weighing, ROUGH, &|step| told(round, step))?;
-            // The first gain is that of the numbers in the file; it is put right before others are tried.
-            if round > 0 {
-                levels = self.levels(&values, &levels);
-            }
+            levels = self.levels(&values, &levels);
             weighing = self.weighed(&values, &levels);
         }
         let mut converged = false;
@@ -187,11 +184,35 @@ impl Search<'_> {
         Weighing { weights: weights(&innovations), ..weighing }
     }
 
-    /// Level of the first rounds: corrections that are large, and memory that is short, which is what leads through the valleys
-    /// of guesses; small ones where links are not seen: with numbers that are guesses, predictions that are corrected much by the
-    /// motors alone are wild.
-    fn first(&self) -> i32 {
-        if self.of_links() { 1 } else { *LEVELS[1].end() }
+    /// The first round, from `values`: numbers, levels and weighing.
+    ///
+    /// Where links are seen it is done with the most and the least noise, and what is likelier counts. Corrections that are large
+    /// lead through the valleys of guesses; but they answer to what the law made of the errors of the encoders, and lead away from the
+    /// good start that the regression mostly is. Where links are not seen the noise is the least: with numbers that are guesses,
+    /// predictions that are corrected much by the motors alone are wild.
+    fn first(
+        &self,
+        values: &Values,
+        told: &dyn Fn(usize) -> Result<(), Problems>,
+    ) -> Result<(Values, Vec<i32>, Weighing), Problems> {
+        let n = values.joints.len();
+        let [of_both, of_motors] = LEVELS;
+        let tried =
+            if self.of_links() { vec![*of_both.start(), *of_both.end()] } else { vec![*of_motors.end()] };
+        let mut best = (values.clone(), vec![tried[0]; n], f64::INFINITY);
+        for level in tried {
+            let levels = vec![level; n];
+            // The first gain is that of the numbers it starts from; it is put right before others are tried.
+            let mut weighing = self.weighed(values, &levels);
+            let (there, _) = self.climb(values.clone(), &mut weighing, ROUGH, told)?;
+            let cost = self.cost(&self.total(&there, &weighing, false), &there);
+            if cost < best.2 {
+                best = (there, levels, cost);
+            }
+        }
+        let (values, levels, _) = best;
+        let weighing = self.weighed(&values, &levels);
+        Ok((values, levels, weighing))
     }
 
     /// Per joint the level of torque noise whose gain makes the innovations likeliest. Where links are not seen all joints have

@@ -68,7 +68,7 @@ mod tests {
         assert_eq!(subscripts("_a λ_(k) <b>_1"), "_a λ_(k) &lt;b&gt;<sub>1</sub>");
     }
 
-    /// `FLEXURE_WRITE=1 cargo test -p flexure --lib errata` writes the file anew.
+    /// `FLEXURE_WRITE=1 cargo test --release -p flexure --lib errata` writes the file anew.
     #[test]
     fn the_errata_of_reports_are_those_of_the_docs() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR"));

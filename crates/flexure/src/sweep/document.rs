@@ -27,6 +27,13 @@ pub(super) const FORM: Form = Form {
     ),
 };
 
+/// Of a scenario in hand, or one that was read before.
+pub(super) const IN_HAND: Form = Form {
+    required: &["parameters"],
+    optional: &["scenario", "design", "points", "seed", "seeds", "shard", "metrics", "set"],
+    ..FORM
+};
+
 /// What changes in `[set]` are called in messages.
 const SET: &str = "[set]";
 
@@ -62,10 +69,15 @@ impl Seeds {
     }
 }
 
-/// What a sweep file says.
+/// The scenario that a sweep file names.
+pub(super) fn scenario(root: &Table<'_>) -> Option<String> {
+    let field = root.required("scenario", "path of a scenario file or name of a built-in scenario");
+    field.and_then(|field| field.text().map(str::to_owned))
+}
+
+/// What a sweep file says besides.
 #[derive(Clone, Debug)]
 pub(super) struct Said {
-    pub scenario: String,
     pub set: Vec<Change>,
     pub parameters: Vec<Parameter>,
     pub design: Design,
@@ -78,8 +90,6 @@ const NUMBER: Quantity = Quantity::any("value of the key", units::NONE);
 
 /// Reads the root table.
 pub(super) fn said(root: &Table<'_>) -> Option<Said> {
-    let scenario = root.required("scenario", "path of a scenario file or name of a built-in scenario");
-    let scenario = scenario.and_then(|field| field.text().map(str::to_owned));
     let set = root.optional("set", |field| changes(&field.any_table()?));
     let parameters = root.required("parameters", "a table with a line for each key that changes");
     let parameters = parameters.and_then(|field| parameters_of(&field));
@@ -99,7 +109,6 @@ pub(super) fn said(root: &Table<'_>) -> Option<Said> {
         return None;
     }
     Some(Said {
-        scenario: scenario?,
         set: set?.unwrap_or_default(),
         parameters,
         design: Design { kind, points, seed: seed?.unwrap_or(0) },

@@ -32,7 +32,7 @@ use crate::files::{Bundle, Outside, Problem, Problems, Reading, bounds, suggest}
 use crate::imperfections::Imperfection;
 use crate::progress::Progress;
 use crate::scenario::{self, Scenario};
-use document::{FORM, Said, Seeds};
+use document::{FORM, IN_HAND, Said, Seeds};
 use streams::Stream;
 
 pub use design::Kind;
@@ -64,8 +64,9 @@ pub use statistics::{Figures, Spread, Statistics, Told};
 pub struct Sweep {
     name: String,
     said: Said,
-    /// The scenario, with what is the same for all rows.
+    /// The scenario, with what is the same for all rows; so many of its changes are its own.
     scenario: Bundle,
+    own: usize,
     identity: String,
     /// What is suspicious in the scenario of the first row.
     warnings: Vec<Problem>,
@@ -117,9 +118,25 @@ impl Sweep {
     }
 
     fn read(name: &str, source: &Source, base: &Base, set: &[Change]) -> Result<Self, Problems> {
-        let said = said(source)?;
-        let (scenario, base) = scenario::source_at(&said.scenario, base)?;
+        let ((scenario, said), _) =
+            toml::parse(source, &[], &FORM, |root, _| document::scenario(root).zip(document::said(root)))?;
+        let (scenario, base) = scenario::source_at(&scenario, base)?;
         Self::assembled(name, source, said, &Bundle::new(scenario, base, &[]), set)
+    }
+
+    /// Of a scenario that was read before, with its changes. `text` is a sweep file that names none.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn of(scenario: &Bundle, name: &str, text: &str) -> Result<Self, Problems> {
+        let source = Source::new(name, text);
+        let (said, _) = toml::parse(&source, &[], &IN_HAND, |root, _| {
+            if let Some(named) = root.get("scenario") {
+                named.error("contradiction", "a scenario is named, and given", "leave the key out");
+            }
+            document::said(root)
+        })?;
+        Self::assembled(name, &source, said, scenario, &[])
     }
 
     /// From what [`document`](Self::document) wrote, anywhere.
@@ -140,7 +157,8 @@ impl Sweep {
         let source = Source::new(&manifest.name, &manifest.text);
         let set: Result<Vec<Change>, Problem> = manifest.set.iter().map(|set| Change::parse(set)).collect();
         let scenario = Bundle::from_document(&manifest.scenario.to_string())?;
-        let sweep = Self::assembled(&manifest.name, &source, said(&source)?, &scenario, &set?)?;
+        let (said, _) = toml::parse(&source, &[], &IN_HAND, |root, _| document::said(root))?;
+        let sweep = Self::assembled(&manifest.name, &source, said, &scenario, &set?)?;
         if sweep.identity == manifest.identity {
             return Ok(sweep);
         }
@@ -167,6 +185,7 @@ impl Sweep {
             name: name.to_owned(),
             said,
             scenario: fixed,
+            own: scenario.changes.len(),
             identity: String::new(),
             warnings: Vec::new(),
             text: source.of_file().to_owned(),
@@ -225,7 +244,8 @@ impl Sweep {
             text: self.text.clone(),
             set: self.set.clone(),
             // Changes of [set] and from outside are made when it is read.
-            scenario: serde_json::from_str(&self.scenario.unchanged().document()).unwrap_or_default(),
+            scenario: serde_json::from_str(&self.scenario.with_first(self.own).document())
+                .unwrap_or_default(),
             rows: self.rows(),
             shard: self.said.shard,
             columns: self.columns(),
@@ -402,15 +422,11 @@ fn refuse_overlap(change: &Change, parameters: &[Parameter]) -> Result<(), Probl
     Ok(())
 }
 
-fn said(source: &Source) -> Result<Said, Problems> {
-    Ok(toml::parse(source, &[], &FORM, |root, _| document::said(root))?.0)
-}
-
 /// A hash of what a sweep is: its file, what was changed from outside, what the scenarios at its ends say, the version.
 fn identity(source: &Source, set: &[String], digests: Vec<String>) -> String {
     let mut file = Normal::Text(String::new());
     // It was read before.
-    let _ = toml::parse(source, &[], &FORM, |root, _| {
+    let _ = toml::parse(source, &[], &IN_HAND, |root, _| {
         file = root.normal().without(&["scenario"]);
         Some(())
     });

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms of `src`, from the bottom up: each may use those above it in this list, and none below.
-const ROOMS: [&str; 28] = [
+const ROOMS: [&str; 29] = [
     "units",         // how numbers are measured and how that is written
     "files",         // text with places, problems that point at it, files that appear whole
     "linalg",        // matrices of run-time sizes
@@ -26,6 +26,7 @@ const ROOMS: [&str; 28] = [
     "excite",        // the motion that tells most
     "identify",      // from logs to the numbers of the joints
     "sampled",       // is the loop stable that holds its torque
+    "check",         // what is in a file
     "eval",          // law and model at given states
     "prove",         // certificates
     "tune",          // gains by search

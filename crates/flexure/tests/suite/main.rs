@@ -1,6 +1,6 @@
 //! Tests of the library: a module each, what they share in `common`.
 //!
-//! `cargo test -p flexure --test suite imperfections::` runs those of a module.
+//! `cargo test --release -p flexure --test suite imperfections::` runs those of a module.
 
 mod along;
 mod architecture;

@@ -93,8 +93,7 @@ fn commands_that_run_nothing_are_missed() {
     assert!(runs("flexure-cli", "suite", "pinocchio") && !runs("flexure-core", "suite", "pinocchio"));
     assert!(runs("flexure", "suite", "verify::python::") && !runs("flexure", "suite", "python::verify::"));
     assert!(!runs("flexure", "schema", "") && !runs("", "suite", ""));
-    let wrapped =
-        "//! once (`cargo test -p flexure --test\n//! suite a::b`), twice: `cargo test --workspace`";
+    let wrapped = "//! once (`cargo test --release -p flexure --test\n//! suite a::b`), twice: `cargo test --release --workspace`";
     assert_eq!(commands(wrapped), [["flexure", "suite", "a::b"].map(str::to_owned)]);
 }
 

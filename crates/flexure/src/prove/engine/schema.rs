@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::certificate::Certificate;
 
-/// `FLEXURE_WRITE=1 cargo test -p flexure --lib schema` writes the file anew.
+/// `FLEXURE_WRITE=1 cargo test --release -p flexure --lib schema` writes the file anew.
 #[test]
 fn the_published_schema_is_that_of_the_types() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/certificate.schema.json");

@@ -134,7 +134,7 @@ fn long_paths_are_followed_to_their_ends() {
     assert!(figures.shares.iter().all(|&share| share > 0.99), "{:?}", figures.shares);
 }
 
-/// `cargo test -p flexure --test suite two_thousand -- --ignored --nocapture`
+/// `cargo test --release -p flexure --test suite two_thousand -- --ignored --nocapture`
 #[test]
 #[ignore = "half an hour: 2,000 robots, each certificate by both checkers"]
 fn two_thousand_robots() {

@@ -1,7 +1,7 @@
 //! Both checkers say the same of whatever is made of a certificate: digits, exponents, signs, keys, nesting, encodings, and
 //! claims at the very edge of what is accepted.
 //!
-//! `FLEXURE_MUTANTS=10000 cargo test -p flexure --test suite verify::agreement` takes as many as that; without it as many as
+//! `FLEXURE_MUTANTS=10000 cargo test --release -p flexure --test suite verify::agreement` takes as many as that; without it as many as
 //! take some seconds.
 
 use std::ops::Range;
