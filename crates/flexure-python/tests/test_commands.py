@@ -45,7 +45,7 @@ class TestSameAsTheCommandLine:
         for name in (SCENARIO, "two-link-hardware", "panda"):
             answer = timeless(command("check", name)[0])
             assert timeless(flexure.check(name)) == answer
-        scenario = flexure.Scenario("two-link-hardware", set={"imperfection.delay": {"kind": "delay", "actuation": 0.02}})
+        scenario = flexure.Scenario("two-link-tanh", set={"control_period": 0.01})
         found = flexure.check(scenario)
         assert not found["ok"] and found["errors"] and not found["sampled"]["stable"]
         assert flexure.check(scenario.robot)["kind"] == "robot"
