@@ -1,6 +1,6 @@
 //! Rigid-body and articulated-body inertias.
 
-use super::{Twist, Vec3, Wrench};
+use super::{Carried, Twist, Vec3, Wrench};
 use crate::scalar::{Over, Scalar};
 
 /// A symmetric 3 × 3 matrix.
@@ -107,12 +107,26 @@ impl<C: Scalar> RigidInertia<C> {
         }
     }
 
-    /// Spatial momentum of the body moving with `v`, whose inertia is constant.
+    /// ∫ r rᵀ dm about the frame's origin: ½ tr(I) 1 − I [kg m²].
     #[inline]
-    pub(crate) fn momentum<T: Over<C>>(&self, v: &Twist<T>) -> Wrench<T> {
+    fn second_moment(&self) -> Sym3<C> {
+        let r = &self.rotational;
+        let half = C::from_ratio(1, 2) * (r.xx + r.yy + r.zz);
+        Sym3 { xx: half - r.xx, xy: -r.xy, xz: -r.xz, yy: half - r.yy, yz: -r.yz, zz: half - r.zz }
+    }
+
+    /// What moves the body like this.
+    #[inline]
+    pub(crate) fn wrench<T: Over<C>>(&self, body: &Carried<T>) -> Wrench<T> {
+        let h = &self.first_moment;
+        let (spin, spin_r, spin_rate) = (body.spin, body.spin_r, body.spin_rate);
         Wrench {
-            moment: self.rotational.mul_lifted(v.angular) - v.linear.cross_constant(&self.first_moment),
-            linear: v.linear.map(|x| x.scale(self.mass)) + v.angular.cross_constant(&self.first_moment),
+            moment: self.rotational.mul_lifted(spin_rate)
+                + self.second_moment().mul_lifted(spin_r).cross(spin)
+                - body.linear.cross_constant(h),
+            linear: body.linear.map(|x| x.scale(self.mass))
+                + spin_rate.cross_constant(h)
+                + spin_r.cross(spin.cross_constant(h)),
         }
     }
 

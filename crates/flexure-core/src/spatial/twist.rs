@@ -1,6 +1,6 @@
 //! Twists and wrenches: spatial motion and force vectors.
 
-use core::ops::{Add, AddAssign, Sub};
+use core::ops::{Add, AddAssign};
 
 use super::Vec3;
 use crate::scalar::Scalar;
@@ -26,30 +26,6 @@ pub struct Wrench<S> {
 impl<S: Scalar> Twist<S> {
     /// At rest.
     pub const ZERO: Self = Self { angular: Vec3::ZERO, linear: Vec3::ZERO };
-
-    /// `self × m`: the rate of a twist that is constant in a frame moving with `self`.
-    #[inline]
-    pub fn cross(&self, m: &Self) -> Self {
-        Self {
-            angular: self.angular.cross(m.angular),
-            linear: self.angular.cross(m.linear) + self.linear.cross(m.angular),
-        }
-    }
-
-    /// `self ×* f`: the rate of a wrench that is constant in a frame moving with `self`.
-    #[inline]
-    pub fn cross_wrench(&self, f: &Wrench<S>) -> Wrench<S> {
-        Wrench {
-            moment: self.angular.cross(f.moment) + self.linear.cross(f.linear),
-            linear: self.angular.cross(f.linear),
-        }
-    }
-
-    /// `self · s`.
-    #[inline]
-    pub fn scaled(&self, s: S) -> Self {
-        Self { angular: self.angular.scaled(s), linear: self.linear.scaled(s) }
-    }
 }
 
 impl<S: Scalar> Wrench<S> {
@@ -68,14 +44,6 @@ impl<S: Scalar> Add for Twist<S> {
     #[inline]
     fn add(self, b: Self) -> Self {
         Self { angular: self.angular + b.angular, linear: self.linear + b.linear }
-    }
-}
-
-impl<S: Scalar> Sub for Twist<S> {
-    type Output = Self;
-    #[inline]
-    fn sub(self, b: Self) -> Self {
-        Self { angular: self.angular - b.angular, linear: self.linear - b.linear }
     }
 }
 

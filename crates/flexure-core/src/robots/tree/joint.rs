@@ -3,7 +3,7 @@
 use super::JointKind;
 use crate::linalg::Matrix;
 use crate::scalar::{Over, Scalar};
-use crate::spatial::{RigidInertia, Rotation, Twist, Vec3, Wrench};
+use crate::spatial::{Carried, RigidInertia, Rotation, Twist, Vec3, Wrench};
 
 /// A joint about or along the z axis of its frame, and the body it carries.
 #[derive(Clone, Copy, Debug)]
@@ -126,13 +126,40 @@ impl<C: Scalar> Joint<C> {
         }
     }
 
-    /// `v × (S q̇)`.
+    /// The motion of the child in its own axes, from that of the parent and what the joint adds: velocity, velocity of the reference,
+    /// acceleration of the reference.
     #[inline]
-    pub(super) fn cross_axis<T: Scalar>(&self, v: &Twist<T>, rate: T) -> Twist<T> {
-        let across = |a: Vec3<T>| Vec3::new(a.y * rate, -a.x * rate, T::ZERO);
-        match self.kind {
-            JointKind::Revolute => Twist { angular: across(v.angular), linear: across(v.linear) },
-            JointKind::Prismatic => Twist { angular: Vec3::ZERO, linear: across(v.angular) },
+    pub(super) fn carried<T: Over<C>>(
+        &self,
+        pose: &Pose<T>,
+        parent: &Carried<T>,
+        [v, v_r, a_r]: [T; 3],
+    ) -> Carried<T> {
+        let linear = self.unrotate(pose, parent.at(&self.translation));
+        let [spin, spin_r, spin_rate] =
+            [parent.spin, parent.spin_r, parent.spin_rate].map(|x| self.unrotate(pose, x));
+        match *pose {
+            Pose::Turned { .. } => Carried {
+                spin: Vec3 { z: spin.z + v, ..spin },
+                spin_r: Vec3 { z: spin_r.z + v_r, ..spin_r },
+                // + z a_r + ω × z v_r
+                spin_rate: Vec3::new(
+                    spin_rate.x + spin.y * v_r,
+                    spin_rate.y - spin.x * v_r,
+                    spin_rate.z + a_r,
+                ),
+                linear,
+            },
+            Pose::Slid(q) => {
+                // + α × z q + ω_r × (ω × z q) + z a_r + ω × z v_r + ω_r × z v
+                let across = spin_r.cross(Vec3::new(spin.y * q, -(spin.x * q), T::ZERO));
+                let linear = Vec3::new(
+                    linear.x + spin_rate.y * q + across.x + spin.y * v_r + spin_r.y * v,
+                    linear.y - spin_rate.x * q + across.y - spin.x * v_r - spin_r.x * v,
+                    linear.z + across.z + a_r,
+                );
+                Carried { spin, spin_r, spin_rate, linear }
+            }
         }
     }
 

@@ -5,7 +5,7 @@ use super::{Tree, TreeFactor};
 use crate::linalg::{Matrix, Vector};
 use crate::model::Links;
 use crate::scalar::{Over, Scalar};
-use crate::spatial::{Twist, Vec3, Wrench};
+use crate::spatial::{Carried, Vec3, Wrench};
 
 impl<C: Scalar, const N: usize> Tree<C, N> {
     /// Where the joints are; phantoms slide, which takes no sines.
@@ -18,8 +18,12 @@ impl<C: Scalar, const N: usize> Tree<C, N> {
     /// The modified Newton–Euler pass: M(q) a_r + C(q, v) v_r plus the torque that holds the tree against a base
     /// accelerating with `base` [m/s²].
     ///
-    /// The body force I a_r + ½ (v ×* I v_r − I (v × v_r) + v_r ×* I v) splits the velocity products so that the
-    /// Coriolis matrix is the Christoffel one.
+    /// C is the Christoffel matrix. It is that of point masses, Jᵀ m J̇ with the derivative J̇ along v (Γ_kij = Σ m ∂_k x · ∂_ij x), so
+    /// nothing has to be made symmetric: a body carries two angular velocities, ω of v and ω_r of v_r, the rate α of ω_r, and the acceleration a of
+    /// its origin. A point x of it has the acceleration a + α × x + ω_r × (ω × x), and with the mass m, the first moment h, the
+    /// rotational inertia I and the second moment Σ = ½ tr(I) 1 − I of the body that sums up to
+    ///
+    /// f = m a + α × h + ω_r × (ω × h),  n = I α + (Σ ω_r) × ω + h × a.
     #[inline]
     fn newton_euler<T: Over<C>>(
         &self,
@@ -29,33 +33,15 @@ impl<C: Scalar, const N: usize> Tree<C, N> {
         a_r: &Vector<T, N>,
         base: Vec3<T>,
     ) -> Vector<T, N> {
-        let base = Twist { angular: Vec3::ZERO, linear: base };
         let poses = self.poses(q);
-        let half = T::from_f64(0.5);
-        let mut velocity = Vector([Twist::ZERO; N]);
-        let mut reference = Vector([Twist::ZERO; N]);
-        let mut acceleration = Vector([Twist::ZERO; N]);
+        let ground = Carried { spin: Vec3::ZERO, spin_r: Vec3::ZERO, spin_rate: Vec3::ZERO, linear: base };
+        let mut bodies = Vector([ground; N]);
         let mut force = Vector([Wrench::ZERO; N]);
         for (i, (joint, pose)) in self.chain(&poses) {
-            let carried = |bodies: &Vector<Twist<T>, N>, base: &Twist<T>| {
-                joint.twist_to_child(pose, bodies.0.get(joint.parent).unwrap_or(base))
-            };
-            let v_i = match velocity.0.get(joint.parent) {
-                Some(parent) => joint.twist_to_child(pose, parent) + joint.along_axis(v[i]),
-                None => joint.along_axis(v[i]),
-            };
-            let v_ri = match reference.0.get(joint.parent) {
-                Some(parent) => joint.twist_to_child(pose, parent) + joint.along_axis(v_r[i]),
-                None => joint.along_axis(v_r[i]),
-            };
-            let a_ri =
-                carried(&acceleration, &base) + joint.along_axis(a_r[i]) + joint.cross_axis(&v_i, v_r[i]);
-            let inertia = &joint.inertia;
-            let split = a_ri - v_i.cross(&v_ri).scaled(half);
-            let products =
-                v_i.cross_wrench(&inertia.momentum(&v_ri)) + v_ri.cross_wrench(&inertia.momentum(&v_i));
-            force[i] = inertia.momentum(&split) + products.scaled(half);
-            (velocity[i], reference[i], acceleration[i]) = (v_i, v_ri, a_ri);
+            let carrier = bodies.0.get(joint.parent).unwrap_or(&ground);
+            let body = joint.carried(pose, carrier, [v[i], v_r[i], a_r[i]]);
+            force[i] = joint.inertia.wrench(&body);
+            bodies[i] = body;
         }
         // Phantoms: unit inertia.
         let mut torque = *a_r;
