@@ -188,8 +188,8 @@ class ElasticArmVectorEnv(gymnasium.vector.VectorEnv[Array, Array, NDArray[Any]]
         if len(seeds) != self.num_envs:
             raise ValueError(f"seed has {len(seeds)} entries: one for each of {self.num_envs} environments")
         super().reset(seed=seeds[0])
-        fresh: list[np.random.Generator | None] = self._rngs or [None] * self.num_envs
-        self._rngs = [np_random(seed)[0] if rng is None or seed is not None else rng for rng, seed in zip(fresh, seeds, strict=True)]
+        before: Sequence[np.random.Generator | None] = self._rngs or [None] * self.num_envs
+        self._rngs = [np_random(seed)[0] if rng is None or seed is not None else rng for rng, seed in zip(before, seeds, strict=True)]
         self._x, self._instants = self.arms.begin(self._rngs)
         self._steps = np.zeros(self.num_envs, np.int64)
         self._ended = np.zeros(self.num_envs, np.bool_)
