@@ -15,7 +15,7 @@ use crate::simulate::preload;
 /// ```
 /// use flexure::check::Findings;
 /// let found = Findings::of_file("two-link-hardware", flexure::files::Outside::Refused)?;
-/// assert!(found.sampled.is_some_and(|sampled| sampled.spectral_radius() < 1.0));
+/// assert!(found.sampled.is_some_and(|sampled| sampled.spectral_radius < 1.0));
 /// assert!(found.exceeded.is_empty());
 /// # Ok::<(), flexure::Problems>(())
 /// ```

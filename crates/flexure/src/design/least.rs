@@ -6,6 +6,7 @@
 
 use crate::files::Problems;
 use crate::laws::{Controller, Phi, SideGains, VcbcGains};
+use crate::progress::unwatched;
 use crate::prove::question::{Question, prove};
 use crate::prove::sampling::{largest_diagonal, sample};
 use crate::prove::summary::BlockSummary;
@@ -83,7 +84,7 @@ impl Least {
 /// s: the largest diagonal entries of the mass matrix, times the one number that makes them lie above all of it.
 fn above_the_mass_matrix(robot: &Robot) -> Result<Vec<f64>, Problems> {
     let diagonal = largest_diagonal(robot)?;
-    let rate = sample(robot, &diagonal)?.rate;
+    let rate = sample(robot, &diagonal, &unwatched)?.rate;
     Ok(diagonal.iter().map(|inertia| RESERVE * inertia / rate).collect())
 }
 

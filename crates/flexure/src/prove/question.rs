@@ -296,10 +296,7 @@ pub fn prove_watched(
     let gains = scenario.vcbc()?;
     let damping: Vec<f64> =
         scenario.robot.link_damping.iter().zip(&gains.link.damping).map(|(a, b)| a + b).collect();
-    let sampled = sample(&scenario.robot, &damping)?;
-    if watched(0.5 * RATES).is_break() {
-        return Err(Problems::interrupted());
-    }
+    let sampled = sample(&scenario.robot, &damping, &|fraction| watched(0.5 * RATES * fraction))?;
     let verdict = match (certify(&problem), question.rate) {
         (Verdict::Proved(certificate), Some(rate)) => at_rate(rate, certificate, &sampled, &damping),
         (verdict, _) => verdict,

@@ -4,10 +4,14 @@ use serde::Serialize;
 
 use crate::files::Problems;
 use crate::linalg::{Dense, Leading, Symmetric, eigenvalues};
+use crate::progress::{Progress, unwatched};
 use crate::robot::{JointKind, MovingJoint, Robot};
 
 /// Configurations looked at before the worst are refined.
 const SAMPLES: u32 = 20_000;
+
+/// So many between two looks at whether to go on: milliseconds.
+const UNWATCHED: u32 = 500;
 
 /// Rounds of refinement, and by how much each shrinks its steps.
 const ROUNDS: u32 = 60;
@@ -28,14 +32,14 @@ pub struct Sampled {
 }
 
 /// Samples the links' mass matrix against `damping`, the diagonal of D_l + K_ld [N m s/rad]. The same numbers each time:
-/// configurations follow a sequence of low discrepancy, not chance.
+/// configurations follow a sequence of low discrepancy, not chance. `progress` is told what fraction is done.
 ///
 /// # Errors
-/// If the robot has too many joints.
+/// If the robot has too many joints, and [`Problems::interrupted`] if it was broken off.
 ///
 /// # Panics
 /// If `damping` has fewer numbers than the robot has joints.
-pub fn sample(robot: &Robot, damping: &[f64]) -> Result<Sampled, Problems> {
+pub fn sample(robot: &Robot, damping: &[f64], progress: Progress<'_>) -> Result<Sampled, Problems> {
     let (n, arm) = (robot.joint_count(), robot.arm()?);
     let root: Vec<f64> = damping.iter().map(|d| d.sqrt()).collect();
     let ranges = ranges(robot);
@@ -52,8 +56,10 @@ pub fn sample(robot: &Robot, damping: &[f64]) -> Result<Sampled, Problems> {
         let mass = mass_matrix(q);
         -largest(n, |i, j| mass[i * n + j])
     };
-    let (rate, configuration) = smallest(&ranges, &rate);
-    let (negative, _) = smallest(&ranges, &inertia);
+    let (rate, configuration) =
+        smallest(&ranges, &rate, &|part| progress(0.5 * part)).ok_or_else(Problems::interrupted)?;
+    let (negative, _) =
+        smallest(&ranges, &inertia, &|part| progress(0.5 + 0.5 * part)).ok_or_else(Problems::interrupted)?;
     let mass = mass_matrix(&configuration);
     let mass_matrix = Symmetric::from_fn(n, |i, j| mass[i * n + j]);
     Ok(Sampled { rate, configuration, mass_matrix, largest_inertia: -negative })
@@ -75,7 +81,7 @@ pub fn largest_diagonal(robot: &Robot) -> Result<Vec<f64>, Problems> {
             arm.mass_matrix(q, &mut mass).expect("n joints");
             -mass[joint * (n + 1)]
         };
-        -smallest(&ranges, &negative).0
+        smallest(&ranges, &negative, &unwatched).map_or(f64::INFINITY, |(negative, _)| -negative)
     };
     Ok((0..n).map(entry).collect())
 }
@@ -99,8 +105,12 @@ fn largest(n: usize, entry: impl Fn(usize, usize) -> f64) -> f64 {
     eigenvalues(Leading::whole(&mut matrix)).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// The smallest value found of `f` over the ranges, and where.
-fn smallest(ranges: &[(f64, f64)], f: &dyn Fn(&[f64]) -> f64) -> (f64, Vec<f64>) {
+/// The smallest value found of `f` over the ranges, and where; none if it was broken off.
+fn smallest(
+    ranges: &[(f64, f64)],
+    f: &dyn Fn(&[f64]) -> f64,
+    progress: Progress<'_>,
+) -> Option<(f64, Vec<f64>)> {
     let n = ranges.len();
     // Kronecker sequence of the root of x^(n+1) = x + 1 (M. Roberts, 2018): even in every dimension.
     let root = (0..50).fold(2.0_f64, |x, _| (1.0 + x).powf(1.0 / (n as f64 + 1.0)));
@@ -119,8 +129,17 @@ fn smallest(ranges: &[(f64, f64)], f: &dyn Fn(&[f64]) -> f64) -> (f64, Vec<f64>)
         };
         steps.iter().zip(ranges).map(place).collect()
     };
-    let best = (0..SAMPLES).map(|k| (f(&at(k)), k)).min_by(|(a, _), (b, _)| a.total_cmp(b));
-    let (mut value, mut q) = best.map_or((f64::INFINITY, at(0)), |(value, k)| (value, at(k)));
+    let (mut value, mut q) = (f64::INFINITY, at(0));
+    for k in 0..SAMPLES {
+        if k % UNWATCHED == 0 && progress(f64::from(k) / f64::from(SAMPLES)).is_break() {
+            return None;
+        }
+        let there = at(k);
+        let found = f(&there);
+        if found < value {
+            (value, q) = (found, there);
+        }
+    }
     let mut step = 0.3;
     for _ in 0..ROUNDS {
         for (i, (low, high)) in ranges.iter().enumerate() {
@@ -137,5 +156,5 @@ fn smallest(ranges: &[(f64, f64)], f: &dyn Fn(&[f64]) -> f64) -> (f64, Vec<f64>)
         }
         step *= SHRINK;
     }
-    (value, q)
+    Some((value, q))
 }
