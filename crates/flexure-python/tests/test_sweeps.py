@@ -165,6 +165,8 @@ class TestRows:
             (good, {"points": 3}, "grid"),
             (good, {"seeds": []}, "seeds"),
             (good, {"metrics": ["rms"]}, "rms"),
+            (good, {"name": ""}, "no name of a sweep"),
+            (good, {"name": "../elsewhere"}, "no name of a sweep"),
             (good, {"shard": object()}, "shard: a value of type object"),
             (good | {"scenario": {"values": ["two-link-tanh"]}}, {}, "scenario"),
         ):

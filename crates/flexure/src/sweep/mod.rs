@@ -127,8 +127,17 @@ impl Sweep {
     /// Of a scenario that was read before, with its changes. `text` is a sweep file that names none.
     ///
     /// # Errors
-    /// As [`load`](Self::load).
+    /// As [`load`](Self::load), and `range` for a name that is none of a folder.
     pub fn of(scenario: &Bundle, name: &str, text: &str) -> Result<Self, Problems> {
+        if name.is_empty() || name.starts_with('.') || name.contains(['/', '\\', '\0']) {
+            let message = format!("{} is no name of a sweep", suggest::quoted(name));
+            return Err(Problem::new(
+                "range",
+                message,
+                "its rows lie in a folder of this name: soft-springs",
+            )
+            .into());
+        }
         let source = Source::new(name, text);
         let (said, _) = toml::parse(&source, &[], &IN_HAND, |root, _| {
             if let Some(named) = root.get("scenario") {
