@@ -169,13 +169,15 @@ impl Sweep {
     }
 
     /// The scenario of a row.
-    fn scenario(&self, py: Python<'_>, row: u64) -> PyResult<Scenario> {
+    fn scenario(&self, py: Python<'_>, row: i64) -> PyResult<Scenario> {
+        let row = counted(row)?;
         let scenario = self.many.bundle(row).map_err(Problems::from).and_then(Scenario::of);
         scenario.map_err(|problems| raised(py, &problems))
     }
 
     /// Computes a row: a dict with its index, seed, status, parameters and metrics; None for a metric that it does not have.
-    fn row<'py>(&self, py: Python<'py>, row: u64) -> PyResult<Bound<'py, PyDict>> {
+    fn row<'py>(&self, py: Python<'py>, row: i64) -> PyResult<Bound<'py, PyDict>> {
+        let row = counted(row)?;
         self.many.bundle(row).map_err(|problem| refused(py, &problem))?;
         let outcome = watched(py, None, |_| self.many.row(row))?;
         let found = PyDict::new(py);
@@ -281,6 +283,11 @@ impl Sweep {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (String,))> {
         Ok((slf.get_type().getattr("from_document")?, (slf.get().many.document(),)))
     }
+}
+
+/// A row as a number that may be one.
+fn counted(row: i64) -> PyResult<u64> {
+    u64::try_from(row).map_err(|_| PyIndexError::new_err(format!("row {row}: rows are counted from 0")))
 }
 
 /// Most threads.

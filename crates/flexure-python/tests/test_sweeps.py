@@ -224,7 +224,7 @@ class TestElsewhere:
             rows.replay(24)
         with pytest.raises(IndexError, match="shard 5"):
             rows.sweep.shard(5)
-        with pytest.raises(OverflowError):
+        with pytest.raises(IndexError, match="row -1: rows are counted from 0"):
             rows.sweep.row(-1)
         monkeypatch.setitem(sys.modules, "fsspec", None)
         with pytest.raises(ImportError, match="pip install fsspec"):

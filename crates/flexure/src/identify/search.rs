@@ -200,11 +200,13 @@ impl Search<'_> {
         let tried =
             if self.of_links() { vec![*of_both.start(), *of_both.end()] } else { vec![*of_motors.end()] };
         let mut best = (values.clone(), vec![tried[0]; n], f64::INFINITY);
-        for level in tried {
+        let rounds = tried.len();
+        for (k, level) in tried.into_iter().enumerate() {
+            let told = |step| told((k * STEPS + step) / rounds);
             let levels = vec![level; n];
             // The first gain is that of the numbers it starts from; it is put right before others are tried.
             let mut weighing = self.weighed(values, &levels);
-            let (there, _) = self.climb(values.clone(), &mut weighing, ROUGH, told)?;
+            let (there, _) = self.climb(values.clone(), &mut weighing, ROUGH, &told)?;
             let cost = self.cost(&self.total(&there, &weighing, false), &there);
             if cost < best.2 {
                 best = (there, levels, cost);
