@@ -1,7 +1,8 @@
 //! The Python package: its wheel is built, put into an environment of the test's own, and what is claimed of it is run by pytest; its
 //! types are held against it.
 //!
-//! The wheel is of the profile and the features that everything else is tested with, so that it shares the library. Set `FLEXURE_OFFLINE=1` to leave the test out where PyPI is out of reach.
+//! The wheel is of the profile and the features that everything else is tested with, so that it shares the library. Set
+//! `FLEXURE_OFFLINE=1` to leave the test out where PyPI is out of reach.
 
 use std::path::Path;
 use std::process::Command;
