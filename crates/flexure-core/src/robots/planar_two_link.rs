@@ -23,6 +23,17 @@ impl<C: Scalar> PlanarTwoLink<C> {
             b: m2 * length * r2,
         }
     }
+
+    /// The mass matrix where the elbow's angle has the cosine `c2`.
+    #[inline]
+    fn mass<T: Over<C>>(&self, c2: T) -> Matrix<T, 2, 2> {
+        let coupling = c2.scale(self.b);
+        let off_diagonal = T::constant(self.a2) + coupling;
+        Matrix([
+            [T::constant(self.a1) + coupling + off_diagonal, off_diagonal],
+            [off_diagonal, T::constant(self.a2)],
+        ])
+    }
 }
 
 impl<C: Scalar> Links<C, 2> for PlanarTwoLink<C> {
@@ -33,12 +44,7 @@ impl<C: Scalar> Links<C, 2> for PlanarTwoLink<C> {
 
     #[inline]
     fn mass_matrix<T: Over<C>>(&self, q: &Vector<T, 2>) -> Matrix<T, 2, 2> {
-        let coupling = q[1].cos().scale(self.b);
-        let off_diagonal = T::constant(self.a2) + coupling;
-        Matrix([
-            [T::constant(self.a1) + coupling + off_diagonal, off_diagonal],
-            [off_diagonal, T::constant(self.a2)],
-        ])
+        self.mass(q[1].cos())
     }
 
     #[inline]
@@ -55,6 +61,21 @@ impl<C: Scalar> Links<C, 2> for PlanarTwoLink<C> {
     #[inline]
     fn gravity_torque<T: Over<C>>(&self, _: &Vector<T, 2>) -> Vector<T, 2> {
         Vector::ZERO
+    }
+
+    /// With one sine and cosine for M and the Christoffel matrix C = h [[v2, v1 + v2], [−v1, 0]], h = −b s2.
+    #[inline]
+    fn inertial_torque<T: Over<C>>(
+        &self,
+        q: &Vector<T, 2>,
+        v: &Vector<T, 2>,
+        v_r: &Vector<T, 2>,
+        a_r: &Vector<T, 2>,
+    ) -> Vector<T, 2> {
+        let (s2, c2) = q[1].sin_cos();
+        let h = -s2.scale(self.b);
+        let coriolis = Vector([h * (v[1] * v_r[0] + (v[0] + v[1]) * v_r[1]), -(h * v[0] * v_r[0])]);
+        self.mass(c2) * *a_r + coriolis
     }
 
     #[inline]

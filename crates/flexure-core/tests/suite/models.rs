@@ -85,6 +85,7 @@ fn recursions_agree<const N: usize>(seed: u64) {
         );
         // Solving loses the condition number of the mass matrix, about 1e3 here.
         close(&tree.factor(&q).solve(&a_r), &derived.factor(&q).solve(&a_r), 1e-10);
+        close(&tree.articulated(&q).solve(&a_r), &derived.factor(&q).solve(&a_r), 1e-10);
         close(&tree.mass_mul(&q, &tree.factor(&q).solve(&a_r)), &a_r, 1e-11);
         // The derived Coriolis product is the Christoffel matrix of the theory.
         let matrices = LinkMatrices::new(&tree, &q, &v);

@@ -10,7 +10,7 @@ use crate::linalg::{Matrix, Vector};
 use crate::scalar::Scalar;
 use crate::spatial::{RigidInertia, Rotation, Vec3};
 
-pub use factor::TreeFactor;
+pub use factor::{Articulated, TreeFactor};
 use joint::{Joint, Pose};
 
 /// How a joint moves along or about its axis.

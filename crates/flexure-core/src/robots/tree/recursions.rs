@@ -132,7 +132,7 @@ impl<C: Scalar, const N: usize> Links<C, N> for Tree<C, N> {
 
     #[inline]
     fn factor<T: Over<C>>(&self, q: &Vector<T, N>) -> TreeFactor<'_, C, T, N> {
-        self.articulate(q)
+        self.factorised(q)
     }
 
     #[inline]
