@@ -65,43 +65,36 @@ impl<C: Scalar, const N: usize> Reference<C, N> for Stop<C, N> {
 /// Where the Taylor coefficients of orders 1, 2, 3 have carried the joint at τ, as polynomials in τ: τᵏ + τ⁵ (…).
 #[inline]
 fn begun<T: Scalar>(tau: T) -> [T; 3] {
-    let (square, fifth) = (tau * tau, fifth(tau));
-    let tails = [
-        [(-7, 1), (14, 1), (-10, 1), (5, 2)],
-        [(-8, 1), (15, 1), (-72, 7), (5, 2)],
-        [(-6, 1), (10, 1), (-45, 7), (3, 2)],
-    ]
-    .map(|coefficients| fifth * cubic(coefficients, tau));
+    let (square, fifth) = (tau * tau, fifth_of_14(tau));
+    let tails = [[-98, 196, -140, 35], [-112, 210, -144, 35], [-84, 140, -90, 21]]
+        .map(|coefficients| fifth * cubic(coefficients, tau));
     [tau + tails[0], square + tails[1], square * tau + tails[2]]
 }
 
 /// The same polynomials in 1 − τ, which do not cancel near the end: what is reached at last + (1 − τ)⁵ (…).
 #[inline]
 fn ended<T: Scalar>(left: T) -> [T; 3] {
-    let fifth = fifth(left);
-    let tails = [
-        [(-7, 1), (14, 1), (-10, 1), (5, 2)],
-        [(-6, 1), (13, 1), (-68, 7), (5, 2)],
-        [(-3, 1), (7, 1), (-39, 7), (3, 2)],
-    ]
-    .map(|coefficients| fifth * cubic(coefficients, left));
+    let fifth = fifth_of_14(left);
+    let tails = [[-98, 196, -140, 35], [-84, 182, -136, 35], [-42, 98, -78, 21]]
+        .map(|coefficients| fifth * cubic(coefficients, left));
     let reached =
         [(1, 2), (3, 14), (1, 14)].map(|(numerator, denominator)| T::from_ratio(numerator, denominator));
     [reached[0] + tails[0], reached[1] + tails[1], reached[2] + tails[2]]
 }
 
+/// x⁵ / 14: times this the coefficients of the cubics are integers.
 #[inline]
-fn fifth<T: Scalar>(x: T) -> T {
+fn fifth_of_14<T: Scalar>(x: T) -> T {
     let square = x * x;
-    square * square * x
+    square * square * x * T::from_ratio(1, 14)
 }
 
-/// The cubic with these rational coefficients, lowest order first.
+/// The cubic with these coefficients, lowest order first.
 #[inline]
-fn cubic<T: Scalar>(coefficients: [(i32, i32); 4], x: T) -> T {
+fn cubic<T: Scalar>(coefficients: [i32; 4], x: T) -> T {
     let mut sum = T::ZERO;
-    for &(numerator, denominator) in coefficients.iter().rev() {
-        sum = sum * x + T::from_ratio(numerator, denominator);
+    for c in coefficients.into_iter().rev() {
+        sum = sum * x + T::from_f64(f64::from(c));
     }
     sum
 }

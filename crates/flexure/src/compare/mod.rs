@@ -12,10 +12,12 @@ mod ranking;
 mod score;
 mod task;
 
+use std::iter;
+
 use rayon::prelude::*;
 
 use crate::files::{Problem, Problems};
-use crate::progress::{PartProgress, Progress};
+use crate::progress::{PartProgress, Parts, Progress};
 use crate::sampled::probe;
 use crate::simulate::{Criteria, measure_watched};
 use crate::tune::{Costs, has_random_points, tune_from};
@@ -99,21 +101,24 @@ fn score(task: &Task, entrant: Entrant, search: Search, progress: Progress<'_>) 
     let is_random = task.is_random();
     // Where neither the run nor the search draws a number, every seed gives the same.
     let seeds = if is_random || has_random_points(search.budget) { search.seeds.max(1) } else { 1 };
-    let mut costs = Costs::default();
-    let mut found = Vec::new();
-    for (number, seed) in (0..seeds).zip(search.seed..) {
-        if is_random {
-            // The same noise for every law; what is known of runs with another is of no use.
-            scenario.seed = task.scenario.seed.wrapping_add(seed - search.seed);
-            costs = Costs::default();
-        }
-        let part = |fraction: f64| progress((number as f64 + fraction) / seeds as f64);
-        let tuned = tune_from(&scenario, search.budget, seed, &costs, &part)?;
-        let mut best = scenario.clone();
-        best.controller = tuned.controller.clone();
-        let run = measure_watched(&best, &Criteria::of(&best)?, &|_| part(1.0))?;
-        found.push((seed, tuned, run));
-    }
+    let (parts, shared) = (Parts::new(seeds), Costs::default());
+    let with_seed = |number: usize| {
+        let more = number as u64;
+        let mut own = scenario.clone();
+        // The same noise for every law; what is known of runs with another is of no use.
+        let (noise, costs) = if is_random { (more, &Costs::default()) } else { (0, &shared) };
+        own.seed = scenario.seed.wrapping_add(noise);
+        let seed = search.seed.wrapping_add(more);
+        let part = |fraction: f64| progress(parts.with(number, fraction));
+        let tuned = tune_from(&own, search.budget, seed, costs, &part)?;
+        own.controller = tuned.controller.clone();
+        let run = measure_watched(&own, &Criteria::of(&own)?, &|_| part(1.0))?;
+        Ok((seed, tuned, run))
+    };
+    // The first finds out what the others need not compute again.
+    let first = with_seed(0)?;
+    let others: Vec<_> = (1..seeds).into_par_iter().map(with_seed).collect();
+    let found: Vec<_> = iter::once(Ok(first)).chain(others).collect::<Result<_, Problems>>()?;
     Score::new(&entrant.name(), &found, |controller| {
         scenario.controller = controller.clone();
         probe(&scenario)

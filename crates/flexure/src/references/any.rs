@@ -142,6 +142,10 @@ impl<C: Instant, const N: usize> Reference<C, N> for AnyReference<C, N> {
         match self {
             Self::Path(reference) => reference.at(t),
             Self::Retimed(reference) => reference.at(t),
+            // From the end of the transition on it is the reference joined, exactly.
+            Self::SmoothStart(joined) if t.lowest() >= (joined.from.start + joined.duration).highest() => {
+                joined.then.at(t)
+            }
             Self::SmoothStart(reference) => reference.at(t),
         }
     }

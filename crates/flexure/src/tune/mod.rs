@@ -2,8 +2,11 @@
 
 mod search;
 
-use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use rayon::prelude::*;
 
 pub(crate) use search::together;
 pub use search::{BestPoint, has_random_points, search};
@@ -11,7 +14,7 @@ pub use search::{BestPoint, has_random_points, search};
 use crate::feasible;
 use crate::files::Problems;
 use crate::laws::Controller;
-use crate::progress::Progress;
+use crate::progress::{Parts, Progress};
 use crate::sampled::is_stable;
 use crate::scenario::Scenario;
 use crate::simulate::{Criteria, Run, Summary, measure_watched};
@@ -62,16 +65,17 @@ pub fn tune(
 
 /// What runs of one scenario cost, by the exponents of their gains: searches with other seeds begin with the same runs.
 #[derive(Debug, Default)]
-pub(crate) struct Costs(RefCell<HashMap<Vec<u64>, f64>>);
+pub(crate) struct Costs(Mutex<HashMap<Vec<u64>, f64>>);
 
 impl Costs {
-    /// The cost at `exponents`, computed the first time.
+    /// The cost at `exponents`, computed the first time; twice if it is asked for twice at a time.
     fn at(&self, exponents: &[f64], compute: impl FnOnce() -> f64) -> f64 {
         let key: Vec<u64> = exponents.iter().map(|x| x.to_bits()).collect();
-        let known = self.0.borrow().get(&key).copied();
-        known.unwrap_or_else(|| {
+        let known = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let found = known().get(&key).copied();
+        found.unwrap_or_else(|| {
             let cost = compute();
-            self.0.borrow_mut().insert(key, cost);
+            known().insert(key, cost);
             cost
         })
     }
@@ -85,7 +89,7 @@ pub(crate) fn tune_from(
     costs: &Costs,
     progress: Progress<'_>,
 ) -> Result<Tuned, Problems> {
-    let mut trial = feasible::pinned(scenario)?;
+    let trial = feasible::pinned(scenario)?;
     let criteria = Criteria::of(&trial)?;
     // Whatever is wrong with the scenario is so for all gains.
     let start = measure_watched(&trial, &criteria, &|_| progress(0.0))?;
@@ -99,28 +103,33 @@ pub(crate) fn tune_from(
         let scaled = gains.iter().zip(factors).map(|(gain, x)| gain.iter().map(|g| g * x).collect());
         scenario.controller.with_gains(&scaled.collect::<Vec<Vec<f64>>>())
     };
-    let trials = RefCell::new(&mut trial);
-    let (tried, broken) = (Cell::new(0_usize), Cell::new(false));
-    let at = |exponents: &[f64]| {
-        let mut trial = trials.borrow_mut();
+    let (tried, broken) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let parts = Parts::new(budget.max(1));
+    let at = |exponents: &Vec<f64>| {
         // What the search still asks for once it is broken off costs nothing.
-        if broken.get() {
+        if broken.load(Ordering::Relaxed) {
             return f64::INFINITY;
         }
-        let done = tried.replace(tried.get() + 1) as f64;
-        trial.controller = scaled(exponents);
-        let watched = |fraction: f64| progress((done + fraction) / budget as f64);
-        costs.at(exponents, || match measure_watched(&trial, &criteria, &watched) {
-            Ok(run) => judged(&trial, &run),
-            Err(problems) => {
-                broken.set(broken.get() || problems.is_interrupted());
-                f64::INFINITY
+        let part = tried.fetch_add(1, Ordering::Relaxed).min(budget.saturating_sub(1));
+        let watched = |fraction: f64| progress(parts.with(part, fraction));
+        let cost = costs.at(exponents, || {
+            let mut trial = trial.clone();
+            trial.controller = scaled(exponents);
+            match measure_watched(&trial, &criteria, &watched) {
+                Ok(run) => judged(&trial, &run),
+                Err(problems) => {
+                    broken.fetch_or(problems.is_interrupted(), Ordering::Relaxed);
+                    f64::INFINITY
+                }
             }
-        })
+        });
+        // What is known already or ended early is done, too.
+        parts.with(part, 1.0);
+        cost
     };
-    let all = |points: &[Vec<f64>]| points.iter().map(|exponents| at(exponents)).collect();
+    let all = |points: &[Vec<f64>]| points.par_iter().map(at).collect();
     let best = search(1 + gains.len(), HALF_WIDTH, budget, seed, &all);
-    if broken.get() {
+    if broken.load(Ordering::Relaxed) {
         return Err(Problems::interrupted());
     }
     Ok(Tuned {

@@ -13,7 +13,6 @@ const DENSE: usize = 8;
 
 /// The mass matrix of a tree, factorised by what is quicker for its number of joints.
 #[derive(Clone, Copy, Debug)]
-#[expect(clippy::large_enum_variant, reason = "on the stack: the core does not allocate")]
 pub enum TreeFactor<'a, C, T, const N: usize> {
     /// Up to eight joints: composite rigid bodies, then L D Lᵀ.
     Dense(Ldl<T, N>),
