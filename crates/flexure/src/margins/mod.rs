@@ -118,18 +118,19 @@ pub fn margins(scenario: &Scenario, progress: Progress<'_>) -> Result<Margins, P
     let follows = nominal.summary.following.follows;
     let allowed = Allowed::beside(&nominal);
     let period = scenario.control_period;
+    // The longest first, so that none is left when the others are done.
     let searches: [Search; 6] = [
-        (Change::Delay, edge::Way::outward(0.0, 0.125 * period, scenario.duration / 4.0)),
-        (Change::TorqueGain, edge::Way::inward(1.0, 0.01)),
-        (Change::TorqueGain, edge::Way::inward(1.0, 100.0)),
-        (Change::Stiffness, edge::Way::inward(1.0, 0.01)),
-        (Change::Stiffness, edge::Way::inward(1.0, 100.0)),
         (Change::Noise, edge::Way::outward(0.0, 1e-6, 1.0)),
+        (Change::Delay, edge::Way::outward(0.0, 0.125 * period, scenario.duration / 4.0)),
+        (Change::Stiffness, edge::Way::inward(1.0, 100.0)),
+        (Change::Stiffness, edge::Way::inward(1.0, 0.01)),
+        (Change::TorqueGain, edge::Way::inward(1.0, 100.0)),
+        (Change::TorqueGain, edge::Way::inward(1.0, 0.01)),
     ];
     let parts = Parts::new(searches.len());
     let search = |(part, (change, way)): (usize, &Search)| {
         if !follows {
-            return Ok((Edge::Nowhere, 0));
+            return (part, Ok((Edge::Nowhere, 0)));
         }
         let tell = |fraction: f64| progress(before + SEARCHES * parts.with(part, fraction));
         let found = way.edge(&|x, stage| {
@@ -139,18 +140,19 @@ pub fn margins(scenario: &Scenario, progress: Progress<'_>) -> Result<Margins, P
         });
         // One that is done sooner than it seemed counts as done.
         let _ = tell(1.0);
-        found
+        (part, found)
     };
-    let found: Vec<Result<(Edge, usize), Problems>> = searches.par_iter().enumerate().map(search).collect();
+    let mut found: Vec<_> = searches.iter().enumerate().par_bridge().map(search).collect();
+    found.sort_by_key(|(part, _)| *part);
     let mut edges = Vec::new();
     let mut runs = 1;
-    for found in found {
+    for (_, found) in found {
         let (edge, tried) = found?;
         edges.push(edge);
         runs += tried;
     }
     let mut broken_off = edges.iter().any(|edge| matches!(edge, Edge::Open { .. }));
-    let [delay, gain_low, gain_high, stiffness_low, stiffness_high, noise] =
+    let [noise, delay, stiffness_high, stiffness_low, gain_high, gain_low] =
         edges.try_into().expect("six searches");
     let little = noise.holds().map(|holds| LITTLE * holds);
     let noisy = little.map(|little| {
