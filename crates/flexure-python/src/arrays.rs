@@ -24,11 +24,17 @@ pub fn in_pieces(
     size: usize,
     fill: impl Fn(usize, &mut [f64]) -> Result<(), Mismatch> + Sync,
 ) -> PyResult<()> {
-    for (i, piece) in found.chunks_mut(PIECE * size).enumerate() {
-        if i > 0 {
+    let count = found.len() / size;
+    let (mut first, mut rest) = (0, found);
+    while first < count {
+        if first > 0 {
             py.check_signals()?;
         }
-        py.detach(|| fill(i * PIECE, piece)).map_err(mismatch)?;
+        // None is left alone: one by itself may be computed otherwise than one of many.
+        let here = if count - first == PIECE + 1 { PIECE + 1 } else { PIECE.min(count - first) };
+        let (piece, others) = rest.split_at_mut(here * size);
+        py.detach(|| fill(first, piece)).map_err(mismatch)?;
+        (first, rest) = (first + here, others);
     }
     Ok(())
 }

@@ -26,14 +26,13 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     let mut u_m = vec![0.0; states * n];
     held.torque(t, &motions, &mut u_m)?;
 
-    // One by one it is the same, to the last bit.
+    // One by one it is the same, but for rounding: several states go through the law in SIMD lanes.
+    let largest = u_m.chunks(n).map(|u| u[0].abs()).fold(0.0, f64::max);
     for (motion, torque) in motions.chunks(4 * n).zip(u_m.chunks(n)) {
         let mut alone = vec![0.0; n];
         held.torque(t, motion, &mut alone)?;
-        assert_eq!(alone, torque);
+        assert!(alone.iter().zip(torque).all(|(a, b)| (a - b).abs() <= 1e-12 * largest));
     }
-
-    let largest = u_m.chunks(n).map(|u| u[0].abs()).fold(0.0, f64::max);
     println!("{states} states, largest torque of the first motor {largest:.0} N m");
 
     // Lengths that do not fit are refused, and the message says which.

@@ -156,7 +156,7 @@ class Controller:
     @property
     def scenario(self) -> Scenario: ...
     def torque(self, x: ArrayLike, t: ArrayLike) -> _Array:
-        """(…, 4n), one time or (…), s → (…, n), N m"""
+        """(…, 4n), one time or (…), s → (…, n), N m; many at one time in SIMD lanes, equal to one by one but for rounding"""
     def command(self, x: ArrayLike, t: float) -> dict[str, Any]:
         """(4n,), s → what the law computes on the way, (n,) each, and energy, J"""
     def reference(self, t: ArrayLike) -> _Array:

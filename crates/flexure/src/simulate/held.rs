@@ -21,6 +21,7 @@ use crate::simulate::assembly;
 use crate::simulate::controller::Feedback as _;
 use crate::simulate::fault_log::FaultLog;
 use crate::simulate::interface::{Commanded, Errors, Loop, Observed, Signal};
+use crate::simulate::lanes;
 use crate::simulate::names::Names;
 use crate::simulate::own_law::{HeldLaw, OwnLaw, OwnShaping};
 use crate::simulate::signals::Columns;
@@ -157,6 +158,12 @@ where
         check("motions", "4n for each motion", motions.len(), whole)?;
         check("u_m", "n for each motion", u_m.len(), whole / 4)?;
         let (robot, reference) = (self.robot(), self.reference_at(t));
+        if let (HeldLaw::Registered(AnyLaw::Vcbc(law)), true) =
+            (&self.simulation.controller().law, motions.len() > 4 * n)
+        {
+            lanes::torques(law, robot, &reference, n, motions, u_m);
+            return Ok(());
+        }
         for (motion, u_m) in motions.chunks_exact(4 * n).zip(u_m.chunks_exact_mut(n)) {
             let x = read_motion(motion, n)?;
             write(&self.simulation.controller().law.torque(robot, t, &x, &reference), u_m);

@@ -39,7 +39,8 @@ pub trait Loop: Send + Sync {
 
     /// What the law alone asks of the motors at the time `t` in s: `u_m`, n numbers, for one motion, or many of both, one after
     /// the other. It sees the motion as it is and follows the reference of the scenario; no device stands in between and
-    /// nothing is remembered.
+    /// nothing is remembered. Several motions go through v-CBC laws in SIMD lanes: what one of them gives differs from that of a call
+    /// with it alone in the last digits of sines and tanh ([`Lanes`](flexure_core::scalar::Lanes)), but not with its neighbours.
     ///
     /// # Errors
     /// If `motions` is not a multiple of 4n long, or `u_m` does not have n numbers for each.

@@ -12,6 +12,7 @@ mod guard_settings;
 mod guarded;
 mod held;
 mod interface;
+mod lanes;
 mod ledger;
 mod limits;
 mod memory;
