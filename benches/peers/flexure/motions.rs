@@ -11,7 +11,7 @@ use flexure_core::model::{self, Fjr, Links};
 use crate::model::{panda, two_link};
 
 /// Milliseconds that are timed at once.
-pub const PASS: usize = 100;
+pub const PASS: usize = 20;
 /// Milliseconds after which motions are compared.
 pub const SECOND: usize = 1000;
 
