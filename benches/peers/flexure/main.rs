@@ -2,6 +2,7 @@
 //!
 //! `peers model` prints the robots and gains as JSON; `peers time WORK FILE OUT MILLISECONDS` does a work for each line of
 //! inputs, f64 in the machine's own bytes, writes what came out and prints the ns of one; `peers repeat WORK TIMES` only does it.
+//! The work `loop-SCENARIO` is a control period of a built-in scenario: `peers time loop-two-link-everything - /dev/null 500`.
 
 mod calls;
 mod clock;

@@ -33,6 +33,7 @@ pub fn motion(name: &str) -> Result<Option<Motion>, Box<dyn Error>> {
         "plant7" => plant(panda()?, method, Vector([0.0, -0.6, 0.0, -1.8, 0.0, 1.5, 0.5]), &PANDA),
         "loop2" => closed("two-link-tanh-smooth")?,
         "loop7" => closed("panda-tanh-smooth")?,
+        "loop" => closed(method)?,
         _ => return Ok(None),
     }))
 }
@@ -84,9 +85,15 @@ where
     }))
 }
 
-/// The loop of a scenario, as programs hold it.
+/// Periods before those that are timed: by then the arms have joined their references.
+const JOINED: usize = 3000;
+
+/// The loop of a scenario, as programs hold it; its periods, a millisecond or not.
 fn closed(scenario: &str) -> Result<Motion, Box<dyn Error>> {
     let mut held: Box<dyn Loop> = Scenario::load(scenario)?.open()?;
+    for _ in 0..JOINED {
+        held.step()?;
+    }
     let start = held.state();
     Ok(Motion(Box::new(move |periods| {
         held.restore(&start)?;
