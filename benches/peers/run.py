@@ -46,6 +46,8 @@ LOOPS = {
 }
 # Flexure's tightest steps and MuJoCo's RK4 at 1e-5 s: by how much the same second may differ, in rad.
 SAME_PLANT = 1e-9
+# Beyond this error, in rad after a second, an integrator has lost the motion.
+LOST = 0.1
 PINOCCHIO = (
     "-DBOOST_MPL_LIMIT_LIST_SIZE=30 -DBOOST_MPL_LIMIT_VECTOR_SIZE=30 "
     "-DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS -DBOOST_FUSION_INVOKE_MAX_ARITY=12"
@@ -59,7 +61,6 @@ class Side:
     name: str
     command: list
     out: Path
-    note: str = ""
     ns: float = float("inf")
     differs: float = 0.0
     failed: str = ""
@@ -84,7 +85,8 @@ class Row:
     flexure: Side
     peers: list
     limit: float
-    unit: str = "relative"
+    # Where a plant is after a second, if it is about that.
+    reference: tuple = ()
     unequal: list = field(default_factory=list)
 
 
@@ -177,9 +179,9 @@ def files(program):
         write(FOLDER / f"{work}.in", (numbers.uniform(-1, 1) for _ in range(inputs * STATES)))
 
 
-def side(name, out, *command, note=""):
+def side(name, out, *command):
     out = FOLDER / f"{out}.out"
-    return Side(name, [*map(str, command), str(out)], out, note)
+    return Side(name, [*map(str, command), str(out)], out)
 
 
 def call_row(work, flexure, python, packages):
@@ -224,8 +226,7 @@ def motion_rows(work, flexure, packages):
     apart = distance(tight.numbers(), check.numbers())
     for method, name in (("", "Gauss-8"), ("-midpoint", "midpoint 1 ms")):
         own = motion(flexure, work + method)
-        row = Row(work + method, f"{title}: {name}", own, [peer(*one) for one in INTEGRATORS], SAME_PLANT, "rad after 1 s")
-        row.reference = tight.numbers()
+        row = Row(work + method, f"{title}: {name}", own, [peer(*one) for one in INTEGRATORS], SAME_PLANT, tight.numbers())
         if not apart <= SAME_PLANT:
             row.unequal.append(f"{work}: references of Flexure and MuJoCo differ by {apart:.1e} rad")
         rows.append(row)
@@ -258,7 +259,7 @@ def measure(row, rounds, milliseconds):
         return
     if row.key in LOOPS:
         return
-    if hasattr(row, "reference"):
+    if row.reference:
         for one in sides:
             one.differs = distance(one.numbers(), row.reference)
         return
@@ -271,16 +272,18 @@ def measure(row, rounds, milliseconds):
 
 
 def table(rows):
-    lines = ["| work | Flexure | peer | ns | Flexure / peer | difference |", "| --- | ---: | --- | ---: | ---: | ---: |"]
+    lines = ["| work | Flexure, ns | peer | peer, ns | Flexure / peer | they differ by |", "| --- | ---: | --- | ---: | ---: | ---: |"]
     for row in rows:
         own = f"{row.flexure.ns:,.0f}"
-        if hasattr(row, "reference"):
+        if row.reference:
             own += f" (error {row.flexure.differs:.0e})"
         for one in row.peers:
             if one.failed:
                 lines.append(f"| {row.title} | {own} | {one.name} | could not be made | | |")
                 continue
-            differs = "" if row.key in LOOPS else f"{one.differs:.0e}" + (" rad" if hasattr(row, "reference") else "")
+            differs = "" if row.key in LOOPS else f"{one.differs:.0e}"
+            if row.reference:
+                differs = f"error {differs}" if one.differs < LOST else "unstable"
             lines.append(f"| {row.title} | {own} | {one.name} | {one.ns:,.0f} | {row.flexure.ns / one.ns:.2f} | {differs} |")
     return "\n".join(lines)
 
