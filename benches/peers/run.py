@@ -1,6 +1,6 @@
 """Flexure beside CasADi's C, Pinocchio and MuJoCo on one core: the same inputs, the same numbers, ratios.
 
-    python3 benches/peers/run.py [--quick] [--json FILE] [--markdown FILE] [ROW...]
+    python3 benches/peers/run.py [--quick] [--docs] [--json FILE] [--markdown FILE] [ROW...]
 
 Installs the peers from PyPI into an environment below target/, writes and compiles their programs with the system's compilers,
 builds Flexure's in the profile of the command, and runs every row in rounds A B A B. Exit code 1: they disagree.
@@ -44,6 +44,9 @@ LOOPS = {
     "loop2": ("1 ms of law + plant, two-link", "plant2", "two_link"),
     "loop7": ("1 ms of law + plant, 7 joints", "plant7", "panda"),
 }
+# Whole loops of built-in scenarios, which no peer has: sensors, estimator, law, guard, drive and plant.
+OWN = ["two-link-everything", "two-link-hardware", "two-link-tanh-smooth", "panda-tanh-smooth"]
+PAGE = ROOT / "docs" / "speed.md"
 # Flexure's tightest steps and MuJoCo's RK4 at 1e-5 s: by how much the same second may differ, in rad.
 SAME_PLANT = 1e-9
 # Beyond this error, in rad after a second, an integrator has lost the motion.
@@ -288,6 +291,25 @@ def table(rows):
     return "\n".join(lines)
 
 
+def own_table(flexure, rounds, milliseconds):
+    """Control periods of whole loops."""
+    lines = ["| loop | ns a period | periods a second |", "| --- | ---: | ---: |"]
+    for name in OWN:
+        one = side(name, f"loop-{name}", flexure, "time", f"loop-{name}", "-")
+        for _ in range(rounds):
+            one.run(milliseconds)
+        lines.append(f"| `{name}` | {one.ns:,.0f} | {1e9 / one.ns:,.0f} |")
+    return "\n".join(lines)
+
+
+def into_page(text):
+    """The tables of docs/speed.md, between its two marks."""
+    page = PAGE.read_text()
+    before, rest = page.split("<!-- measured -->\n", 1)
+    after = rest.split("<!-- /measured -->", 1)[1]
+    PAGE.write_text(f"{before}<!-- measured -->\n{text}\n<!-- /measured -->{after}")
+
+
 def machine():
     names = [line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")]
     compilers = [sh(c, "--version").splitlines()[0] for c in ("gcc", "rustc")]
@@ -298,6 +320,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("rows", nargs="*", metavar="ROW", help=f"of {', '.join([*CALLS, *PLANTS, *LOOPS])}; all if none")
     parser.add_argument("--quick", action="store_true", help="one short round: are they equal?")
+    parser.add_argument("--docs", action="store_true", help="writes the tables into docs/speed.md")
     parser.add_argument("--json", type=Path, metavar="FILE")
     parser.add_argument("--markdown", type=Path, metavar="FILE")
     options = parser.parse_args()
@@ -312,9 +335,14 @@ def main():
         for row in made:
             measure(row, rounds, milliseconds)
             rows.append(row)
-    print(machine(), table(rows), sep="\n\n")
+    text = f"{machine()}\n\n{table(rows)}"
+    if not options.rows:
+        text += f"\n\n{own_table(flexure, rounds, milliseconds)}"
+    print(text)
     if options.markdown:
-        options.markdown.write_text(f"{machine()}\n\n{table(rows)}\n")
+        options.markdown.write_text(text + "\n")
+    if options.docs:
+        into_page(text)
     if options.json:
         keep = lambda one: {"name": one.name, "ns": one.ns, "difference": one.differs, "failed": one.failed}
         document = [
