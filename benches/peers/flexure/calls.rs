@@ -2,19 +2,21 @@
 
 use std::error::Error;
 
-use flexure_core::control::{Input, Tanh, Vcbc};
+use flexure_core::control::Input;
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion};
 use flexure_core::robots::Tree;
 
-use crate::model;
+use crate::model::{self, Gains};
 
 /// A function of `inputs` numbers that gives `outputs` numbers.
 pub struct Call {
     pub inputs: usize,
     pub outputs: usize,
-    pub run: Box<dyn FnMut(&[f64], &mut [f64])>,
+    pub run: Box<Run>,
 }
+
+type Run = dyn FnMut(&[f64], &mut [f64]);
 
 /// The work `name`, if it is one of these.
 pub fn call(name: &str) -> Result<Option<Call>, Box<dyn Error>> {
@@ -30,8 +32,6 @@ pub fn call(name: &str) -> Result<Option<Call>, Box<dyn Error>> {
         _ => return Ok(None),
     }))
 }
-
-type Gains<const N: usize> = Vcbc<f64, Tanh<f64, N>, Tanh<f64, N>, N>;
 
 /// (q_l, q_m, q̇_l, q̇_m) and the reference with four derivatives; the torque.
 fn law<L: Links<f64, N> + 'static, const N: usize>(robot: Fjr<f64, L, N>, law: Gains<N>) -> Call {

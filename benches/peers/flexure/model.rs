@@ -36,10 +36,11 @@ fn fjr<L, const N: usize>(file: &Robot, links: L) -> Fjr<f64, L, N> {
     }
 }
 
+/// The law with tanh on both sides.
+pub type Gains<const N: usize> = Vcbc<f64, Tanh<f64, N>, Tanh<f64, N>, N>;
+
 /// The gains of a built-in scenario.
-pub fn gains<const N: usize>(
-    scenario: &str,
-) -> Result<Vcbc<f64, Tanh<f64, N>, Tanh<f64, N>, N>, Box<dyn Error>> {
+pub fn gains<const N: usize>(scenario: &str) -> Result<Gains<N>, Box<dyn Error>> {
     let Controller::Vcbc(gains) = load_scenario(scenario)?.controller else { return Err("not v-CBC".into()) };
     let SideGains { metric, shaping, damping, .. } = &gains.link;
     let link = LinkGains {
@@ -74,7 +75,7 @@ fn document(scenario: &str) -> Result<Value, Box<dyn Error>> {
     let bodies = match &robot.links {
         robot::Links::Tree(bodies) => bodies.iter().map(body).collect::<Result<Vec<_>, _>>()?,
         robot::Links::PlanarTwoLink(form) => planar(form),
-        _ => return Err("neither a tree nor a planar arm".into()),
+        robot::Links::Pendulum(_) => return Err("neither a tree nor a planar arm".into()),
     };
     let Controller::Vcbc(gains) = &scenario.controller else { return Err("not v-CBC".into()) };
     let side =
@@ -93,7 +94,7 @@ fn document(scenario: &str) -> Result<Value, Box<dyn Error>> {
 }
 
 fn body(body: &robot::Body) -> Result<Value, &'static str> {
-    if body.kind != JointKind::Revolute || body.axis != [0.0, 0.0, 1.0] {
+    if body.kind != JointKind::Revolute || body.axis.map(f64::to_bits) != [0.0, 0.0, 1.0].map(f64::to_bits) {
         return Err("the peers' models are of revolute joints about z");
     }
     Ok(json!({

@@ -16,11 +16,14 @@ pub const PASS: usize = 20;
 pub const SECOND: usize = 1000;
 
 /// Goes on for so many milliseconds, always from the same start.
-pub struct Motion(Box<dyn FnMut(usize) -> Result<Vec<f64>, Box<dyn Error>>>);
+pub struct Motion(Box<dyn FnMut(usize) -> Reached>);
+
+/// Where the motion is then.
+type Reached = Result<Vec<f64>, Box<dyn Error>>;
 
 impl Motion {
     /// Where the motion is after `periods` of a millisecond.
-    pub fn run(&mut self, periods: usize) -> Result<Vec<f64>, Box<dyn Error>> {
+    pub fn run(&mut self, periods: usize) -> Reached {
         (self.0)(periods)
     }
 }
