@@ -1,4 +1,4 @@
-//! What the parts of a simulated control loop cost: `cargo bench -p flexure --bench loop`.
+//! What the parts of a simulated control loop cost: `cargo bench --bench loop`.
 
 use divan::Bencher;
 
@@ -93,8 +93,7 @@ mod whole_loop {
     }
 }
 
-/// The law at 10,000 motions in one call, as `python crates/flexure-python/benches/calls.py` has it from Python; `--profile release`
-/// compiles it as the wheel is.
+/// The law at 10,000 motions in one call, as `python crates/flexure-python/benches/calls.py` has it from Python, compiled as the wheel is.
 mod law {
     use super::Bencher;
     use divan::counter::ItemsCount;

@@ -1,0 +1,108 @@
+//! Works that go on in time, a millisecond each: plants under given torques, and whole loops.
+
+use std::error::Error;
+
+use flexure::Scenario;
+use flexure::plant::Plant;
+use flexure::simulate::{Ledger, Loop, Stepper, Stepping, TOLERANCE};
+use flexure_core::linalg::Vector;
+use flexure_core::model::{self, Fjr, Links};
+
+use crate::model::{panda, two_link};
+
+/// Milliseconds that are timed at once.
+pub const PASS: usize = 20;
+/// Milliseconds after which motions are compared.
+pub const SECOND: usize = 1000;
+
+/// Goes on for so many milliseconds, always from the same start.
+pub struct Motion(Box<dyn FnMut(usize) -> Reached>);
+
+/// Where the motion is then.
+type Reached = Result<Vec<f64>, Box<dyn Error>>;
+
+impl Motion {
+    /// Where the motion is after `periods` of a millisecond.
+    pub fn run(&mut self, periods: usize) -> Reached {
+        (self.0)(periods)
+    }
+}
+
+/// The work `name`, if it is one of these.
+pub fn motion(name: &str) -> Result<Option<Motion>, Box<dyn Error>> {
+    let (kind, method) = name.split_once('-').unwrap_or((name, ""));
+    Ok(Some(match kind {
+        "plant2" => plant(two_link()?, method, Vector::ZERO, &TWO_LINK),
+        "plant7" => plant(panda()?, method, Vector([0.0, -0.6, 0.0, -1.8, 0.0, 1.5, 0.5]), &PANDA),
+        "loop2" => closed("two-link-tanh-smooth")?,
+        "loop7" => closed("panda-tanh-smooth")?,
+        "loop" => closed(method)?,
+        _ => return Ok(None),
+    }))
+}
+
+/// The motor torque, held for a millisecond: at t, hold + `amplitude` sin(8 t + i) − `stiffness` (q_m − q_m0). `mujoco.c` has it too.
+struct Drive {
+    amplitude: f64,
+    stiffness: f64,
+}
+
+const TWO_LINK: Drive = Drive { amplitude: 3.0, stiffness: 0.5 };
+const PANDA: Drive = Drive { amplitude: 20.0, stiffness: 200.0 };
+
+/// From rest, hanging in the springs. Methods: what runs use, a tight reference, midpoint steps of a millisecond.
+fn plant<L, const N: usize>(
+    robot: Fjr<f64, L, N>,
+    method: &str,
+    q_l: Vector<f64, N>,
+    drive: &'static Drive,
+) -> Motion
+where
+    L: Links<f64, N> + Copy + 'static,
+{
+    let plant = Plant::from(robot);
+    let hold = robot.links.gravity_torque(&q_l);
+    let start = model::Motion { q_m: robot.motors_at_rest(&q_l), ..model::Motion::at_rest(q_l) };
+    let fresh = match method {
+        "midpoint" => Stepper::Rough(Stepping::new(1e-3)),
+        "tight" => Stepper::new(&plant, 1e-15, 1e-5),
+        _ => Stepper::new(&plant, TOLERANCE, Stepping::<N>::STEP),
+    };
+    let pieces: u32 = if method == "tight" { 10 } else { 1 };
+    Motion(Box::new(move |periods| {
+        let (mut x, mut stepper, mut ledger) = (start, fresh.clone(), Ledger::default());
+        for period in 0..periods {
+            let t = 1e-3 * period as f64;
+            let u_m = Vector::from_fn(|i| {
+                hold[i] + drive.amplitude * (8.0 * t + i as f64).sin()
+                    - drive.stiffness * (x.q_m[i] - start.q_m[i])
+            });
+            let length = 1e-3 / f64::from(pieces);
+            for _ in 0..pieces {
+                x = stepper
+                    .advance(&plant, x, t, length, &|_, _: &_| u_m, &mut ledger)
+                    .map_err(|failure| format!("{failure:?}"))?;
+            }
+        }
+        Ok([x.q_l.0, x.q_m.0].concat())
+    }))
+}
+
+/// Periods before those that are timed: by then the arms have joined their references.
+const JOINED: usize = 3000;
+
+/// The loop of a scenario, as programs hold it; its periods, a millisecond or not.
+fn closed(scenario: &str) -> Result<Motion, Box<dyn Error>> {
+    let mut held: Box<dyn Loop> = Scenario::load(scenario)?.open()?;
+    for _ in 0..JOINED {
+        held.step()?;
+    }
+    let start = held.state();
+    Ok(Motion(Box::new(move |periods| {
+        held.restore(&start)?;
+        for _ in 0..periods {
+            held.step()?;
+        }
+        Ok(Vec::new())
+    })))
+}
