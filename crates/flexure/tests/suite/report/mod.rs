@@ -8,8 +8,8 @@ use flexure::report::AssumedNumber;
 use flexure::report::RunsReport;
 use flexure::report::decimate::{bucket_size, decimate, envelope};
 use flexure::report::{
-    CertificateReport, FigureOptions, RunReport, WIDTH, certificate_table, comparison, four_panel, html,
-    proof_table, summary_table,
+    CertificateReport, FigureOptions, RunReport, Sketch, WIDTH, certificate_table, comparison, four_panel,
+    html, proof_table, summary_table,
 };
 use flexure::scenario::load_scenario;
 use flexure::simulate::{Summary, Trace};
@@ -21,7 +21,7 @@ fn figure(trace: &Trace) -> String {
         subtitle: "quanser-2dof".to_owned(),
         joints: vec!["shoulder".to_owned()],
     };
-    four_panel(trace, &options).svg()
+    four_panel(&Sketch::of(trace), &options).svg()
 }
 
 /// Well-formed, and every number in every attribute finite.
@@ -156,19 +156,20 @@ fn titles_are_text() {
     let trace = fake::trace(1, 100, 6.0);
     let title = "<script>alert(1)</script> & $\\frac{1}{2}$ \u{0}".repeat(3);
     let svg = four_panel(
-        &trace,
+        &Sketch::of(&trace),
         &FigureOptions { title: title.clone(), subtitle: title.clone(), joints: Vec::new() },
     )
     .svg();
     check(&svg);
     assert!(!svg.contains("<script") && texts(&svg)[0].contains("$\\frac{1}{2}$"));
-    check(&comparison(&[("<script>", &trace)]).svg());
+    check(&comparison(&[("<script>", &Sketch::of(&trace))]).svg());
 }
 
 #[test]
 fn the_comparison_names_each_run_once() {
     let traces = [fake::trace(2, 4_000, 2.0), fake::trace(2, 6_000, 5.0), fake::diverged(2, 5_000)];
-    let svg = comparison(&[("tanh", &traces[0]), ("linear", &traces[1]), ("coupled-tanh", &traces[2])]).svg();
+    let [tanh, linear, coupled] = traces.each_ref().map(Sketch::of);
+    let svg = comparison(&[("tanh", &tanh), ("linear", &linear), ("coupled-tanh", &coupled)]).svg();
     check(&svg);
     assert_eq!(curves(&svg), 3);
     for name in ["tanh", "linear", "coupled-tanh"] {
@@ -178,23 +179,24 @@ fn the_comparison_names_each_run_once() {
 
 #[test]
 fn a_comparison_that_leaves_time_out_says_so() {
-    let fast = fake::trace(2, 10_000, 30.0);
-    let said = |traces: &[(&str, &Trace)]| {
-        texts(&comparison(traces).svg()).iter().any(|text| text.contains("of 10 s; after that"))
+    let fast = Sketch::of(&fake::trace(2, 10_000, 30.0));
+    let said = |runs: &[(&str, &Sketch)]| {
+        texts(&comparison(runs).svg()).iter().any(|text| text.contains("of 10 s; after that"))
     };
     assert!(said(&[("fast", &fast)]));
-    assert!(!said(&[("fast", &fast), ("diverged", &fake::diverged(2, 10_000))]));
-    assert!(!said(&[("slow", &fake::trace(2, 10_000, 0.5))]));
+    assert!(!said(&[("fast", &fast), ("diverged", &Sketch::of(&fake::diverged(2, 10_000)))]));
+    assert!(!said(&[("slow", &Sketch::of(&fake::trace(2, 10_000, 0.5)))]));
 }
 
 #[test]
 fn pictures_are_1600_wide_and_bad_ones_are_errors() {
-    let picture = four_panel(&fake::trace(2, 1_000, 6.0), &FigureOptions::default()).png().unwrap();
+    let picture =
+        four_panel(&Sketch::of(&fake::trace(2, 1_000, 6.0)), &FigureOptions::default()).png().unwrap();
     assert_eq!(&picture[1..4], b"PNG");
     assert_eq!(u32::from_be_bytes(picture[16..20].try_into().unwrap()), 1600);
-    let trace = fake::trace(1, 10, 1.0);
+    let sketch = Sketch::of(&fake::trace(1, 10, 1.0));
     let names: Vec<String> = (0..6000).map(|run| format!("run {run}")).collect();
-    let runs: Vec<(&str, &Trace)> = names.iter().map(|name| (name.as_str(), &trace)).collect();
+    let runs: Vec<(&str, &Sketch)> = names.iter().map(|name| (name.as_str(), &sketch)).collect();
     let error = comparison(&runs).png().unwrap_err();
     assert!(error.height > 10.0 * error.width, "{error}");
 }
@@ -210,7 +212,7 @@ fn report() -> RunsReport {
         title: "<script>title</script>".to_owned(),
         introduction: "One.\n\nTwo & three.".to_owned(),
         runs: vec![run("<script>name</script>"), run("linear")],
-        comparison_svg: Some(comparison(&[("tanh", &trace)]).svg()),
+        comparison_svg: Some(comparison(&[("tanh", &Sketch::of(&trace))]).svg()),
         certificates: vec![CertificateReport {
             summary: proof(),
             phi: "<script>phi</script>".to_owned(),
