@@ -12,7 +12,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::changes::{changes, toml};
 use crate::documents::document;
-use crate::failure::{raised, refused, said, unfinished, unwritten, warn};
+use crate::failure::{raised, refused, said, unfinished, warn};
 use crate::scenario::{Scenario, outside};
 use crate::watched::watched;
 

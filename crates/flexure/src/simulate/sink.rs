@@ -9,12 +9,12 @@ use std::ops::ControlFlow;
 /// use std::ops::ControlFlow;
 /// use flexure::simulate::{Sink, run_into};
 ///
-/// /// The largest number of a column so far, whatever the length of the run.
+/// /// The largest absolute value of a column, whatever the length of the run.
 /// struct Largest { column: usize, value: f64 }
 ///
 /// impl Sink for Largest {
 ///     fn take(&mut self, row: &[f64]) -> ControlFlow<()> {
-///         self.value = self.value.max(row[self.column]);
+///         self.value = self.value.max(row[self.column].abs());
 ///         ControlFlow::Continue(())
 ///     }
 /// }

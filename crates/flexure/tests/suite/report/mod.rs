@@ -6,7 +6,7 @@ use flexure::prove::question::{Question, prove};
 use flexure::prove::summary::ProofSummary;
 use flexure::report::AssumedNumber;
 use flexure::report::RunsReport;
-use flexure::report::decimate::{bucket_size, decimate, envelope};
+use flexure::report::decimate::{Thinned, bucket_size, decimate, envelope};
 use flexure::report::{
     CertificateReport, FigureOptions, RunReport, Sketch, WIDTH, certificate_table, comparison, four_panel,
     html, proof_table, summary_table,
@@ -142,6 +142,89 @@ fn decimation_keeps_both_extremes_of_every_bucket() {
             }
         }
     }
+}
+
+/// A signal that comes sample by sample has the envelope of the whole one, in every bucket that it kept, at every size.
+#[test]
+fn thinned_signals_keep_both_extremes_in_bounded_memory() {
+    let mut state = 7_u64;
+    let mut noise = || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    for most in [8, 10, 64, 1000] {
+        let kept = (most / 4).max(2) * 4;
+        for count in [0, 1, 2, 7, 8, 9, 16, 17, 63, 64, 65, 1000, 1001, 4096, 20_011] {
+            let samples: Vec<(f64, f64)> = (0..count)
+                .map(|k| (1e-3 * f64::from(k), if k % 997 == 3 { 1e3 * noise() } else { noise() }))
+                .collect();
+            let mut thinned = Thinned::new(most);
+            samples.iter().for_each(|&(t, value)| thinned.push(t, value));
+            let points = thinned.points();
+            assert_eq!(thinned.samples(), samples.len());
+            if samples.len() <= kept {
+                assert_eq!(points, samples, "few samples stay as they are");
+                continue;
+            }
+            assert!(
+                points.len() <= kept + 4 && points.len() > kept / 2,
+                "{} of {count} at {most}",
+                points.len()
+            );
+            assert!(points.is_sorted_by(|a, b| a.0 < b.0), "in their order, each once");
+            assert!(points.iter().all(|point| samples.contains(point)), "none is made up");
+            assert_eq!((points[0], points.last()), (samples[0], samples.last()));
+            // The buckets are the same all along: 4, 8, 16, … samples.
+            let size = (2..).map(|power| 1_usize << power).find(|size| samples.len() / size * 2 <= kept);
+            for bucket in samples.chunks(size.expect("some power")) {
+                let (from, to) = (bucket[0].0, bucket[bucket.len() - 1].0);
+                let inside =
+                    points.iter().filter(|point| (from..=to).contains(&point.0)).map(|point| point.1);
+                assert_eq!(
+                    extremes(inside),
+                    extremes(bucket.iter().map(|sample| sample.1)),
+                    "{count} at {most}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn thinned_signals_end_before_what_is_no_number() {
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for end in [0, 3, 8, 9, 500] {
+            let mut thinned = Thinned::new(8);
+            let value = |k: u32| f64::from(k).sin();
+            for k in 0..1000 {
+                thinned.push(f64::from(k), if k == end { bad } else { value(k) });
+            }
+            let points = thinned.points();
+            assert_eq!(thinned.samples(), end as usize);
+            assert_eq!(points.last().copied(), end.checked_sub(1).map(|k| (f64::from(k), value(k))));
+            assert_eq!(extremes(points.iter().map(|point| point.1)), extremes((0..end).map(value)));
+        }
+    }
+}
+
+/// The peaks of a long run are in its figure, which says when they were; the first instant that is not a number is, too.
+#[test]
+fn long_runs_are_drawn_with_every_peak() {
+    let columns = ["t", "q_l1", "e_l1", "u_m1"].map(|name| (name.to_owned(), ""));
+    let long = |end: u32| {
+        let mut trace = Trace::new(columns.clone());
+        for k in 0..300_000 {
+            let wave = (1e-3 * f64::from(k)).sin();
+            let torque = if k == 123_457 { -777.0 } else { wave };
+            trace.push(&[1e-3 * f64::from(k), wave, 1e-3 * wave, if k < end { torque } else { f64::NAN }]);
+        }
+        four_panel(&Sketch::of(&trace), &FigureOptions::default()).svg()
+    };
+    let whole = long(u32::MAX);
+    check(&whole);
+    let said = |svg: &str, words: &str| texts(svg).iter().filter(|text| text.contains(words)).count();
+    assert_eq!(said(&whole, "peak 777 N m at 123 s"), 1, "{:?}", texts(&whole));
+    assert_eq!(said(&long(200_001), "not finite after 200 s"), 4);
 }
 
 /// Smallest and largest value, bit by bit: nothing is rounded on the way.
