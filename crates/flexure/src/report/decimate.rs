@@ -149,6 +149,11 @@ impl Thinned {
         points
     }
 
+    /// How many samples were left their extremes; none while all of them are there.
+    pub fn bucket(&self) -> Option<usize> {
+        (self.size > 1).then_some(self.size)
+    }
+
     /// How many samples it had.
     pub fn samples(&self) -> usize {
         self.samples

@@ -5,8 +5,7 @@
 //! Errors and momentum errors are absolute values on a logarithmic axis: an exponential decay is a straight line.
 
 use super::curve::Curve;
-use super::panel::{HEIGHT, Panel, Scale, View, buckets};
-use super::range::Range;
+use super::panel::{self, HEIGHT, Panel, Scale, View};
 use super::scene::Scene;
 use super::sheet::{MARGIN, line_legend, page};
 use super::sketch::Sketch;
@@ -71,29 +70,27 @@ pub fn four_panel(run: &Sketch, options: &FigureOptions) -> Scene {
             curves: link("u_m"),
         },
     ];
-    four(run.span(), run.diverged(), &panels, options, &legend(joints, &options.joints))
+    let view =
+        View { t: run.span(), diverged: run.diverged(), thinned: run.thinned(), buckets: buckets(&panels) };
+    four(&view, &panels, options, &legend(joints, &options.joints))
 }
 
-/// Four panels over the time `t` on one page, with a title and one legend; `diverged` is the last instant of a signal that did not
-/// stay finite.
+/// Four panels on one page, with a title and one legend.
 pub(super) fn four(
-    t: Range,
-    diverged: Option<f64>,
+    view: &View,
     panels: &[Panel; 4],
     options: &FigureOptions,
     legend: &[(String, Stroke)],
 ) -> Scene {
-    let signals: usize = panels.iter().map(|panel| panel.curves.len()).sum();
     let top = if options.subtitle.is_empty() { 62.0 } else { 82.0 };
     let mut scene = page(WIDTH, &options.title, &options.subtitle);
     let top = top + line_legend(&mut scene, top, legend);
     scene.height = top + 2.0 * HEIGHT + 8.0;
-    let view = View { t, diverged, buckets: buckets(signals) };
     let width = (WIDTH - MARGIN) / 2.0;
     for (index, panel) in panels.iter().enumerate() {
         let (row, column) = (index / 2, index % 2);
         let corner = [MARGIN / 2.0 + column as f64 * width, top + row as f64 * HEIGHT];
-        panel.draw(&mut scene, corner, width, &view);
+        panel.draw(&mut scene, corner, width, view);
     }
     scene
 }
@@ -101,6 +98,11 @@ pub(super) fn four(
 pub(super) fn over(mut below: Vec<Curve>, above: Vec<Curve>) -> Vec<Curve> {
     below.extend(above);
     below
+}
+
+/// Runs of samples that are drawn as two points each.
+pub(super) fn buckets(panels: &[Panel]) -> usize {
+    panel::buckets(panels.iter().map(|panel| panel.curves.len()).sum())
 }
 
 /// Hue names the joint, line style the side: one legend serves all panels.

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use comfy_table::{Cell, Row};
 
 use super::curve::Curve;
-use super::figure::{FigureOptions, four, over};
+use super::figure::{FigureOptions, buckets, four, over};
 use super::outputs::write_figure;
-use super::panel::{Panel, Scale, span};
+use super::panel::{Panel, Scale, View, span};
 use super::range::Range;
 use super::scene::Scene;
 use super::style::{INK, Stroke};
@@ -78,7 +78,9 @@ pub fn replay_figure(replay: &Replay) -> Scene {
         ),
         joints: Vec::new(),
     };
-    four(span(t), divergence(t, &panels), &panels, &options, &legend(&replay.joints, joints))
+    let view =
+        View { t: span(t), diverged: divergence(t, &panels), thinned: None, buckets: buckets(&panels) };
+    four(&view, &panels, &options, &legend(&replay.joints, joints))
 }
 
 /// The curves of log, prediction and closed loop, joint by joint each, less the means of the signal `side` in the log: joints that stand

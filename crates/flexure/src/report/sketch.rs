@@ -92,6 +92,12 @@ impl Sketch {
         (shortest.samples() < self.instants).then(|| shortest.end().unwrap_or(0.0))
     }
 
+    /// The time of which the signals have the extremes alone, if they do not have all instants \[s\].
+    pub(super) fn thinned(&self) -> Option<f64> {
+        let bucket = self.drawn.iter().flatten().find_map(|(_, signal)| signal.bucket())?;
+        Some(bucket as f64 * self.span().span() / (self.instants.max(2) - 1) as f64)
+    }
+
     fn signals(&self, prefix: &str) -> &[(usize, Thinned)] {
         DRAWN.iter().zip(&self.drawn).find(|(drawn, _)| **drawn == prefix).map_or(&[], |(_, signals)| signals)
     }

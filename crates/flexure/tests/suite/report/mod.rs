@@ -225,7 +225,7 @@ fn long_runs_are_drawn_with_every_peak() {
     let whole = long(u32::MAX);
     check(&whole);
     let said = |svg: &str, words: &str| texts(svg).iter().filter(|text| text.contains(words)).count();
-    assert_eq!(said(&whole, "peak 777.0 N m at 123 s"), 1, "{:?}", texts(&whole));
+    assert_eq!(said(&whole, "the extremes of each 16 ms, peak 777.0 N m at 123 s"), 1, "{:?}", texts(&whole));
     assert_eq!(said(&long(200_001), "not finite after 200 s"), 4);
 }
 
