@@ -1,5 +1,6 @@
 //! The command line's grammar.
 
+use std::num::NonZeroU32;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -45,13 +46,15 @@ pub enum Command {
     #[command(after_help = "Example:\n  flexure reproduce --out out")]
     /// Run the paper's experiments: table, figures, traces and report.html.
     Reproduce(Output),
-    #[command(after_help = "Example:\n  flexure run two-link-tanh-smooth --out out")]
+    #[command(
+        after_help = "Examples:\n  flexure run two-link-tanh-smooth --out out\n  flexure run two-link-hardware --columns 'q_l*,u_m?' --every 10"
+    )]
     /// Simulate one closed loop: summary, trace and figure.
     Run {
         /// Scenario file, or the name of a built-in scenario.
         scenario: String,
         #[command(flatten)]
-        output: Output,
+        traced: Traced,
     },
     #[command(
         after_help = "Example:\n  flexure compare task-soft --controllers vcbc,vcbc:tanh,cascade --budget 5"
@@ -158,6 +161,19 @@ pub struct Output {
     /// Folder for the files that are written; created if missing.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
+}
+
+/// Where a run leaves its files, and what its trace has.
+#[derive(Debug, Args)]
+pub struct Traced {
+    #[command(flatten)]
+    pub output: Output,
+    /// Columns of the trace, names in which * is any text and ? any character; t is always there. All if left out.
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub columns: Vec<String>,
+    /// Write every Nth row of the trace, from the first on: one in N control periods. Summary and figure see them all.
+    #[arg(long, value_name = "N", default_value = "1", value_parser = every, allow_negative_numbers = true)]
+    pub every: NonZeroU32,
 }
 
 #[derive(Debug, Args)]
@@ -288,7 +304,7 @@ pub enum OfFolder {
         #[arg(long)]
         row: u64,
         #[command(flatten)]
-        output: Output,
+        traced: Traced,
     },
     /// Tell what the rows that are there come to.
     Show {
@@ -427,6 +443,12 @@ impl Command {
 /// A change of a scenario.
 fn change(text: &str) -> Result<Change, String> {
     Change::parse(text).map_err(|problem| format!("{problem}; {}", problem.hint()))
+}
+
+/// A number of control periods.
+fn every(text: &str) -> Result<NonZeroU32, String> {
+    let must = || format!("it must be a whole number of control periods from 1 to {}", u32::MAX);
+    text.trim().parse().map_err(|_| must())
 }
 
 /// The name of a class of drives.

@@ -5,7 +5,7 @@ use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
-use flexure::files::{Problem, Problems, WriteError};
+use flexure::files::{Problem, Problems, Unfinished, WriteError};
 use miette::{Diagnostic, MietteHandlerOpts, Report};
 use textwrap::WordSplitter;
 
@@ -101,6 +101,15 @@ impl From<Problem> for Failure {
 impl From<WriteError> for Failure {
     fn from(error: WriteError) -> Self {
         Self::Input(vec![error.into()])
+    }
+}
+
+impl From<Unfinished> for Failure {
+    fn from(unfinished: Unfinished) -> Self {
+        match unfinished {
+            Unfinished::Problems(problems) => problems.into(),
+            Unfinished::Unwritten(error) => error.into(),
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Problems as exceptions.
 
-use flexure::files::{Problem, Problems};
+use flexure::files::{Problem, Problems, Unfinished};
 use flexure::robot::Mismatch;
 use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyKeyboardInterrupt, PyOSError, PyUserWarning, PyValueError};
@@ -55,6 +55,14 @@ pub fn refused(py: Python<'_>, problem: &Problem) -> PyErr {
 /// That a file could not be written.
 pub fn unwritten(error: impl std::error::Error) -> PyErr {
     PyOSError::new_err(error.to_string())
+}
+
+/// Why a job that writes as it goes has no outcome.
+pub fn unfinished(py: Python<'_>, unfinished: Unfinished) -> PyErr {
+    match unfinished {
+        Unfinished::Problems(problems) => raised(py, &problems),
+        Unfinished::Unwritten(error) => unwritten(error),
+    }
 }
 
 /// An exception of several problems, at least one.

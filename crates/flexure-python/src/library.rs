@@ -19,7 +19,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::documents::document;
-use crate::failure::{OF_JOBS, documents, raised, refused, unwritten, warn};
+use crate::failure::{OF_JOBS, documents, raised, refused, unfinished, unwritten, warn};
 use crate::robot::Robot;
 use crate::scenario::{Scenario, outside};
 use crate::watched::watched;
@@ -104,15 +104,17 @@ pub fn reproduce<'py>(
     prepare(&out).map_err(unwritten)?;
     let runs = watched(py, progress, |progress| {
         let parts = Parts::new(REPRODUCED.len());
-        experiments(&|part, fraction| progress(parts.with(part, fraction)))
+        experiments(&out, &|part, fraction| progress(parts.with(part, fraction)))
     })?
-    .map_err(|problems| raised(py, &problems))?;
+    .map_err(|reason| unfinished(py, reason))?;
+    let (runs, traces): (Vec<_>, Vec<_>) = runs.into_iter().unzip();
     if runs.iter().any(|experiment| experiment.run.broken_off.is_some()) {
         return Err(PyKeyboardInterrupt::new_err(()));
     }
     let certified = py.detach(certificates).map_err(|problems| raised(py, &problems))?;
     let write = || {
-        runs.iter().try_for_each(|experiment| write_experiment(&out, experiment).map(drop))?;
+        let mut written = runs.iter().zip(traces);
+        written.try_for_each(|(experiment, trace)| write_experiment(experiment, trace).map(drop))?;
         write_certificates(&out, &certified)?;
         write_report(&out, &runs, &certified)
     };

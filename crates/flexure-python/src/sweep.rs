@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use flexure::files::{Change, Problems, Reading};
-use flexure::sweep::{Column, Folder, Statistics, Sweep as Many, Unfinished, Values, part_name};
+use flexure::sweep::{Column, Folder, Statistics, Sweep as Many, Values, part_name};
 use numpy::IntoPyArray as _;
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
@@ -12,7 +12,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::changes::{changes, toml};
 use crate::documents::document;
-use crate::failure::{raised, refused, said, unwritten, warn};
+use crate::failure::{raised, refused, said, unfinished, warn};
 use crate::scenario::{Scenario, outside};
 use crate::watched::watched;
 
@@ -224,10 +224,7 @@ impl Sweep {
             let folder = Folder::of(&self.many, &folder)?;
             pool.install(|| folder.complete(&self.many, first..end, progress))
         })?;
-        done.map_err(|unfinished| match unfinished {
-            Unfinished::Problems(problems) => raised(py, &problems),
-            Unfinished::Unwritten(error) => unwritten(error),
-        })
+        done.map_err(|reason| unfinished(py, reason))
     }
 
     /// What the rows of shards come to, of whose files only the ends are given, as bytes.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use flexure::files::{Problems, prepare};
+use flexure::files::{Problems, WriteError, prepare};
 use flexure::prove::summary::ProofSummary;
 use flexure::report::{certificate_table, summary_table};
 use flexure::reproduce::{
@@ -30,14 +30,19 @@ pub fn reproduce(out: &Path, json: bool) -> Result<(), Failure> {
     let experiments = {
         let name = format!("{} experiments", REPRODUCED.len());
         let progress = Progress::new(&name, REPRODUCED.map(|_| 1.0));
-        experiments(&|i, fraction| progress.set(i, fraction))?
+        experiments(out, &|i, fraction| progress.set(i, fraction))?
     };
-    let (experiments, broken_off): (Vec<_>, Vec<_>) =
-        experiments.into_iter().partition(|experiment| experiment.run.broken_off.is_none());
-    let files: Vec<_> = experiments
-        .par_iter()
-        .map(|experiment| write_experiment(out, experiment))
-        .collect::<Result<_, _>>()?;
+    let (finished, broken_off): (Vec<_>, Vec<_>) =
+        experiments.into_iter().partition(|(experiment, _)| experiment.run.broken_off.is_none());
+    let (experiments, files): (Vec<_>, Vec<_>) = finished
+        .into_par_iter()
+        .map(|(experiment, trace)| {
+            let files = write_experiment(&experiment, trace)?;
+            Ok((experiment, files))
+        })
+        .collect::<Result<Vec<_>, WriteError>>()?
+        .into_iter()
+        .unzip();
     if experiments.is_empty() {
         return Err(Problems::interrupted().into());
     }

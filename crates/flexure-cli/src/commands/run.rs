@@ -1,6 +1,6 @@
 //! `flexure run`: one closed loop.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use flexure::feasible;
 use flexure::files::number::short;
@@ -8,13 +8,14 @@ use flexure::files::{Problem, Reading, prepare};
 use flexure::imperfections::Imperfection;
 use flexure::prove::standing::outside_of_proofs;
 use flexure::report::summary_table;
-use flexure::reproduce::{Experiment, write_experiment};
+use flexure::reproduce::{Experiment, trace_file, write_experiment};
 use flexure::sampled::{Sampled, not_looked_at};
 use flexure::scenario::{Scenario, load_scenario_with};
-use flexure::simulate::{Cause, FaultLog, Following, Summary, exceeded, preload};
+use flexure::simulate::{Cause, Excerpt, FaultLog, Following, Summary, preload};
 use serde::Serialize;
 
 use super::print;
+use crate::args::Traced;
 use crate::failure::{Failure, say};
 use crate::progress::Progress;
 
@@ -47,25 +48,28 @@ impl<'a> Outcome<'a> {
     }
 }
 
-pub fn run(scenario: &str, reading: Reading<'_>, out: &Path, json: bool) -> Result<(), Failure> {
-    told(load_scenario_with(scenario, reading)?, out, json)
+pub fn run(scenario: &str, reading: Reading<'_>, traced: &Traced, json: bool) -> Result<(), Failure> {
+    told(load_scenario_with(scenario, reading)?, traced, json)
 }
 
-/// Runs `scenario`, writes its files into `out`, and tells what came of it.
-pub fn told(scenario: Scenario, out: &Path, json: bool) -> Result<(), Failure> {
+/// Runs `scenario`, writes its files as `traced` says, and tells what came of it.
+pub fn told(scenario: Scenario, traced: &Traced, json: bool) -> Result<(), Failure> {
+    let Traced { output, columns, every } = traced;
+    let excerpt = Excerpt::new(&scenario.signals()?, columns, *every)?;
     say(&scenario.warnings);
     say(&preload(&scenario)?);
     say(&feasible::slowed(&scenario)?);
     let beyond = feasible::exceeded(&scenario, &feasible::usage(&scenario)?);
-    prepare(out)?;
+    prepare(&output.out)?;
+    let mut trace = trace_file(&output.out, &scenario, excerpt)?;
     let experiment = {
         let progress = Progress::of_one(&scenario.name);
-        Experiment::new(scenario, &|fraction| progress.set(0, fraction))?
+        Experiment::new(scenario, &mut [&mut trace], &|fraction| progress.set(0, fraction))?
     };
-    let files = write_experiment(out, &experiment)?;
+    let files = write_experiment(&experiment, trace)?;
     let broken_off = experiment.run.broken_off.map(|time| broken_off(&experiment.scenario, time));
     if experiment.run.divergence.is_none() {
-        say(&exceeded(&experiment.scenario.robot, &experiment.run.trace));
+        say(&experiment.exceeded);
     }
     if json {
         print::json(&Outcome::new(&experiment, files))?;

@@ -3,13 +3,13 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use flexure::files::Reading;
+use flexure::files::{Reading, Unfinished};
 use flexure::report::sweep_table;
-use flexure::sweep::{Folder, Statistics, Status, Sweep as Many, Told, Unfinished};
+use flexure::sweep::{Folder, Statistics, Status, Sweep as Many, Told};
 use serde::Serialize;
 
 use super::{print, run};
-use crate::args::{OfFolder, Sweep};
+use crate::args::{OfFolder, Sweep, Traced};
 use crate::failure::{Failure, say};
 use crate::progress::Progress;
 
@@ -43,7 +43,7 @@ pub fn sweep(options: &Sweep, reading: Reading<'_>, json: bool) -> Result<(), Fa
             ));
         }
         return match of {
-            OfFolder::Replay { folder, row, output } => replay(folder, *row, &output.out, json),
+            OfFolder::Replay { folder, row, traced } => replay(folder, *row, traced, json),
             OfFolder::Show { folder } => {
                 let (folder, sweep) = Folder::open(folder)?;
                 show(&sweep, &folder, 0, json)
@@ -70,15 +70,6 @@ pub fn sweep(options: &Sweep, reading: Reading<'_>, json: bool) -> Result<(), Fa
             Err(Failure::interrupted(message, "the same command goes on where it was"))
         }
         Err(other) => Err(other.into()),
-    }
-}
-
-impl From<Unfinished> for Failure {
-    fn from(unfinished: Unfinished) -> Self {
-        match unfinished {
-            Unfinished::Problems(problems) => problems.into(),
-            Unfinished::Unwritten(error) => error.into(),
-        }
     }
 }
 
@@ -156,7 +147,7 @@ fn outcome<'a>(
 }
 
 /// Runs a row again, with its trace.
-fn replay(folder: &Path, row: u64, out: &Path, json: bool) -> Result<(), Failure> {
+fn replay(folder: &Path, row: u64, traced: &Traced, json: bool) -> Result<(), Failure> {
     let (_, sweep) = Folder::open(folder)?;
     let mut scenario = sweep.scenario(row)?;
     scenario.name = format!("{}-row-{row}", sweep.name());
@@ -169,5 +160,5 @@ fn replay(folder: &Path, row: u64, out: &Path, json: bool) -> Result<(), Failure
         let said: Vec<String> = said.collect();
         print::line(&format!("row {row}: {}; seed {}", said.join(", "), sweep.seed(row)))?;
     }
-    run::told(scenario, out, json)
+    run::told(scenario, traced, json)
 }

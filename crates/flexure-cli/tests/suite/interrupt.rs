@@ -62,6 +62,7 @@ fn a_run_ends_where_it_is_and_leaves_its_trace() {
     let trace = place.read("out/long.csv");
     let last: f64 = trace.lines().last().unwrap().split(',').next().unwrap().parse().unwrap();
     assert!((last - end).abs() < 1e-9, "{last} {end}");
+    assert_eq!(place.names("out"), ["long.csv", "long.png", "long.svg"]);
 
     let (outcome, _) = broken_off(&place, &["run", "long.toml"], 2.0);
     assert!(outcome.stdout.contains("long: broken off at t = "), "{outcome:?}");

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::command::{Place, ROBOT, assert_summary};
+use crate::command::{Outcome, Place, ROBOT, assert_summary};
 
 const SHORT: (&str, &str) = ("duration = 10.0", "duration = 0.05");
 
@@ -121,6 +121,108 @@ fn a_loop_that_does_not_follow_is_an_answer() {
         (&outcome.json()["follows"], &outcome.json()["reasons"]),
         (&true.into(), &Value::Array(vec![]))
     );
+}
+
+/// Some columns and rows: those of the whole trace, and nothing else of the answer changes.
+#[test]
+fn a_trace_has_the_columns_and_rows_that_are_asked_for() {
+    let place = Place::new();
+    place.scenario("short.toml", &[SHORT]);
+    let cells = |args: &[&str]| {
+        place.run(&[&["run", "short.toml", "--out", "part"], args].concat()).done();
+        let table = |path: &str| -> Vec<Vec<String>> {
+            place.read(path).lines().map(|line| line.split(',').map(str::to_owned).collect()).collect()
+        };
+        table("part/short.csv")
+    };
+    let whole = cells(&[]);
+    let figure = place.read("part/short.svg");
+    for (args, names, every) in [
+        (&["--columns", "u_m?,q_l1,t,u_m1"][..], "t q_l1 u_m1 u_m2", 1),
+        (&["--columns", "e_l*", "--columns", "rate", "--every", "7"], "t e_l1 e_l2 rate", 7),
+        (&["--columns", "t", "--every", "50"], "t", 50),
+        (&["--columns", "t", "--every", "4294967295"], "t", 4_294_967_295),
+        (&["--every", "1"], &whole[0].join(" "), 1),
+    ] {
+        let part = cells(args);
+        assert_eq!(part[0].join(" "), names, "{args:?}");
+        let columns: Vec<usize> =
+            part[0].iter().map(|name| whole[0].iter().position(|other| other == name).unwrap()).collect();
+        let wanted: Vec<Vec<String>> = whole[1..]
+            .iter()
+            .step_by(every)
+            .map(|row| columns.iter().map(|&column| row[column].clone()).collect())
+            .collect();
+        assert_eq!(part[1..], wanted, "{args:?}");
+        assert_eq!(place.read("part/short.svg"), figure, "{args:?}");
+    }
+}
+
+#[test]
+fn columns_and_rows_that_there_are_not_are_refused_before_the_run() {
+    let place = Place::new();
+    place.scenario("short.toml", &[SHORT]);
+    for (args, fragments) in [
+        (&["--columns", "q_l3"][..], &["error[unknown-name]", "is 'q_l3'", "did you mean 'q_l1'?"][..]),
+        (&["--columns", "Q-L1"], &["did you mean 'q_l1'?"]),
+        (&["--columns", "q_l"], &["is 'q_l'", "q_l* is all that begin with q_l"]),
+        (&["--columns", "x*"], &["matches 'x*'", "known: t, q_l1"]),
+        (&["--columns", "q_l1,,u_m1"], &["is ''"]),
+        (&["--columns", ""], &["is ''"]),
+        (&["--columns", "q_l1", "--columns", "u_l1,phase"], &["is 'phase'"]),
+    ] {
+        place.run(&[&["run", "short.toml"], args].concat()).refused(fragments);
+        let json = place.run(&[&["run", "short.toml", "--json"], args].concat());
+        assert_eq!(json.json()["error"]["code"], "unknown-name");
+    }
+    for number in ["0", "-1", "0.01", "ten", "", "4294967296", "nan", "1e3"] {
+        let args = ["run", "short.toml", "--json", "--every", number];
+        let outcome = place.run(&args);
+        assert_eq!((outcome.code, &outcome.json()["error"]["code"]), (Some(2), &"usage".into()), "{number}");
+        assert!(outcome.stderr.contains("whole number of control periods from 1"), "{outcome:?}");
+    }
+    assert_eq!(place.run(&["run", "short.toml", "--every", "2", "--every", "3"]).code, Some(2));
+    assert!(!place.path().join("out").exists(), "nothing was begun");
+}
+
+/// What cannot be written ends the run, says so, and leaves what was there.
+#[test]
+#[cfg(unix)]
+fn a_trace_that_cannot_be_written_ends_the_run() {
+    let place = Place::new();
+    place.write("out/long.csv", "old").scenario("long.toml", &[("duration = 10.0", "duration = 900.0")]);
+    let limited = |args: &[&str]| {
+        // As a full disk: no file may grow beyond some kilobytes.
+        let script = "ulimit -f 64; trap '' XFSZ; exec \"$0\" \"$@\"";
+        let mut command = std::process::Command::new("sh");
+        command.args(["-c", script, env!("CARGO_BIN_EXE_flexure")]).args(args).current_dir(place.path());
+        Outcome::from(command.env("NO_COLOR", "1").output().unwrap())
+    };
+    limited(&["run", "long.toml"]).refused(&["error[write]", "cannot write out/long.csv"]);
+    assert_eq!(limited(&["run", "long.toml", "--json"]).json()["error"]["code"], "write");
+    limited(&["reproduce", "--out", "out"]).refused(&["error[write]", "cannot write out/two-link-"]);
+    assert_eq!(place.names("out"), ["long.csv"]);
+    assert_eq!(place.read("out/long.csv"), "old");
+}
+
+/// Ten minutes take no more memory than the program, a figure and a bound: with every row kept it was twice as much.
+#[test]
+#[cfg(target_os = "linux")]
+fn memory_does_not_grow_with_the_duration() {
+    let place = Place::new();
+    let args = ["run", "pendulum-tanh", "--set", "duration=600", "--every", "1000"];
+    let mut child = place.command(&args).stdout(std::process::Stdio::null()).spawn().unwrap();
+    let status = format!("/proc/{}/status", child.id());
+    let mut peak = 0_u64;
+    while child.try_wait().unwrap().is_none() {
+        let text = std::fs::read_to_string(&status).unwrap_or_default();
+        let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        let now = line.and_then(|line| line.trim().strip_suffix(" kB")?.parse().ok());
+        peak = peak.max(now.unwrap_or(0));
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    assert!((1_000..80_000).contains(&peak), "{peak} kB");
+    assert_eq!(place.read("out/pendulum-tanh.csv").lines().count(), 602);
 }
 
 #[test]

@@ -28,7 +28,7 @@ use crate::files::{Outside, Problem, Problems, builtin, folder_of, spare};
 use crate::progress::Progress;
 use crate::robot::{Robot, load_robot_with};
 use crate::scenario::{Scenario, document};
-use crate::simulate::{Summary, exceeded, run};
+use crate::simulate::{LimitWatch, Summary, run_into};
 
 pub use crate::excite::information::ErrorBars;
 pub use crate::excite::joint::Joint;
@@ -184,8 +184,9 @@ fn unlimited(robot: &Robot, usage: &[Usage]) -> Problem {
 
 /// Simulates the scenario and says what speaks against it.
 fn followed(scenario: &Scenario, progress: Progress<'_>) -> Result<(Summary, Vec<Problem>), Problems> {
-    let found = run(scenario, progress)?;
-    let mut objections = exceeded(&scenario.robot, &found.trace);
+    let mut watch = LimitWatch::new(&scenario.robot, &scenario.signals()?);
+    let found = run_into(scenario, &mut [&mut watch], progress)?;
+    let mut objections = watch.warnings();
     let reasons = &found.summary.following.reasons;
     objections.extend(reasons.first().map(|reason| {
         let message = format!("the simulated loop does not follow the motion: {}", reason.words);

@@ -68,6 +68,83 @@ pub fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
+/// A file that is being written: under a temporary name in its folder until it is [kept](Self::keep), and gone if it never is.
+#[derive(Debug)]
+pub struct Pending {
+    path: PathBuf,
+    file: BufWriter<NamedTempFile>,
+}
+
+impl Pending {
+    /// A file that will be at `path`; its folder is made if it is missing.
+    ///
+    /// # Errors
+    /// If the folder is not writable, or the target is not a regular file.
+    pub fn create(path: &Path) -> Result<Self, WriteError> {
+        if fs::metadata(path).is_ok_and(|existing| !existing.is_file()) {
+            return Err(WriteError::NotAFile { path: path.into() });
+        }
+        make(folder_of(path))?;
+        Self::beside(path)
+    }
+
+    /// The same where the folder is there.
+    fn beside(path: &Path) -> Result<Self, WriteError> {
+        let folder = folder_of(path);
+        let file =
+            leftover::create(folder).map_err(|cause| WriteError::Folder { folder: folder.into(), cause })?;
+        Ok(Self { path: path.into(), file: BufWriter::new(file) })
+    }
+
+    /// Where it will be.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Gives the file its name, in the place of one that was there, once it is down on the disk.
+    ///
+    /// # Errors
+    /// If the system fails.
+    pub fn keep(self) -> Result<(), WriteError> {
+        let path = self.path.clone();
+        let file = self.down()?;
+        file.persist(&path).map_err(|error| WriteError::Content { path, cause: error.error })?;
+        Ok(())
+    }
+
+    /// What was written, down on the disk.
+    fn down(self) -> Result<NamedTempFile, WriteError> {
+        let Self { path, file } = self;
+        let failed = |cause| WriteError::Content { path, cause };
+        let file = match file.into_inner() {
+            Ok(file) => file,
+            Err(error) => return Err(failed(error.into_error())),
+        };
+        match file.as_file().sync_all() {
+            Ok(()) => Ok(file),
+            Err(cause) => Err(failed(cause)),
+        }
+    }
+
+    /// With what `write` writes.
+    fn with(mut self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<Self, WriteError> {
+        match write(&mut self.file) {
+            Ok(()) => Ok(self),
+            Err(cause) => Err(WriteError::Content { path: self.path, cause }),
+        }
+    }
+}
+
+impl Write for Pending {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
 /// Writes `path` by `write`, into a temporary file in the same folder that takes the name at the end; the folder is made if it is
 /// missing.
 ///
@@ -77,29 +154,7 @@ pub fn write_atomic(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), WriteError> {
-    if fs::metadata(path).is_ok_and(|existing| !existing.is_file()) {
-        return Err(WriteError::NotAFile { path: path.into() });
-    }
-    make(folder_of(path))?;
-    let file = written(path, write)?;
-    file.persist(path).map_err(|error| WriteError::Content { path: path.into(), cause: error.error })?;
-    Ok(())
-}
-
-/// A temporary file beside `path` with what `write` writes, down on the disk.
-fn written(
-    path: &Path,
-    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> Result<NamedTempFile, WriteError> {
-    let folder = folder_of(path);
-    let failed = |cause| WriteError::Content { path: path.into(), cause };
-    let file =
-        leftover::create(folder).map_err(|cause| WriteError::Folder { folder: folder.into(), cause })?;
-    let mut buffered = BufWriter::new(file);
-    write(&mut buffered).map_err(failed)?;
-    let file = buffered.into_inner().map_err(|error| failed(error.into_error()))?;
-    file.as_file().sync_all().map_err(failed)?;
-    Ok(file)
+    Pending::create(path)?.with(write)?.keep()
 }
 
 /// Writes texts that belong together: none is written if one cannot be. Files that exist are replaced if `replace`, one by one, and
@@ -115,8 +170,10 @@ pub fn write_together(files: &[(PathBuf, &str)], replace: bool) -> Result<(), Wr
             Ok(_) | Err(_) => {}
         }
     }
-    let written = files.iter().map(|(path, text)| written(path, |out| out.write_all(text.as_bytes())));
-    let written: Vec<_> = written.collect::<Result<_, _>>()?;
+    let written = |(path, text): &(PathBuf, &str)| {
+        Pending::beside(path)?.with(|out| out.write_all(text.as_bytes()))?.down()
+    };
+    let written: Vec<_> = files.iter().map(written).collect::<Result<_, _>>()?;
     for (i, (file, (path, _))) in written.into_iter().zip(files).enumerate() {
         let named = if replace { file.persist(path) } else { file.persist_noclobber(path) };
         if let Err(error) = named {

@@ -29,8 +29,9 @@ mod states;
 pub(crate) mod suggest;
 pub(crate) mod table;
 pub(crate) mod traced;
+mod unfinished;
 
-pub use atomic::{WriteError, create_folder, folder_of, prepare, write_atomic, write_together};
+pub use atomic::{Pending, WriteError, create_folder, folder_of, prepare, write_atomic, write_together};
 pub use base::{Outside, Reading};
 pub use builtin::{ROBOTS, SCENARIOS, TASKS};
 pub use bundle::Bundle;
@@ -43,3 +44,4 @@ pub use provenance::Assumption;
 pub use source::read_text;
 pub use spare::spare;
 pub use states::{StateFile, StateRow, States, load_states};
+pub use unfinished::Unfinished;

@@ -2,35 +2,35 @@
 
 use super::axes::Axis;
 use super::curve::Curve;
-use super::panel::{LEFT, TIME, buckets, over_time, span};
+use super::panel::{LEFT, TIME, buckets, over_time};
 use super::range::{Range, decades};
 use super::scene::Scene;
 use super::sheet::{MARGIN, line_legend, page};
+use super::sketch::Sketch;
 use super::style::Stroke;
 use super::ticks;
 use crate::files::number::{duration, significant};
-use crate::simulate::Trace;
 
 const WIDTH: f64 = 1200.0;
 const HEIGHT: f64 = 400.0;
 const TITLE: &str = "Largest link position error of each run";
 
-/// The largest |e_l| over the joints, on a logarithmic axis over time, one line per `(name, trace)`.
+/// The largest |e_l| over the joints, on a logarithmic axis over time, one line per `(name, run)`.
 ///
 /// Where every run reaches its floor early, the axis shows the decay alone, and says what was left out.
-pub fn comparison(traces: &[(&str, &Trace)]) -> Scene {
+pub fn comparison(runs: &[(&str, &Sketch)]) -> Scene {
     let errors: Vec<Curve> =
-        traces.iter().enumerate().map(|(run, (_, trace))| largest_error(trace, Stroke::run(run))).collect();
+        runs.iter().enumerate().map(|(k, (_, run))| run.largest_error(Stroke::run(k))).collect();
     let legend: Vec<(String, Stroke)> =
-        traces.iter().enumerate().map(|(run, (name, _))| ((*name).to_owned(), Stroke::run(run))).collect();
-    let whole = traces
+        runs.iter().enumerate().map(|(k, (name, _))| ((*name).to_owned(), Stroke::run(k))).collect();
+    let whole = runs
         .iter()
-        .map(|(_, trace)| span(trace.column("t").unwrap_or_default()))
+        .map(|(_, run)| run.span())
         .reduce(|a, b| Range { low: a.low.min(b.low), high: a.high.max(b.high) })
         .unwrap_or(Range { low: 0.0, high: 1.0 });
     let x = decay(&errors, whole).unwrap_or(whole);
     let shown: Vec<Curve> = errors.iter().map(|curve| curve.within(x)).collect();
-    let buckets = buckets(traces.len());
+    let buckets = buckets(runs.len());
     let mut curves: Vec<Curve> = shown.iter().map(|curve| curve.exponents(buckets)).collect();
     // Runs that coincide both show: broken lines lie on top of solid ones.
     curves.sort_by_key(|curve| !curve.stroke.dash.is_empty());
@@ -48,17 +48,6 @@ pub fn comparison(traces: &[(&str, &Trace)]) -> Scene {
         axes.curve(&mut scene, curve, buckets);
     }
     scene
-}
-
-/// The largest absolute link error over the joints; not a number from where a joint has none.
-fn largest_error(trace: &Trace, stroke: Stroke) -> Curve {
-    let joints = trace.joints("e_l");
-    let largest = |sample: usize| {
-        let errors = joints.iter().map(|values| values[sample].abs());
-        errors.fold(0.0, |a, b| if b.is_nan() || b > a { b } else { a })
-    };
-    let values: Vec<f64> = (0..trace.len()).map(largest).collect();
-    Curve::new(trace.column("t").unwrap_or_default(), &values, stroke)
 }
 
 /// One and a half times the time in which every run comes down to three times what it does in its second half, if that is short and

@@ -5,11 +5,11 @@
 //! Errors and momentum errors are absolute values on a logarithmic axis: an exponential decay is a straight line.
 
 use super::curve::Curve;
-use super::panel::{HEIGHT, Panel, Scale, View, buckets, span};
+use super::panel::{self, HEIGHT, Panel, Scale, View};
 use super::scene::Scene;
 use super::sheet::{MARGIN, line_legend, page};
+use super::sketch::Sketch;
 use super::style::{INK, Stroke};
-use crate::simulate::Trace;
 use crate::units;
 
 /// What is written above the panels.
@@ -25,16 +25,15 @@ pub struct FigureOptions {
 
 const WIDTH: f64 = 1200.0;
 
-/// Positions, errors, momentum errors and torques of `trace` over time.
+/// Positions, errors, momentum errors and torques of `run` over time.
 ///
 /// A run that diverged is drawn up to its last finite sample, which is marked. Columns that are missing leave their
 /// panel empty.
-pub fn four_panel(trace: &Trace, options: &FigureOptions) -> Scene {
-    let t = trace.column("t").unwrap_or_default();
-    let joints = trace.joints("q_l").len().max(trace.joints("u_m").len());
-    let dotted = |prefix| curves(trace, prefix, |_, _| Stroke::reference());
-    let link = |prefix| curves(trace, prefix, Stroke::link);
-    let motor = |prefix| curves(trace, prefix, Stroke::motor);
+pub fn four_panel(run: &Sketch, options: &FigureOptions) -> Scene {
+    let joints = run.joints("q_l").max(run.joints("u_m"));
+    let dotted = |prefix| run.curves(prefix, |_, _| Stroke::reference());
+    let link = |prefix| run.curves(prefix, Stroke::link);
+    let motor = |prefix| run.curves(prefix, Stroke::motor);
 
     let positions = over(over(motor("q_m"), link("q_l")), dotted("q_ld"));
     let panels = [
@@ -71,39 +70,29 @@ pub fn four_panel(trace: &Trace, options: &FigureOptions) -> Scene {
             curves: link("u_m"),
         },
     ];
-    four(t, &panels, options, &legend(joints, &options.joints))
+    let view =
+        View { t: run.span(), diverged: run.diverged(), thinned: run.thinned(), buckets: buckets(&panels) };
+    four(&view, &panels, options, &legend(joints, &options.joints))
 }
 
-/// Four panels over the times `t` on one page, with a title and one legend.
+/// Four panels on one page, with a title and one legend.
 pub(super) fn four(
-    t: &[f64],
+    view: &View,
     panels: &[Panel; 4],
     options: &FigureOptions,
     legend: &[(String, Stroke)],
 ) -> Scene {
-    let signals: usize = panels.iter().map(|panel| panel.curves.len()).sum();
     let top = if options.subtitle.is_empty() { 62.0 } else { 82.0 };
     let mut scene = page(WIDTH, &options.title, &options.subtitle);
     let top = top + line_legend(&mut scene, top, legend);
     scene.height = top + 2.0 * HEIGHT + 8.0;
-    let view = View { t: span(t), diverged: divergence(t, panels), buckets: buckets(signals) };
     let width = (WIDTH - MARGIN) / 2.0;
     for (index, panel) in panels.iter().enumerate() {
         let (row, column) = (index / 2, index % 2);
         let corner = [MARGIN / 2.0 + column as f64 * width, top + row as f64 * HEIGHT];
-        panel.draw(&mut scene, corner, width, &view);
+        panel.draw(&mut scene, corner, width, view);
     }
     scene
-}
-
-pub(super) fn curves(trace: &Trace, prefix: &str, stroke: impl Fn(usize, usize) -> Stroke) -> Vec<Curve> {
-    let t = trace.column("t").unwrap_or_default();
-    let signals = trace.joints(prefix);
-    signals
-        .iter()
-        .enumerate()
-        .map(|(joint, values)| Curve::new(t, values, stroke(joint, signals.len())))
-        .collect()
 }
 
 pub(super) fn over(mut below: Vec<Curve>, above: Vec<Curve>) -> Vec<Curve> {
@@ -111,11 +100,9 @@ pub(super) fn over(mut below: Vec<Curve>, above: Vec<Curve>) -> Vec<Curve> {
     below
 }
 
-/// The last instant of the curve that ends first, if one ends before the recording does.
-fn divergence(t: &[f64], panels: &[Panel]) -> Option<f64> {
-    let curves = || panels.iter().flat_map(|panel| &panel.curves);
-    let shortest = curves().min_by_key(|curve| curve.t.len())?;
-    (shortest.t.len() < t.len()).then(|| shortest.t.last().copied().unwrap_or(0.0))
+/// Runs of samples that are drawn as two points each.
+pub(super) fn buckets(panels: &[Panel]) -> usize {
+    panel::buckets(panels.iter().map(|panel| panel.curves.len()).sum())
 }
 
 /// Hue names the joint, line style the side: one legend serves all panels.

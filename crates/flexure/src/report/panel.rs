@@ -27,6 +27,8 @@ pub(super) struct View {
     pub t: Range,
     /// The last finite instant of a run that did not stay finite.
     pub diverged: Option<f64>,
+    /// The time of which a run of samples was left its extremes, if it was \[s\].
+    pub thinned: Option<f64>,
     pub buckets: usize,
 }
 
@@ -108,7 +110,7 @@ impl Panel {
         let range = Linear::whole(inside.iter().flat_map(|curve| curve.values.iter().copied()));
         let label = self.label();
         let axes = over_time(place, LEFT, window, TIME, linear(range, &label));
-        draw(scene, &axes, &inside, &View { t: window, diverged: None, buckets: view.buckets });
+        draw(scene, &axes, &inside, &View { t: window, diverged: None, ..*view });
         let [from, to, end] = [window.low, window.high, view.t.high].map(|t| short(t, 4));
         format!("detail: {from} to {to} s of {end} s")
     }
@@ -123,11 +125,13 @@ impl Panel {
         let near = Range { low: scale * window.low, high: scale * window.high };
         let (label, time) = (self.label(), format!("time [{unit}]"));
         let left = over_time([x, y, STRIP, height], LEFT, near, &time, linear(inside, &label));
-        draw(scene, &left, &zoomed, &View { t: near, diverged: None, buckets: view.buckets / 2 });
+        draw(scene, &left, &zoomed, &View { t: near, diverged: None, buckets: view.buckets / 2, ..*view });
         let right = over_time([x + STRIP, y, width - STRIP, height], 60.0, view.t, TIME, linear(range, ""));
         draw(scene, &right, &self.curves, view);
         let [from, to] = [near.low, near.high].map(|t| short(t, 3));
-        format!("left: {from} to {to} {unit}, {}; right: whole run, axis cut", self.peak())
+        let coarse =
+            view.thinned.map(|t| format!("the extremes of each {}, ", duration(t))).unwrap_or_default();
+        format!("left: {from} to {to} {unit}, {coarse}{}; right: whole run, axis cut", self.peak())
     }
 
     fn label(&self) -> String {

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use comfy_table::{Cell, Row};
 
 use super::curve::Curve;
-use super::figure::{FigureOptions, curves, four, over};
+use super::figure::{FigureOptions, buckets, four, over};
 use super::outputs::write_figure;
-use super::panel::{Panel, Scale, span};
+use super::panel::{Panel, Scale, View, span};
 use super::range::Range;
 use super::scene::Scene;
 use super::style::{INK, Stroke};
@@ -78,7 +78,9 @@ pub fn replay_figure(replay: &Replay) -> Scene {
         ),
         joints: Vec::new(),
     };
-    four(t, &panels, &options, &legend(&replay.joints, joints))
+    let view =
+        View { t: span(t), diverged: divergence(t, &panels), thinned: None, buckets: buckets(&panels) };
+    four(&view, &panels, &options, &legend(&replay.joints, joints))
 }
 
 /// The curves of log, prediction and closed loop, joint by joint each, less the means of the signal `side` in the log: joints that stand
@@ -92,6 +94,23 @@ fn centred(mut curves: Vec<Curve>, trace: &Trace, side: &str) -> Vec<Curve> {
         }
     }
     curves
+}
+
+fn curves(trace: &Trace, prefix: &str, stroke: impl Fn(usize, usize) -> Stroke) -> Vec<Curve> {
+    let t = trace.column("t").unwrap_or_default();
+    let signals = trace.joints(prefix);
+    signals
+        .iter()
+        .enumerate()
+        .map(|(joint, values)| Curve::new(t, values, stroke(joint, signals.len())))
+        .collect()
+}
+
+/// The last instant of the curve that ends first, if one ends before the recording does.
+fn divergence(t: &[f64], panels: &[Panel]) -> Option<f64> {
+    let curves = || panels.iter().flat_map(|panel| &panel.curves);
+    let shortest = curves().min_by_key(|curve| curve.t.len())?;
+    (shortest.t.len() < t.len()).then(|| shortest.t.last().copied().unwrap_or(0.0))
 }
 
 /// The last part of a path.

@@ -2,22 +2,25 @@
 
 mod outputs;
 
+use std::path::Path;
+
 use rayon::prelude::*;
 
-use crate::files::Problems;
 use crate::files::number::engineering;
+use crate::files::{Problem, Problems, Unfinished};
 use crate::progress::{PartProgress, Progress};
 use crate::prove::question::{Direct, Proof, Question, Region, certified_rate, prove};
 use crate::prove::standing::is_about;
 use crate::prove::summary::ProofSummary;
 use crate::report::{
-    CertificateReport, FigureOptions, RunReport, RunsReport, Scene, assumptions, comparison, four_panel,
+    CertificateReport, FigureOptions, RunReport, RunsReport, Scene, Sketch, assumptions, comparison,
+    four_panel,
 };
 use crate::sampled::{Sampled, probe};
 use crate::scenario::{Hold, Scenario, load_scenario};
-use crate::simulate::{Following, Run, Summary, run};
+use crate::simulate::{Excerpt, Following, LimitWatch, Run, Sink, Summary, TraceFile, run_into};
 
-pub use outputs::{write_certificates, write_experiment, write_report};
+pub use outputs::{trace_file, write_certificates, write_experiment, write_report};
 
 /// The experiments of the paper: each shaping function from rest off the reference, and from a smooth start.
 pub const REPRODUCED: [&str; 6] = [
@@ -34,21 +37,37 @@ pub const REPRODUCED: [&str; 6] = [
 pub struct Experiment {
     /// The scenario that was run.
     pub scenario: Scenario,
-    /// Its trace and summary.
+    /// Its summary; the trace went elsewhere.
     pub run: Run,
     /// Whether the loop is stable that holds its torque for a control period; none for laws in continuous time.
     pub sampled: Option<Sampled>,
+    /// Warnings of the limits of position, velocity and deflection that it exceeded.
+    pub exceeded: Vec<Problem>,
+    /// What figures show of it.
+    pub sketch: Sketch,
     /// The four-panel figure.
     pub figure: Scene,
 }
 
 impl Experiment {
-    /// Runs `scenario`; `progress` is told the fraction done. Of a run that it breaks off nothing more is looked at.
+    /// Runs `scenario`, with the rows of its trace into `sinks`; `progress` is told the fraction done. Of a run that one of them breaks
+    /// off nothing more is looked at.
     ///
     /// # Errors
-    /// As [`run`].
-    pub fn new(scenario: Scenario, progress: Progress<'_>) -> Result<Self, Problems> {
-        let mut run = run(&scenario, progress)?;
+    /// As [`run_into`].
+    pub fn new(
+        scenario: Scenario,
+        sinks: &mut [&mut dyn Sink],
+        progress: Progress<'_>,
+    ) -> Result<Self, Problems> {
+        let signals = scenario.signals()?;
+        let (mut sketch, mut watch) = (Sketch::new(&signals), LimitWatch::new(&scenario.robot, &signals));
+        let mut all: Vec<&mut dyn Sink> = vec![&mut sketch, &mut watch];
+        for sink in sinks {
+            all.push(&mut **sink);
+        }
+        let mut run = run_into(&scenario, &mut all, progress)?;
+        let exceeded = watch.warnings();
         let sampled = if run.broken_off.is_some() { None } else { probe(&scenario)? };
         if run.broken_off.is_none() && is_about(&scenario, sampled.as_ref()) {
             run.summary.rate_certified = certified_rate(&scenario)?;
@@ -61,8 +80,8 @@ impl Experiment {
         let subtitle = describe(&scenario) + &ended;
         let joints = scenario.robot.joints.iter().map(|joint| joint.name.clone()).collect();
         let options = FigureOptions { title: scenario.name.clone(), subtitle, joints };
-        let figure = four_panel(&run.trace, &options);
-        Ok(Self { scenario, run, sampled, figure })
+        let figure = four_panel(&sketch, &options);
+        Ok(Self { scenario, run, sampled, exceeded, sketch, figure })
     }
 }
 
@@ -142,27 +161,35 @@ fn unknown(options: &[&str]) -> Option<String> {
     (!options.is_empty()).then(|| format!("unknown to the law: {}", options.join(", ").replace('_', " ")))
 }
 
-/// Runs the experiments of the paper, on all cores. `progress` is told the number of the experiment and the fraction of
-/// it that is done; what it breaks off are runs that end there.
+/// Runs the experiments of the paper, on all cores, with their traces on the way into `folder`. `progress` is told the number of the
+/// experiment and the fraction of it that is done; what it breaks off are runs that end there.
 ///
 /// # Errors
-/// If a built-in file is broken.
-pub fn reproduce(progress: PartProgress<'_>) -> Result<Vec<Experiment>, Problems> {
+/// If a built-in file is broken, or a trace cannot be written.
+pub fn reproduce(
+    folder: &Path,
+    progress: PartProgress<'_>,
+) -> Result<Vec<(Experiment, TraceFile)>, Unfinished> {
     REPRODUCED
         .par_iter()
         .enumerate()
-        .map(|(i, name)| Experiment::new(load_scenario(name)?, &|fraction| progress(i, fraction)))
+        .map(|(i, name)| {
+            let scenario = load_scenario(name)?;
+            let mut trace = trace_file(folder, &scenario, Excerpt::whole(&scenario.signals()?))?;
+            let experiment = Experiment::new(scenario, &mut [&mut trace], &|fraction| progress(i, fraction))?;
+            Ok((experiment, trace.sound()?))
+        })
         .collect()
 }
 
 /// The report of some experiments.
 pub fn report(experiments: &[Experiment], certificates: &[Certified]) -> RunsReport {
-    let traces: Vec<_> = experiments.iter().map(|e| (e.scenario.name.as_str(), &e.run.trace)).collect();
+    let sketches: Vec<_> = experiments.iter().map(|e| (e.scenario.name.as_str(), &e.sketch)).collect();
     RunsReport {
         title: "Virtual-contraction control of a flexible-joint robot".to_owned(),
         introduction: INTRODUCTION.to_owned(),
         runs: experiments.iter().map(run_report).collect(),
-        comparison_svg: Some(comparison(&traces).svg()),
+        comparison_svg: Some(comparison(&sketches).svg()),
         certificates: certificates.iter().map(certificate_report).collect(),
         assumptions: assumptions(experiments.iter().map(|experiment| &experiment.scenario)),
         provenance: vec![

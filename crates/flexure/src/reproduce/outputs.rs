@@ -2,22 +2,30 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::files::{WriteError, create_folder, write_atomic};
+use crate::files::{WriteError, create_folder, folder_of, write_atomic};
 use crate::report::{html, write_certificate, write_figure};
 use crate::reproduce::{Certified, Experiment, certificate_name, report};
-use crate::simulate::write_trace;
+use crate::scenario::Scenario;
+use crate::simulate::{Excerpt, TraceFile};
 
-/// Writes trace and figure of an experiment into `folder`, which is created if missing; returns the paths.
+/// A trace of `scenario` on its way into `folder`, which is created if missing.
+///
+/// # Errors
+/// If no file can be created there.
+pub fn trace_file(folder: &Path, scenario: &Scenario, excerpt: Excerpt) -> Result<TraceFile, WriteError> {
+    create_folder(folder)?;
+    TraceFile::create(&folder.join(format!("{}.csv", scenario.name)), excerpt)
+}
+
+/// Keeps the trace of an experiment, and writes its figure beside it; returns the paths.
 ///
 /// # Errors
 /// If a file cannot be written; none is ever half written.
-pub fn write_experiment(folder: &Path, experiment: &Experiment) -> Result<Vec<PathBuf>, WriteError> {
-    create_folder(folder)?;
-    let name = &experiment.scenario.name;
-    let trace = folder.join(format!("{name}.csv"));
-    write_trace(&trace, &experiment.run.trace)?;
-    let [svg, png] = write_figure(folder, name, &experiment.figure)?;
-    Ok(vec![trace, svg, png])
+pub fn write_experiment(experiment: &Experiment, trace: TraceFile) -> Result<Vec<PathBuf>, WriteError> {
+    let path = trace.path().to_owned();
+    trace.keep()?;
+    let [svg, png] = write_figure(folder_of(&path), &experiment.scenario.name, &experiment.figure)?;
+    Ok(vec![path, svg, png])
 }
 
 /// Writes the certificates into `folder`, which is created if missing; returns their paths.

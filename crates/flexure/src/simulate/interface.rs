@@ -126,6 +126,12 @@ pub struct Signal {
     pub unit: &'static str,
 }
 
+/// Where `prefix1`, `prefix2`, … are, a vector signal with one number per joint.
+pub(crate) fn of_joints(signals: &[Signal], prefix: &str) -> Vec<usize> {
+    let place = |name: String| signals.iter().position(|signal| signal.name == name);
+    (1..).map_while(|joint| place(format!("{prefix}{joint}"))).collect()
+}
+
 /// What a law wants of a robot, a number per joint each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Commanded {

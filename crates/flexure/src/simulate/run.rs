@@ -1,5 +1,6 @@
 //! A scenario as a simulated run: from its file to trace and summary.
 
+use std::ops::ControlFlow;
 use std::time::Instant as Clock;
 
 use crate::files::Problems;
@@ -11,9 +12,10 @@ use crate::simulate::criteria::Criteria;
 use crate::simulate::fault_log::FaultLog;
 use crate::simulate::figures::Figures;
 use crate::simulate::following::{Following, Watch};
-use crate::simulate::interface::{Loop, Observed};
+use crate::simulate::interface::{Loop, Observed, Signal};
 use crate::simulate::own_law::{OwnLaw, OwnShaping};
 use crate::simulate::simulation::Divergence;
+use crate::simulate::sink::Sink;
 use crate::simulate::summary::Summary;
 use crate::simulate::trace::Trace;
 
@@ -22,7 +24,7 @@ use crate::simulate::trace::Trace;
 pub struct Run {
     /// Errors, torques and rates that the run is judged by.
     pub summary: Summary,
-    /// Every control instant; empty if only the figures were asked for.
+    /// Every control instant; empty if it went elsewhere ([`run_into`]), or only the figures were asked for.
     pub trace: Trace,
     /// Set if the loop diverged before the end; trace and summary then end there.
     pub divergence: Option<Divergence>,
@@ -40,6 +42,14 @@ impl Scenario {
     pub fn simulate(&self) -> Result<Run, Problems> {
         run(self, &unwatched)
     }
+
+    /// The columns of the trace of its runs: what a [`Sink`] is given the numbers of.
+    ///
+    /// # Errors
+    /// As [`Scenario::open`].
+    pub fn signals(&self) -> Result<Vec<Signal>, Problems> {
+        Ok(self.open()?.signals().to_vec())
+    }
 }
 
 /// Simulates a scenario. `progress` is told the fraction done at every control instant; what it breaks off ends there
@@ -48,7 +58,20 @@ impl Scenario {
 /// # Errors
 /// As [`Scenario::open`].
 pub fn run(scenario: &Scenario, progress: Progress<'_>) -> Result<Run, Problems> {
-    simulate(scenario, &Criteria::of(scenario)?, progress, true)
+    Ok(traced(scenario, scenario.open()?, &Criteria::of(scenario)?, progress))
+}
+
+/// As [`run`], but that the rows of the trace go to `sinks` as they are made, and stay nowhere else: what a run holds does not grow
+/// with its duration then. Each sink is given every row, until one of them breaks the run off.
+///
+/// # Errors
+/// As [`Scenario::open`].
+pub fn run_into(
+    scenario: &Scenario,
+    sinks: &mut [&mut dyn Sink],
+    progress: Progress<'_>,
+) -> Result<Run, Problems> {
+    Ok(simulated(scenario, scenario.open()?, &Criteria::of(scenario)?, progress, Some(sinks)))
 }
 
 /// As [`run`], with the law of the caller in the place of the scenario's own.
@@ -56,7 +79,7 @@ pub fn run(scenario: &Scenario, progress: Progress<'_>) -> Result<Run, Problems>
 /// # Errors
 /// As [`Scenario::open`].
 pub fn run_with(scenario: &Scenario, law: OwnLaw, progress: Progress<'_>) -> Result<Run, Problems> {
-    let mut run = simulated(scenario, scenario.open_with(law)?, &Criteria::of(scenario)?, progress, true);
+    let mut run = traced(scenario, scenario.open_with(law)?, &Criteria::of(scenario)?, progress);
     (run.summary.controller, run.summary.phi) = ("own".to_owned(), None);
     Ok(run)
 }
@@ -71,7 +94,7 @@ pub fn run_shaped(
     progress: Progress<'_>,
 ) -> Result<Run, Problems> {
     let held = scenario.open_shaped(shaping)?;
-    let mut run = simulated(scenario, held, &Criteria::of(scenario)?, progress, true);
+    let mut run = traced(scenario, held, &Criteria::of(scenario)?, progress);
     run.summary.phi = Some("own".to_owned());
     Ok(run)
 }
@@ -89,7 +112,7 @@ pub fn measure(scenario: &Scenario) -> Result<Run, Problems> {
 /// # Errors
 /// As [`Scenario::open`].
 pub fn measure_by(scenario: &Scenario, criteria: &Criteria) -> Result<Run, Problems> {
-    simulate(scenario, criteria, &unwatched, false)
+    Ok(simulated(scenario, scenario.open()?, criteria, &unwatched, None))
 }
 
 /// As [`measure_by`], with `progress` told the fraction done at every control instant.
@@ -102,33 +125,31 @@ pub fn measure_watched(
     criteria: &Criteria,
     progress: Progress<'_>,
 ) -> Result<Run, Problems> {
-    let run = simulate(scenario, criteria, progress, false)?;
+    let run = simulated(scenario, scenario.open()?, criteria, progress, None);
     if run.broken_off.is_some() { Err(Problems::interrupted()) } else { Ok(run) }
 }
 
-fn simulate(
-    scenario: &Scenario,
-    criteria: &Criteria,
-    progress: Progress<'_>,
-    traced: bool,
-) -> Result<Run, Problems> {
-    Ok(simulated(scenario, scenario.open()?, criteria, progress, traced))
+/// Moves `held`, the loop of `scenario`, from beginning to end, and keeps its trace.
+fn traced(scenario: &Scenario, held: Box<dyn Loop>, criteria: &Criteria, progress: Progress<'_>) -> Run {
+    let mut trace = Trace::from(held.signals());
+    let run = simulated(scenario, held, criteria, progress, Some(&mut [&mut trace]));
+    Run { trace, ..run }
 }
 
-/// Moves `held`, the loop of `scenario`, from beginning to end.
+/// Moves `held`, the loop of `scenario`, from beginning to end; nothing but what it is judged by is read without `sinks`.
 fn simulated(
     scenario: &Scenario,
     mut held: Box<dyn Loop>,
     criteria: &Criteria,
     progress: Progress<'_>,
-    traced: bool,
+    sinks: Option<&mut [&mut dyn Sink]>,
 ) -> Run {
     let started = Clock::now();
     let mut observed = Observed::new(held.joints());
     let limits = assembly::acting_limits(scenario);
     let mut figures = Figures::new(limits.clone());
     let mut watch = Watch::new(criteria.clone(), limits);
-    let mut recorder = traced.then(|| Recorder::new(&*held));
+    let mut reader = sinks.map(|sinks| Reader::new(&*held, sinks));
     let (mut divergence, mut broken_off) = (None, None);
     let last = periods(scenario);
     for instant in 0..=last {
@@ -137,11 +158,15 @@ fn simulated(
             break;
         }
         held.observe(&mut observed).expect("made for it");
-        let rate = recorder.as_mut().map_or(f64::NAN, |recorder| recorder.record(&*held));
+        let (rate, taken) = match &mut reader {
+            Some(reader) => reader.read(&*held),
+            None => (f64::NAN, ControlFlow::Continue(())),
+        };
         figures.record(&observed, rate);
         watch.record(&observed);
         // The last instant is the end of the run, whoever watches.
-        if progress(observed.t / scenario.duration).is_break() && instant < last {
+        let told = progress(observed.t / scenario.duration);
+        if (told.is_break() || taken.is_break()) && instant < last {
             broken_off = Some(observed.t);
             break;
         }
@@ -149,8 +174,7 @@ fn simulated(
     let seconds = started.elapsed().as_secs_f64();
     let following = watch.verdict(&scenario.robot.joints, divergence.as_ref(), broken_off);
     let summary = summary(scenario, &figures, following, &*held, divergence.is_some(), seconds);
-    let trace = recorder.map(|recorder| recorder.trace).unwrap_or_default();
-    Run { summary, trace, divergence, broken_off, faults: held.faults() }
+    Run { summary, trace: Trace::default(), divergence, broken_off, faults: held.faults() }
 }
 
 /// Number of control periods in the run.
@@ -159,29 +183,31 @@ fn periods(scenario: &Scenario) -> u32 {
     (scenario.duration / scenario.control_period).round().clamp(1.0, 1e9) as u32
 }
 
-/// Reads every signal at every instant.
-struct Recorder {
-    trace: Trace,
+/// Reads every signal at every instant, for every sink.
+struct Reader<'a, 'b> {
+    sinks: &'a mut [&'b mut dyn Sink],
     row: Vec<f64>,
     /// The column of the contraction rate, if there is one.
     rate: Option<usize>,
 }
 
-impl Recorder {
-    fn new(held: &dyn Loop) -> Self {
+impl<'a, 'b> Reader<'a, 'b> {
+    fn new(held: &dyn Loop, sinks: &'a mut [&'b mut dyn Sink]) -> Self {
         let signals = held.signals();
-        Self {
-            trace: Trace::new(signals.iter().map(|signal| (signal.name.clone(), signal.unit))),
-            row: vec![0.0; signals.len()],
-            rate: signals.iter().position(|signal| signal.name == "rate"),
-        }
+        let rate = signals.iter().position(|signal| signal.name == "rate");
+        Self { sinks, row: vec![0.0; signals.len()], rate }
     }
 
-    /// Adds a row; returns the contraction rate [1/s], NaN for none.
-    fn record(&mut self, held: &dyn Loop) -> f64 {
+    /// Reads a row; returns the contraction rate [1/s], NaN for none, and whether a sink breaks off.
+    fn read(&mut self, held: &dyn Loop) -> (f64, ControlFlow<()>) {
         held.read(&mut self.row).expect("a slot per signal");
-        self.trace.push(&self.row);
-        self.rate.map_or(f64::NAN, |column| self.row[column])
+        let mut taken = ControlFlow::Continue(());
+        for sink in self.sinks.iter_mut() {
+            if sink.take(&self.row).is_break() {
+                taken = ControlFlow::Break(());
+            }
+        }
+        (self.rate.map_or(f64::NAN, |column| self.row[column]), taken)
     }
 }
 

@@ -1,5 +1,10 @@
 //! Traces: what a run recorded, column by column.
 
+use std::ops::ControlFlow;
+
+use crate::simulate::interface::Signal;
+use crate::simulate::sink::Sink;
+
 /// One recorded signal.
 #[derive(Clone, Debug)]
 pub struct Column {
@@ -64,6 +69,25 @@ impl Trace {
         (1..).map_while(|joint| self.column(&format!("{prefix}{joint}"))).collect()
     }
 
+    /// Name and unit of each column.
+    pub fn signals(&self) -> Vec<Signal> {
+        let signal = |column: &Column| Signal { name: column.name.clone(), unit: column.unit };
+        self.columns.iter().map(signal).collect()
+    }
+
+    /// Gives its rows to `sink`, from the first on until that breaks off: what a run into it would have done.
+    pub fn pour(&self, sink: &mut dyn Sink) {
+        let mut row = vec![0.0; self.columns.len()];
+        for k in 0..self.len() {
+            for (slot, column) in row.iter_mut().zip(&self.columns) {
+                *slot = column.values[k];
+            }
+            if sink.take(&row).is_break() {
+                return;
+            }
+        }
+    }
+
     /// Number of recorded instants.
     pub fn len(&self) -> usize {
         self.columns.first().map_or(0, |column| column.values.len())
@@ -72,5 +96,19 @@ impl Trace {
     /// Whether nothing was recorded.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+}
+
+impl Sink for Trace {
+    fn take(&mut self, row: &[f64]) -> ControlFlow<()> {
+        self.push(row);
+        ControlFlow::Continue(())
+    }
+}
+
+/// A trace with these columns and no row.
+impl From<&[Signal]> for Trace {
+    fn from(signals: &[Signal]) -> Self {
+        Self::new(signals.iter().map(|signal| (signal.name.clone(), signal.unit)))
     }
 }

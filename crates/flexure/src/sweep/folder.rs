@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 use super::parquet::{Columns, beside, empty, read};
 use super::{Statistics, Sweep};
 use crate::files::{
-    Problem, Problems, WriteError, create_folder, read_text, suggest, write_atomic, write_together,
+    Problem, Problems, Unfinished, WriteError, create_folder, read_text, suggest, write_atomic,
+    write_together,
 };
 use crate::progress::Progress;
 
@@ -35,33 +36,6 @@ fn shard_of(name: &str) -> Option<u64> {
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
-}
-
-/// Why shards are not there.
-#[derive(Debug)]
-pub enum Unfinished {
-    /// They could not be computed, or what is there is of another sweep.
-    Problems(Problems),
-    /// They could not be written.
-    Unwritten(WriteError),
-}
-
-impl From<WriteError> for Unfinished {
-    fn from(error: WriteError) -> Self {
-        Self::Unwritten(error)
-    }
-}
-
-impl From<Problems> for Unfinished {
-    fn from(problems: Problems) -> Self {
-        Self::Problems(problems)
-    }
-}
-
-impl From<Problem> for Unfinished {
-    fn from(problem: Problem) -> Self {
-        Self::Problems(problem.into())
-    }
 }
 
 impl Folder {

@@ -36,7 +36,7 @@ use document::{FORM, IN_HAND, Said, Seeds};
 use streams::Stream;
 
 pub use design::Kind;
-pub use folder::{Folder, MANIFEST, Unfinished, part_name};
+pub use folder::{Folder, MANIFEST, part_name};
 pub use metric::{METRICS, Metric};
 pub use outcome::{Outcome, Status};
 pub use parameter::{Parameter, Value, Values};

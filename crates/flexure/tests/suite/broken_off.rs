@@ -52,8 +52,11 @@ fn long_jobs_can_be_broken_off() {
             found => assert_eq!(found, whole),
         }
     }
-    let parts = reproduce(&|_, _| ControlFlow::Break(())).expect("parts of runs");
-    assert!(parts.iter().all(|part| part.run.broken_off == Some(0.0) && part.sampled.is_none()));
+    let folder = tempfile::tempdir().expect("a folder");
+    let parts = reproduce(folder.path(), &|_, _| ControlFlow::Break(())).expect("parts of runs");
+    assert!(parts.iter().all(|(part, _)| part.run.broken_off == Some(0.0) && part.sampled.is_none()));
+    drop(parts);
+    assert_eq!(std::fs::read_dir(folder.path()).expect("there").count(), 0, "traces that nobody keeps go");
 }
 
 /// Tasks that every law was finished on are ranked as alone; of others there is what was finished.

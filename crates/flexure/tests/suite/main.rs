@@ -48,6 +48,7 @@ mod report;
 mod rough_plant;
 mod sampled;
 mod samples;
+mod sinks;
 mod suites;
 mod urdf;
 mod verify;

@@ -133,7 +133,7 @@ fn rotors_that_do_not_fit_into_the_links_are_refused() {
 
 #[test]
 fn results_say_what_the_law_does_not_know() {
-    let experiment = Experiment::new(read(SCENARIO).unwrap(), &flexure::progress::unwatched)
+    let experiment = Experiment::new(read(SCENARIO).unwrap(), &mut [], &flexure::progress::unwatched)
         .unwrap_or_else(|p| panic!("{p}"));
     let summary = &experiment.run.summary;
     assert_eq!(summary.plant, ["rotor_coupling", "spring_hardening"]);

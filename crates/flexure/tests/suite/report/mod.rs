@@ -6,10 +6,10 @@ use flexure::prove::question::{Question, prove};
 use flexure::prove::summary::ProofSummary;
 use flexure::report::AssumedNumber;
 use flexure::report::RunsReport;
-use flexure::report::decimate::{bucket_size, decimate, envelope};
+use flexure::report::decimate::{Thinned, bucket_size, decimate, envelope};
 use flexure::report::{
-    CertificateReport, FigureOptions, RunReport, WIDTH, certificate_table, comparison, four_panel, html,
-    proof_table, summary_table,
+    CertificateReport, FigureOptions, RunReport, Sketch, WIDTH, certificate_table, comparison, four_panel,
+    html, proof_table, summary_table,
 };
 use flexure::scenario::load_scenario;
 use flexure::simulate::{Summary, Trace};
@@ -21,7 +21,7 @@ fn figure(trace: &Trace) -> String {
         subtitle: "quanser-2dof".to_owned(),
         joints: vec!["shoulder".to_owned()],
     };
-    four_panel(trace, &options).svg()
+    four_panel(&Sketch::of(trace), &options).svg()
 }
 
 /// Well-formed, and every number in every attribute finite.
@@ -144,6 +144,91 @@ fn decimation_keeps_both_extremes_of_every_bucket() {
     }
 }
 
+/// A signal that comes sample by sample has the envelope of the whole one, in every bucket that it kept, at every size.
+#[test]
+fn thinned_signals_keep_both_extremes_in_bounded_memory() {
+    let mut state = 7_u64;
+    let mut noise = || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    for most in [8, 10, 64, 1000] {
+        let kept = (most / 4).max(2) * 4;
+        for count in [0, 1, 2, 7, 8, 9, 16, 17, 63, 64, 65, 1000, 1001, 4096, 20_011] {
+            let samples: Vec<(f64, f64)> = (0..count)
+                .map(|k| (1e-3 * f64::from(k), if k % 997 == 3 { 1e3 * noise() } else { noise() }))
+                .collect();
+            let mut thinned = Thinned::new(most);
+            for &(t, value) in &samples {
+                thinned.push(t, value);
+            }
+            let points = thinned.points();
+            assert_eq!(thinned.samples(), samples.len());
+            if samples.len() <= kept {
+                assert_eq!(points, samples, "few samples stay as they are");
+                continue;
+            }
+            assert!(
+                points.len() <= kept + 4 && points.len() > kept / 2,
+                "{} of {count} at {most}",
+                points.len()
+            );
+            assert!(points.is_sorted_by(|a, b| a.0 < b.0), "in their order, each once");
+            assert!(points.iter().all(|point| samples.contains(point)), "none is made up");
+            assert_eq!((points[0], points.last()), (samples[0], samples.last()));
+            // The buckets are the same all along: 4, 8, 16, … samples.
+            let size = (2..32).map(|power| 1_usize << power).find(|size| samples.len() / size * 2 <= kept);
+            for bucket in samples.chunks(size.expect("a power")) {
+                let (from, to) = (bucket[0].0, bucket[bucket.len() - 1].0);
+                let inside =
+                    points.iter().filter(|point| (from..=to).contains(&point.0)).map(|point| point.1);
+                assert_eq!(
+                    extremes(inside),
+                    extremes(bucket.iter().map(|sample| sample.1)),
+                    "{count} at {most}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn thinned_signals_end_before_what_is_no_number() {
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for end in [0, 3, 8, 9, 500] {
+            let mut thinned = Thinned::new(8);
+            let value = |k: u32| f64::from(k).sin();
+            for k in 0..1000 {
+                thinned.push(f64::from(k), if k == end { bad } else { value(k) });
+            }
+            let points = thinned.points();
+            assert_eq!(thinned.samples(), end as usize);
+            assert_eq!(points.last().copied(), end.checked_sub(1).map(|k| (f64::from(k), value(k))));
+            assert_eq!(extremes(points.iter().map(|point| point.1)), extremes((0..end).map(value)));
+        }
+    }
+}
+
+/// The peaks of a long run are in its figure, which says when they were; the first instant that is not a number is, too.
+#[test]
+fn long_runs_are_drawn_with_every_peak() {
+    let columns = ["t", "q_l1", "e_l1", "u_m1"].map(|name| (name.to_owned(), ""));
+    let long = |end: u32| {
+        let mut trace = Trace::new(columns.clone());
+        for k in 0..300_000 {
+            let wave = (1e-3 * f64::from(k)).sin();
+            let torque = if k == 123_457 { -777.0 } else { wave };
+            trace.push(&[1e-3 * f64::from(k), wave, 1e-3 * wave, if k < end { torque } else { f64::NAN }]);
+        }
+        four_panel(&Sketch::of(&trace), &FigureOptions::default()).svg()
+    };
+    let whole = long(u32::MAX);
+    check(&whole);
+    let said = |svg: &str, words: &str| texts(svg).iter().filter(|text| text.contains(words)).count();
+    assert_eq!(said(&whole, "the extremes of each 16 ms, peak 777.0 N m at 123 s"), 1, "{:?}", texts(&whole));
+    assert_eq!(said(&long(200_001), "not finite after 200 s"), 4);
+}
+
 /// Smallest and largest value, bit by bit: nothing is rounded on the way.
 fn extremes(values: impl Iterator<Item = f64>) -> (Option<u64>, Option<u64>) {
     let mut values: Vec<f64> = values.collect();
@@ -156,19 +241,20 @@ fn titles_are_text() {
     let trace = fake::trace(1, 100, 6.0);
     let title = "<script>alert(1)</script> & $\\frac{1}{2}$ \u{0}".repeat(3);
     let svg = four_panel(
-        &trace,
+        &Sketch::of(&trace),
         &FigureOptions { title: title.clone(), subtitle: title.clone(), joints: Vec::new() },
     )
     .svg();
     check(&svg);
     assert!(!svg.contains("<script") && texts(&svg)[0].contains("$\\frac{1}{2}$"));
-    check(&comparison(&[("<script>", &trace)]).svg());
+    check(&comparison(&[("<script>", &Sketch::of(&trace))]).svg());
 }
 
 #[test]
 fn the_comparison_names_each_run_once() {
     let traces = [fake::trace(2, 4_000, 2.0), fake::trace(2, 6_000, 5.0), fake::diverged(2, 5_000)];
-    let svg = comparison(&[("tanh", &traces[0]), ("linear", &traces[1]), ("coupled-tanh", &traces[2])]).svg();
+    let [tanh, linear, coupled] = traces.each_ref().map(Sketch::of);
+    let svg = comparison(&[("tanh", &tanh), ("linear", &linear), ("coupled-tanh", &coupled)]).svg();
     check(&svg);
     assert_eq!(curves(&svg), 3);
     for name in ["tanh", "linear", "coupled-tanh"] {
@@ -178,23 +264,24 @@ fn the_comparison_names_each_run_once() {
 
 #[test]
 fn a_comparison_that_leaves_time_out_says_so() {
-    let fast = fake::trace(2, 10_000, 30.0);
-    let said = |traces: &[(&str, &Trace)]| {
-        texts(&comparison(traces).svg()).iter().any(|text| text.contains("of 10 s; after that"))
+    let fast = Sketch::of(&fake::trace(2, 10_000, 30.0));
+    let said = |runs: &[(&str, &Sketch)]| {
+        texts(&comparison(runs).svg()).iter().any(|text| text.contains("of 10 s; after that"))
     };
     assert!(said(&[("fast", &fast)]));
-    assert!(!said(&[("fast", &fast), ("diverged", &fake::diverged(2, 10_000))]));
-    assert!(!said(&[("slow", &fake::trace(2, 10_000, 0.5))]));
+    assert!(!said(&[("fast", &fast), ("diverged", &Sketch::of(&fake::diverged(2, 10_000)))]));
+    assert!(!said(&[("slow", &Sketch::of(&fake::trace(2, 10_000, 0.5)))]));
 }
 
 #[test]
 fn pictures_are_1600_wide_and_bad_ones_are_errors() {
-    let picture = four_panel(&fake::trace(2, 1_000, 6.0), &FigureOptions::default()).png().unwrap();
+    let picture =
+        four_panel(&Sketch::of(&fake::trace(2, 1_000, 6.0)), &FigureOptions::default()).png().unwrap();
     assert_eq!(&picture[1..4], b"PNG");
     assert_eq!(u32::from_be_bytes(picture[16..20].try_into().unwrap()), 1600);
-    let trace = fake::trace(1, 10, 1.0);
+    let sketch = Sketch::of(&fake::trace(1, 10, 1.0));
     let names: Vec<String> = (0..6000).map(|run| format!("run {run}")).collect();
-    let runs: Vec<(&str, &Trace)> = names.iter().map(|name| (name.as_str(), &trace)).collect();
+    let runs: Vec<(&str, &Sketch)> = names.iter().map(|name| (name.as_str(), &sketch)).collect();
     let error = comparison(&runs).png().unwrap_err();
     assert!(error.height > 10.0 * error.width, "{error}");
 }
@@ -210,7 +297,7 @@ fn report() -> RunsReport {
         title: "<script>title</script>".to_owned(),
         introduction: "One.\n\nTwo & three.".to_owned(),
         runs: vec![run("<script>name</script>"), run("linear")],
-        comparison_svg: Some(comparison(&[("tanh", &trace)]).svg()),
+        comparison_svg: Some(comparison(&[("tanh", &Sketch::of(&trace))]).svg()),
         certificates: vec![CertificateReport {
             summary: proof(),
             phi: "<script>phi</script>".to_owned(),
