@@ -18,6 +18,9 @@ const ROUNDING: f64 = 1e-14;
 /// So are corrections of this size in rad/s whatever the speeds: at rest, torques of finite size still cancel.
 const STILL: f64 = 1e-13;
 
+/// What is left of the corrections is at most this part of rounding.
+const NOTHING: f64 = 0.001;
+
 /// Corrections within this factor of rounding do not show how fast they shrink.
 const NOISE: f64 = 100.0;
 
@@ -236,7 +239,9 @@ impl<const S: usize, const N: usize> Collocation<S, N> {
                 return None;
             }
             let stalled = iteration > 3 && worst > 0.5 * previous;
-            if worst <= floor || (stalled && worst <= STALL * floor) {
+            // Rounding is what is left of the corrections, not what they are: an old matrix leaves more of them.
+            let rounded = worst <= floor && worst * *contraction <= NOTHING * floor;
+            if rounded || (stalled && worst <= STALL * floor) {
                 return Some(torques);
             }
             if stalled && worst > previous {

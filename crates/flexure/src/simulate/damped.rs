@@ -15,7 +15,8 @@ type Phi = [f64; COUNT];
 
 const COUNT: usize = 9;
 
-/// A damping rate times the length of a step from which on speeds are damped within the step.
+/// A damping rate times the length of a step from which on speeds are damped within the step. Below it positions at the stages are those of
+/// a polynomial through the speeds there, as in Gauss' method: that is what makes it symplectic where nothing is damped.
 const WITHIN: f64 = 1.0;
 
 /// How a damped motor moves by the instant c h of a step of length h, from its speed at the start and f at the stages.
@@ -58,7 +59,15 @@ impl<const S: usize> Damped<S> {
     /// For the damping rate times the length of the step, λ h ≥ 0.
     pub(crate) fn new(scheme: &Scheme<S>, rate: f64) -> Self {
         const { assert!(2 * S < COUNT) };
-        let stages: [Reach<S>; S] = std::array::from_fn(|i| Reach::new(scheme, rate, scheme.nodes[i]));
+        let exact: [Reach<S>; S] = std::array::from_fn(|i| Reach::new(scheme, rate, scheme.nodes[i]));
+        let speeds = Matrix(exact.map(|reach| reach.once.0));
+        let mut stages = exact;
+        if rate < WITHIN {
+            for (i, reach) in stages.iter_mut().enumerate() {
+                reach.drift = scheme.once.row(i).dot(&Vector(exact.map(|reach| reach.decay)));
+                reach.twice = (scheme.once * speeds).row(i);
+            }
+        }
         let phi = phi(rate);
         // ∫₀¹ s^m s^k φ_k(−λ h s) ds, by parts.
         let moment = |m: usize, k: usize| {
@@ -76,7 +85,7 @@ impl<const S: usize> Damped<S> {
             stages,
             end,
             twice: Matrix(stages.map(|reach| reach.twice.0)),
-            acceleration: Matrix::identity() - Matrix(stages.map(|reach| reach.once.0)).scaled(rate),
+            acceleration: Matrix::identity() - speeds.scaled(rate),
             excess: if rate < WITHIN { Stages::ZERO } else { excess },
             work_of_speed,
             work: Matrix::from_fn(|i, j| (0..S).map(|k| p[(j, k)] * factorial(k) * over(i, k + 1)).sum()),
@@ -102,10 +111,12 @@ impl<const S: usize> Reach<S> {
         let phi = phi(rate * c);
         // ∫₀ᶜ e^(−λh (c − s)) s^k ds = k! c^(k+1) φ_(k+1)(−λh c), and once more.
         let integral = |times: usize| {
-            Vector::from_fn(|j| {
+            let weights: Stages<S> = Vector::from_fn(|j| {
                 let power = |k: usize| factorial(k) * c.powi(degree(k + times)) * phi[k + times];
                 (0..S).map(|k| scheme.polynomials[(j, k)] * power(k)).sum()
-            })
+            });
+            // What f does that is constant is known without the cancellations.
+            weights.scaled(c.powi(degree(times)) * phi[times] / weights.iter().sum::<f64>())
         };
         Self { decay: phi[0], drift: c * phi[1], once: integral(1), twice: integral(2) }
     }
@@ -186,7 +197,7 @@ mod tests {
 
     fn check<const S: usize>() {
         let scheme = Scheme::<S>::gauss();
-        let (speed, powers) = (0.7, std::array::from_fn(|k| [1.3, -2.0, 0.9, 1.7][k]));
+        let (speed, powers): (f64, [f64; S]) = (0.7, std::array::from_fn(|k| [1.3, -2.0, 0.9, 1.7][k]));
         let at = |s: f64| powers.iter().rev().fold(0.0, |sum, p: &f64| sum * s + p);
         let f = scheme.nodes.map(at);
         for rate in RATES {
@@ -194,8 +205,14 @@ mod tests {
             for (c, reach) in scheme.nodes.iter().zip(damped.stages).chain([(1.0, damped.end)]) {
                 let got =
                     [reach.drift * speed + reach.twice.dot(&f), reach.decay * speed + reach.once.dot(&f)];
+                let mut expected = exact(rate, c, speed, &powers);
+                if rate < 1.0 && c < 1.0 {
+                    let speeds = scheme.nodes.map(|c| exact(rate, c, speed, &powers)[1]);
+                    let i = (0..S).find(|&i| scheme.nodes[i] == c).expect("a node");
+                    expected[0] = scheme.once.row(i).dot(&speeds);
+                }
                 // Squaring the exponential of the oracle loses bits.
-                for (got, expected) in got.iter().zip(exact(rate, c, speed, &powers)) {
+                for (got, expected) in got.iter().zip(expected) {
                     assert!(
                         (got - expected).abs() < 1e-12 * (1.0 + rate).sqrt(),
                         "{rate}, {c}: {got} {expected}"
@@ -232,9 +249,9 @@ mod tests {
         let Damped { stages, end, twice, .. } = Damped::new(&scheme, 0.0);
         for i in 0..4 {
             let differences = [stages[i].once - scheme.once.row(i), twice.row(i) - scheme.twice.row(i)];
-            assert!(differences.iter().flat_map(Vector::iter).all(|x| x.abs() < 1e-15), "{differences:?}");
+            assert!(differences.iter().flat_map(Vector::iter).all(|x| x.abs() < 1e-14), "{differences:?}");
         }
         let differences = [end.once - scheme.weights, end.twice - scheme.end_twice];
-        assert!(differences.iter().flat_map(Vector::iter).all(|x| x.abs() < 1e-15), "{differences:?}");
+        assert!(differences.iter().flat_map(Vector::iter).all(|x| x.abs() < 1e-14), "{differences:?}");
     }
 }

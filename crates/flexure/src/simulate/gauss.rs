@@ -105,9 +105,11 @@ impl<const N: usize> Integrator<N> {
             // Equal steps to the end of the interval, of at most the length that is good now.
             let remaining = steps_in(interval - done, self.step);
             let h = (interval - done) / f64::from(remaining);
+            // Equal steps may be longer than their number says, by rounding.
+            let is_shortest = h <= 1.001 * shortest;
             let order = self.order;
             match self.try_step(&Task { plant, x: &x, t: t + done, h, torque }, SOLVED * self.tolerance) {
-                Some(step) if step.factor >= 1.0 || h <= shortest => {
+                Some(step) if step.factor >= 1.0 || is_shortest => {
                     x = step.end;
                     ledger.add(&step.work);
                     self.steps += 1;
@@ -122,7 +124,7 @@ impl<const N: usize> Integrator<N> {
                         // Where the lower order does not do, the higher one may.
                         _ if order == Order::Four => self.order = Order::Eight,
                         Some(step) => self.step = (h * step.factor.clamp(0.1, 0.9)).max(shortest),
-                        None if h > shortest => self.step = (0.5 * h).max(shortest),
+                        None if !is_shortest => self.step = (0.5 * h).max(shortest),
                         None => break,
                     }
                     // Its polynomials lead on from where the robot does not get.

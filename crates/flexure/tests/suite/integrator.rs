@@ -121,7 +121,7 @@ fn one_step_goes_through_a_stiff_damper() {
                 worst = worst.max((got - expected).abs());
             }
         }
-        let bound = if order == Order::Four { 2e-6 } else { 1e-8 };
+        let bound = if order == Order::Four { 2e-6 } else { 3e-8 };
         assert!(worst < bound, "{order:?}: {worst:e}");
     }
 }
@@ -303,21 +303,23 @@ fn achieved_errors_follow_the_tolerance() {
                 let t = 5e-3 * f64::from(k);
                 let held = law(t, &now);
                 let held = |t: f64, x: &Motion<f64, 2>| if case % 4 < 2 { law(t, x) } else { held };
-                now = integrator
-                    .advance(&plant, now, t, 5e-3, &held, &mut Ledger::default())
-                    .expect("a benign motion");
+                now = integrator.advance(&plant, now, t, 5e-3, &held, &mut Ledger::default()).unwrap_or_else(
+                    |failure| panic!("{case} {tolerance:e} {t} {failure:?} {robot:?} {gain:?}"),
+                );
             }
             now
         };
         let reference = run(1e-13);
         let scale = 1.0 + distance(&reference, &Motion::at_rest(Vector::ZERO));
         for (worst, tolerance) in worst.iter_mut().zip([1e-5, 1e-7, 1e-9]) {
-            let error = distance(&run(tolerance), &reference) / scale / tolerance;
-            println!("{case} {tolerance:e}: {error}");
-            *worst = worst.max(error);
+            // A torque that jumps is crossed by a step of 1e-5 of the interval whatever its error.
+            let across = if jump.is_finite() { 2e-8 } else { 0.0 };
+            *worst = worst.max(distance(&run(tolerance), &reference) / scale / (tolerance + across));
         }
     }
-    assert!(worst.iter().all(|&error| error < 30.0), "{worst:?}");
+    assert!(worst.iter().all(|&error| error < 10.0), "{worst:?}");
+    // Nor are steps much shorter than the tolerance asks for.
+    assert!(worst[0] > 0.1, "{worst:?}");
 }
 
 #[test]

@@ -209,9 +209,9 @@ pub const SCENARIO_CASES: &[Case] = &[
     ),
     (
         "period = 0.001",
-        "period = 0.001\nintegration_tolerance = 0.0",
-        "0.0",
-        "integration_tolerance is 0, must be > 0",
+        "period = 0.001\nintegration_tolerance = -1e-7",
+        "-1e-7",
+        "integration_tolerance is -1e-7, must be > 0",
     ),
     ("period = 0.001", "period = 0.001\nhold = \"first-order\"", "\"first-order\"", "hold is 'first-order'"),
     (
