@@ -126,6 +126,27 @@ fn one_step_goes_through_a_stiff_damper() {
     }
 }
 
+/// After each jump of the torque the motor's speed is another within a ninth of the step, and what its spring gives to the link
+/// meanwhile adds up over the run.
+#[test]
+fn the_spring_feels_a_speed_that_is_damped_within_the_step() {
+    let robot = joint(0.0107, 0.01, 4.0, [0.55, 90.0]);
+    let mut integrator = Integrator::new(1e-7);
+    let start = Motion::at_rest(Vector([0.1]));
+    let (mut x, mut expected) = (start, start);
+    for k in 0..1000 {
+        let u = 20.0 * (5e-3 * f64::from(k)).sin();
+        x = integrator
+            .advance_uniformly(&robot.into(), x, 1e-3, (Order::Four, 1), &|_, _: &_| Vector([u]))
+            .expect("linear");
+        let [q_l, q_m, v_l, v_m] = exact(&robot, &expected, u, 1e-3).map(|x| Vector([x]));
+        expected = Motion { q_l, q_m, v_l, v_m };
+    }
+    // With what the spring gives at the stages alone it is 2.2e-8 rad/s.
+    let error = x.v_l[0] - expected.v_l[0];
+    assert!(error.abs() < 1e-8, "{error:e} rad/s");
+}
+
 #[test]
 fn stiff_damping_is_accurate_at_one_kilohertz() {
     // 90 N m s/rad on 0.01 kg m²: 9000 1/s, a transient that is over within the first of the 1 ms periods.
