@@ -66,7 +66,7 @@ pub(crate) struct Past<const N: usize> {
     /// What the last corrections shrank by.
     pub(crate) contraction: f64,
     /// Number of stages of the polynomials; none are known if 0.
-    pub(crate) stages: u32,
+    pub(crate) stages: usize,
     /// The polynomials at the stages: links, motors. Those beyond the number of stages are 0.
     pub(crate) link: [Vector<f64, N>; 4],
     pub(crate) motor: [Vector<f64, N>; 4],
@@ -121,7 +121,8 @@ impl<const S: usize, const N: usize> Collocation<S, N> {
         // Where a matrix from some way back does not lead on, one from here may.
         let here = Anchor { q: [x.q_l, x.q_m], h };
         let ratio = h / past.anchor.h;
-        let fresh = past.stages != S as u32 || past.anchor.h != h || past.contraction > WORN;
+        #[expect(clippy::float_cmp, reason = "a matrix of another length is another one")]
+        let fresh = past.stages != S || past.anchor.h != h || past.contraction > WORN;
         let anchors = [(!fresh).then_some(past.anchor), Some(here)];
         for anchor in anchors.into_iter().flatten() {
             if anchor == here {
@@ -131,7 +132,7 @@ impl<const S: usize, const N: usize> Collocation<S, N> {
                 self.solver = Some(Box::new(StageSolver::new(&self.scheme, plant, anchor)));
             }
             let Some(solver) = self.solver.as_deref() else { break };
-            let extrapolated = past.stages == S as u32 && ratio <= FARTHEST;
+            let extrapolated = past.stages == S && ratio <= FARTHEST;
             let start = self.start(task, &u, solver, extrapolated.then_some(&*past));
             let mut solution = if extrapolated {
                 self.extrapolated(past, ratio, &start)
@@ -146,7 +147,7 @@ impl<const S: usize, const N: usize> Collocation<S, N> {
             let torques = Torques { stages, end: (task.torque)(task.t + h, &end) };
             let error = self.error(task, solver, &start, &solution, &torques);
             if is_finite(&end) {
-                past.stages = S as u32;
+                past.stages = S;
                 past.link[..S].copy_from_slice(&solution.link);
                 past.motor[..S].copy_from_slice(&solution.motor);
                 return Some(Step { end, work, start, solution, torques, error });
@@ -180,6 +181,7 @@ impl<const S: usize, const N: usize> Collocation<S, N> {
 
     /// The polynomials of the last step, `ratio` times shorter than this one, led on and shifted to what they are at the start of this one.
     fn extrapolated(&self, past: &Past<N>, ratio: f64, start: &Sides<N>) -> StepSolution<S, N> {
+        #[expect(clippy::float_cmp, reason = "exactly the same length")]
         let ahead = if ratio == 1.0 { self.ahead } else { ahead(&self.scheme, ratio) };
         let on = |values: &[Vector<f64, N>; 4], start: &Vector<f64, N>| {
             ahead.map(|weights| *start + sum(&weights, values))
@@ -303,13 +305,11 @@ impl<const S: usize, const N: usize> Collocation<S, N> {
         let robot = &plant.robot;
         let mut work = Ledger::default();
         let mut supplied = Stages::<S>::ZERO;
-        for k in 0..robot.links.joints() {
-            let Damped { work: of_f, work_of_speed, .. } = &solver.damped[k];
+        for (k, damped) in solver.damped.iter().enumerate().take(robot.links.joints()) {
+            let Damped { work: of_f, work_of_speed, .. } = damped;
             let f = Vector::from_fn(|i| solution.motor[i][k]);
             let turned = (work_of_speed.scaled(x.v_m[k]) + (*of_f * f).scaled(h)).scaled(h);
-            for i in 0..S {
-                supplied[i] += torques[i][k] * turned[i];
-            }
+            supplied += Vector::from_fn(|i| torques[i][k] * turned[i]);
             if robot.motor_damping[k] > 0.0 {
                 let kept = 0.5 * (end.v_m[k] - x.v_m[k]) * (end.v_m[k] + x.v_m[k]);
                 work.dissipated += robot.motor_inertia[k] * (f.dot(&turned) - kept);
@@ -493,9 +493,9 @@ fn moved<'a, const S: usize, const N: usize>(
     for k in 0..N {
         let Reach { decay, drift, once, twice } = reach(k);
         let (mut speed, mut position) = (0.0, 0.0);
-        for i in 0..S {
-            speed += once[i] * motor[i][k];
-            position += twice[i] * motor[i][k];
+        for (f, (once, twice)) in motor.iter().zip(once.iter().zip(twice.iter())) {
+            speed += once * f[k];
+            position += twice * f[k];
         }
         end.v_m[k] = decay * x.v_m[k] + h * speed;
         end.q_m[k] = x.q_m[k] + h * (drift * x.v_m[k] + h * position);

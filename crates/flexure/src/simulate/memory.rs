@@ -195,7 +195,9 @@ impl<const N: usize> Past<N> {
         port.joints("q_m", "rad", &mut q_m.0);
         port.number("step", "s", h);
         port.number("contraction", "", contraction);
-        port.word("stages", stages);
+        let mut code = u32::try_from(*stages).unwrap_or(0);
+        port.word("stages", &mut code);
+        *stages = code as usize;
         for (names, sides) in STAGES.iter().zip([link, motor]) {
             for (name, stage) in names.iter().zip(sides) {
                 port.joints(name, "rad/s^2", &mut stage.0);
