@@ -189,6 +189,10 @@ pub(crate) const SPEED_OF_TIME: Quantity = Quantity::positive(
     units::NONE,
 )
 .plausible(1e-3, 100.0, "1 is the reference's own speed");
+pub(crate) const INTEGRATION_TOLERANCE: Quantity = Quantity::positive(
+    "tolerated local error of an integration step relative to the joint's speed",
+    units::NONE,
+);
 pub(crate) const MARGIN: Quantity = Quantity::positive(
     "largest share of a limit, 0.9 for nine tenths",
     units::NONE,

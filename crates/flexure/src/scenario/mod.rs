@@ -25,6 +25,7 @@ mod plant;
 
 pub use accept::Accept;
 pub use any::{Checked, check};
+pub(crate) use document::INTEGRATION_TOLERANCE;
 pub use document::{Hold, Scenario, scenario_from_text};
 pub use draft::draft;
 pub use drafts::Drafts;

@@ -18,8 +18,8 @@ use crate::simulate::signals::Columns;
 use crate::simulate::simulation::{Hold, Timing};
 use crate::simulate::stepping::Stepping;
 
-/// Tolerated local error of the plant integrator, relative to the joint speeds.
-pub const TOLERANCE: f64 = 1e-10;
+/// Tolerated local error of the integrator of smooth plants, relative to the joint speeds, where a scenario says nothing else.
+pub const TOLERANCE: f64 = scenario::INTEGRATION_TOLERANCE;
 
 /// Longest step in s of the integrator of plants with dry friction, play or hysteresis.
 pub(crate) const LONGEST_STEP: f64 = Stepping::<1>::STEP;
@@ -32,7 +32,7 @@ pub(crate) fn timing(scenario: &Scenario) -> Timing {
             scenario::Hold::ZeroOrder => Hold::ZeroOrder,
             scenario::Hold::Continuous => Hold::Continuous,
         },
-        tolerance: TOLERANCE,
+        tolerance: scenario.integration_tolerance,
         longest_step: LONGEST_STEP,
     }
 }

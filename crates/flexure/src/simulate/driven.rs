@@ -43,7 +43,8 @@ impl Scenario {
         Ok(sized!(&simulated, L, N => {
             let robot = fjr::<f64, L<f64>, N>(&simulated, &simulated.links, |x| x, &|x| x).expect(OF_THE_KIND);
             let plant = assembly::plant(self, robot);
-            Box::new(Sized { plant, pushes: assembly::pushes(self), longest: assembly::LONGEST_STEP })
+            let (tolerance, longest) = (self.integration_tolerance, assembly::LONGEST_STEP);
+            Box::new(Sized { plant, pushes: assembly::pushes(self), tolerance, longest })
         }))
     }
 }
@@ -52,6 +53,7 @@ impl Scenario {
 struct Sized<L, const N: usize> {
     plant: Plant<L, N>,
     pushes: Vec<Push<N>>,
+    tolerance: f64,
     longest: f64,
 }
 
@@ -68,7 +70,7 @@ where
         let mut x: Motion<f64, N> = read_motion(start, n)?;
         check("u_m", "n for each period", u_m.len(), u_m.len().next_multiple_of(n))?;
         let plant = self.plant.clone();
-        let stepper = Stepper::new(&plant, assembly::TOLERANCE, self.longest);
+        let stepper = Stepper::new(&plant, self.tolerance, self.longest);
         let mut world = World { plant, pushes: self.pushes.clone(), stepper, ledger: Ledger::default() };
         let mut motions = vec![f64::NAN; 4 * u_m.len()];
         for ((k, torque), motion) in (first..).zip(u_m.chunks_exact(n)).zip(motions.chunks_exact_mut(4 * n)) {

@@ -8,10 +8,12 @@ use flexure_core::reference::Stop;
 use flexure_core::scalar::Jet;
 
 use crate::imperfections::stages::{Pieces, Tick};
+use crate::simulate::collocation::Past;
 use crate::simulate::controller::{Action, Compensation, Controller, Said};
-use crate::simulate::gauss::Integrator;
+use crate::simulate::gauss::{Integrator, Order};
 use crate::simulate::guarded::Guarded;
 use crate::simulate::ledger::Ledger;
+use crate::simulate::newton::Anchor;
 use crate::simulate::simulation::{Balance, Cause, Divergence, Happened, Simulation, World};
 use crate::simulate::stepper::Stepper;
 use crate::simulate::stepping::Stepping;
@@ -162,13 +164,17 @@ impl<const N: usize> Memory<f64> for Pieces<N> {
     }
 }
 
-/// Steps so far; then what the method remembers: the last good step, or hysteresis and accelerations.
+/// Steps so far; then what the method remembers: the last good step and what it leaves for the next, or hysteresis and accelerations.
 impl<const N: usize> Memory<f64> for Stepper<N> {
     fn memory(&mut self, port: &mut dyn Port<f64>) {
         match self {
-            Self::Smooth(Integrator { scheme: _, tolerance: _, step, steps }) => {
+            Self::Smooth(Integrator { low: _, high: _, tolerance: _, order, step, steps, past }) => {
                 port.long("steps", steps);
                 port.number("step", "s", step);
+                let mut high = *order == Order::Eight;
+                port.flag("high_order", &mut high);
+                *order = if high { Order::Eight } else { Order::Four };
+                past.memory(port);
             }
             Self::Rough(Stepping { longest: _, hysteresis, last: [a_l, a_m], steps }) => {
                 port.long("steps", steps);
@@ -177,6 +183,27 @@ impl<const N: usize> Memory<f64> for Stepper<N> {
                 port.joints("ddq_m", "rad/s^2", &mut a_m.0);
             }
         }
+    }
+}
+
+impl<const N: usize> Past<N> {
+    fn memory(&mut self, port: &mut dyn Port<f64>) {
+        const STAGES: [[&str; 4]; 2] = [["a_l1", "a_l2", "a_l3", "a_l4"], ["f_m1", "f_m2", "f_m3", "f_m4"]];
+        let Self { anchor: Anchor { q: [q_l, q_m], h }, contraction, stages, link, motor } = self;
+        port.enter("last");
+        port.joints("q_l", "rad", &mut q_l.0);
+        port.joints("q_m", "rad", &mut q_m.0);
+        port.number("step", "s", h);
+        port.number("contraction", "", contraction);
+        let mut code = u32::try_from(*stages).unwrap_or(0);
+        port.word("stages", &mut code);
+        *stages = code as usize;
+        for (names, sides) in STAGES.iter().zip([link, motor]) {
+            for (name, stage) in names.iter().zip(sides) {
+                port.joints(name, "rad/s^2", &mut stage.0);
+            }
+        }
+        port.leave();
     }
 }
 

@@ -1,8 +1,10 @@
 //! The closed loop in time: a sampled controller on a plant that is integrated between samples; runs with trace and summary.
 
 pub(crate) mod assembly;
+mod collocation;
 mod controller;
 mod criteria;
+mod damped;
 mod driven;
 mod excerpt;
 mod fault_log;
@@ -41,7 +43,7 @@ pub use excerpt::Excerpt;
 pub use fault_log::{FaultLog, LoggedStep, Stopped};
 pub use figures::SETTLED;
 pub use following::{Accepted, Following, Reason, Used};
-pub use gauss::{Integrator, StepFailure};
+pub use gauss::{Integrator, Order, StepFailure};
 pub use guarded::Guarded;
 pub(crate) use interface::of_joints;
 pub use interface::{Commanded, Errors, Loop, Observed, Signal};

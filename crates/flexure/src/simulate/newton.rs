@@ -1,83 +1,95 @@
 //! Simplified Newton iteration for the collocation equations of a flexible-joint robot.
 //!
-//! Unknown are the accelerations of links and motors at the stages; residuals are torques. The iteration matrix keeps
-//! what can be stiff, namely the mass matrix and the slopes of the springs at the start of the step, and dampers. It
-//! leaves out velocity products and gravity, whose part vanishes with the step. Motors do not couple to each other and
+//! Unknown are, at the stages, the accelerations of the links and what accelerates the motors beside their dampers; residuals are
+//! torques. The iteration matrix keeps what can be stiff, namely the mass matrix and the slopes of the springs where it was made, and
+//! dampers. It leaves out velocity products and gravity, whose part vanishes with the step. Motors do not couple to each other and
 //! are eliminated; what remains are n × n blocks of one small matrix over the stages, n the robot's own joints: those that only
-//! fill a capacity stay as they are.
+//! fill a capacity stay as they are. It serves many steps: a matrix from some way back makes more iterations, not another solution.
 //!
-//! The elimination by blocks is here and not in [`linalg`](crate::linalg) because it is the kernel of the simulation, run every
-//! step on the stack: its entries are 4 × 4 matrices that do not commute, so that no factorisation over numbers does it.
+//! The elimination by blocks is here and not in [`linalg`](crate::linalg) because it is the kernel of the simulation, done
+//! on the stack: its entries are matrices over the stages that do not commute, so that no factorisation over numbers does it.
 
-use flexure_core::linalg::{Matrix, Vector};
+use flexure_core::linalg::{Ldl, Matrix, Vector};
 use flexure_core::model::{Links, Motion};
 
-use crate::plant::Plant;
-use crate::simulate::gauss::StepSolution;
-use crate::simulate::scheme::{STAGES, Scheme, Stages};
+use crate::plant::{Plant, Sides};
+use crate::simulate::damped::Damped;
+use crate::simulate::scheme::{Block, Scheme, Stages};
 
-type Block = Matrix<f64, STAGES, STAGES>;
-
-const MAX_ITERATIONS: usize = 25;
-
-/// Corrections that no longer shrink are rounding if they are within this factor of the floor: residuals are
-/// differences of torques that can be much larger than what accelerates the joint.
-const STALL: f64 = 1e4;
-
-/// The factorised iteration matrix of one step.
-pub(crate) struct StageSolver<const N: usize> {
-    /// Number of joints, at most N; nothing is kept of others.
-    joints: usize,
-    /// (M_m + h D_m A + h² K A²)⁻¹ per joint.
-    motor: [Block; N],
-    /// h² K A² per joint: how an acceleration of one side loads the other through the spring.
-    spring: [Block; N],
-    /// How it loads the other through coupled rotors: a row per link, a column per motor [kg m²].
-    coupling: Option<Matrix<f64, N, N>>,
-    /// Block LU of M ⊗ 1 + diag(G): unit lower part below the diagonal, inverses of pivots on it.
-    link: [[Block; N]; N],
+/// Where an iteration matrix was made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Anchor<const N: usize> {
+    /// Positions in rad: the mass matrix is that at q_l, the slopes of the springs are those between.
+    pub q: Sides<N>,
+    /// Length of the step in s.
+    pub h: f64,
 }
 
-impl<const N: usize> StageSolver<N> {
-    pub(crate) fn new<L: Links<f64, N>>(
-        scheme: &Scheme,
-        plant: &Plant<L, N>,
-        x: &Motion<f64, N>,
-        h: f64,
-    ) -> Self {
-        let robot = &plant.robot;
+/// The factorised iteration matrix of steps of one length.
+#[derive(Clone, Debug)]
+pub(crate) struct StageSolver<const S: usize, const N: usize> {
+    pub(crate) anchor: Anchor<N>,
+    /// Number of joints, at most N; nothing is kept of others.
+    joints: usize,
+    /// How each motor moves on its own.
+    pub(crate) damped: [Damped<S>; N],
+    /// (M_m + h² K A_m²)⁻¹ per joint, A_m² the damped motor's.
+    motor: [Block<S>; N],
+    /// How an acceleration of a link loads its motor through the spring, h² K A², per joint.
+    of_link: [Block<S>; N],
+    /// How what accelerates a motor loads its link through the spring, h² K A_m², per joint.
+    of_motor: [Block<S>; N],
+    /// How it loads the other through coupled rotors: a row per link, a column per motor [kg m²].
+    coupling: Option<Matrix<f64, N, N>>,
+    /// Block LU of the links' matrix: unit lower part below the diagonal, inverses of pivots on it.
+    link: [[Block<S>; N]; N],
+    /// The mass matrix alone.
+    pub(crate) mass: Ldl<f64, N>,
+    /// The fastest rate at which springs and dampers of links let a joint move by itself, in 1/h.
+    pub(crate) fastest: f64,
+}
+
+/// The polynomials of one step: accelerations of the links and what accelerates the motors beside their dampers, at the stages.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StepSolution<const S: usize, const N: usize> {
+    pub(crate) link: [Vector<f64, N>; S],
+    pub(crate) motor: [Vector<f64, N>; S],
+}
+
+impl<const S: usize, const N: usize> StageSolver<S, N> {
+    pub(crate) fn new<L: Links<f64, N>>(scheme: &Scheme<S>, plant: &Plant<L, N>, anchor: Anchor<N>) -> Self {
+        let (robot, Anchor { q: [q_l, q_m], h }) = (&plant.robot, anchor);
         let joints = robot.links.joints();
-        let stiffness = plant.tangent_stiffness(x);
-        let spring: [Block; N] =
-            per_joint(joints, Block::ZERO, |k| scheme.twice.scaled(h * h * stiffness[k]));
-        let motor: [Block; N] = per_joint(joints, Block::ZERO, |k| {
-            let inertia = Matrix::identity().scaled(robot.motor_inertia[k]);
-            inverse(&(inertia + scheme.once.scaled(h * robot.motor_damping[k]) + spring[k]))
+        let stiffness = plant.tangent_stiffness(&Motion { q_m, ..Motion::at_rest(q_l) });
+        let damped: [Damped<S>; N] = std::array::from_fn(|k| {
+            let rate = if k < joints { robot.motor_damping[k] / robot.motor_inertia[k] } else { 0.0 };
+            Damped::new(scheme, h * rate)
         });
-        let mass = robot.links.mass_matrix(&x.q_l);
+        let of_link = per_joint(joints, |k| scheme.twice.scaled(h * h * stiffness[k]));
+        let of_motor = per_joint(joints, |k: usize| damped[k].twice.scaled(h * h * stiffness[k]));
+        let motor = per_joint(joints, |k: usize| {
+            inverse(&(Matrix::identity().scaled(robot.motor_inertia[k]) + of_motor[k]))
+        });
+        let matrix = robot.links.mass_matrix(&q_l);
+        let mass = matrix.ldl();
+        let coupling = plant.coupling_matrix(&q_l);
         let mut link = [[Block::ZERO; N]; N];
         for (k, row) in link[..joints].iter_mut().enumerate() {
             for (l, block) in row[..joints].iter_mut().enumerate() {
-                let inertia = Matrix::identity().scaled(mass[(k, l)]);
-                *block = if k == l {
-                    let own = scheme.once.scaled(h * robot.link_damping[k]) + spring[k];
-                    inertia + own - spring[k] * motor[k] * spring[k]
-                } else {
-                    inertia
-                };
-            }
-        }
-        let coupling = plant.coupling_matrix(&x.q_l);
-        if let Some(S) = &coupling {
-            // What the motors' elimination adds to the springs' −h² K A² beside S.
-            for (k, row) in link[..joints].iter_mut().enumerate() {
-                for (l, block) in row[..joints].iter_mut().enumerate() {
-                    let mut added =
-                        (motor[l] * spring[l]).scaled(S[(k, l)]) + (motor[k] * spring[k]).scaled(S[(l, k)]);
+                *block = Matrix::identity().scaled(matrix[(k, l)]);
+                if k == l {
+                    let own = scheme.once.scaled(h * robot.link_damping[k]) + of_link[k];
+                    *block = *block + own - of_motor[k] * motor[k] * of_link[k];
+                }
+                if let Some(shared) = &coupling {
+                    // What the motors' elimination adds to the springs' part beside S.
+                    *block = *block
+                        + (of_motor[k] * motor[k]).scaled(shared[(l, k)])
+                        + (damped[l].acceleration * motor[l] * of_link[l]).scaled(shared[(k, l)]);
                     for (j, motor) in motor[..joints].iter().enumerate() {
-                        added = added - motor.scaled(S[(k, j)] * S[(l, j)]);
+                        *block = *block
+                            - (damped[j].acceleration * *motor).scaled(shared[(k, j)] * shared[(l, j)]);
                     }
-                    *block = *block + added;
                 }
             }
         }
@@ -90,89 +102,50 @@ impl<const N: usize> StageSolver<N> {
                 }
             }
         }
-        Self { joints, motor, spring, coupling, link }
+        let fastest = (0..joints).fold(0.0, |fastest: f64, k| {
+            let free = mass.solve(&Vector::from_fn(|i| f64::from(u8::from(i == k))))[k];
+            let spring = stiffness[k] * (free + 1.0 / robot.motor_inertia[k]);
+            fastest.max(h * spring.sqrt()).max(h * free * robot.link_damping[k])
+        });
+        Self { anchor, joints, damped, motor, of_link, of_motor, coupling, link, mass, fastest }
     }
 
-    /// Iterates until corrections are below `floor` [rad/s²], or stop shrinking close to it. None if they do not.
-    /// `stage(i, solution)` gives the motion and the motor torque at stage `i`.
-    pub(crate) fn solve<L: Links<f64, N>>(
+    /// What improves a solution that leaves the torques `link` and `motor` unbalanced at the stages, a joint each [N m].
+    #[inline]
+    pub(crate) fn correction(
         &self,
-        plant: &Plant<L, N>,
-        solution: &mut StepSolution<N>,
-        floor: f64,
-        stage: impl Fn(usize, &StepSolution<N>) -> (Motion<f64, N>, Vector<f64, N>),
-    ) -> Option<()> {
-        let mut previous = f64::INFINITY;
-        for iteration in 0..MAX_ITERATIONS {
-            let correction = self.improve(plant, solution, &stage);
-            let stalled = iteration > 3 && correction > 0.5 * previous;
-            if correction <= floor || (stalled && correction <= STALL * floor) {
-                return Some(());
-            }
-            if !correction.is_finite() || (stalled && correction > previous) {
-                return None;
-            }
-            previous = correction;
-        }
-        None
-    }
-
-    /// One iteration: improves the accelerations and returns the largest correction [rad/s²].
-    fn improve<L: Links<f64, N>>(
-        &self,
-        plant: &Plant<L, N>,
-        solution: &mut StepSolution<N>,
-        stage: &impl Fn(usize, &StepSolution<N>) -> (Motion<f64, N>, Vector<f64, N>),
-    ) -> f64 {
-        let mut link = [Stages::ZERO; N];
-        let mut motor = [Stages::ZERO; N];
-        for i in 0..STAGES {
-            let (x, u) = stage(i, solution);
-            let [missing_l, missing_m] = plant.unbalanced(&x, &u, [solution.link[i], solution.motor[i]]);
-            for k in 0..self.joints {
-                link[k][i] = missing_l[k];
-                motor[k][i] = missing_m[k];
-            }
-        }
+        link: &[Stages<S>; N],
+        motor: &[Stages<S>; N],
+    ) -> ([Stages<S>; N], [Stages<S>; N]) {
         // Motors out, links solved, motors back.
-        let free: [Stages; N] = per_joint(self.joints, Stages::ZERO, |k| self.motor[k] * motor[k]);
-        let link = self.solve_links(per_joint(self.joints, Stages::ZERO, |k| {
-            link[k] + self.load(k, &free, |S, j| S[(k, j)])
-        }));
-        let mut worst = 0.0_f64;
+        let mut free = [Stages::ZERO; N];
+        let mut loaded = *link;
         for k in 0..self.joints {
-            let motor = free[k] + self.motor[k] * self.load(k, &link, |S, j| S[(j, k)]);
-            for i in 0..STAGES {
-                solution.link[i][k] += link[k][i];
-                solution.motor[i][k] += motor[i];
-                worst = worst.max(link[k][i].abs()).max(motor[i].abs());
-                // NaN does not win a maximum.
-                if !(link[k][i] + motor[i]).is_finite() {
-                    return f64::NAN;
+            free[k] = self.motor[k] * motor[k];
+            loaded[k] += self.of_motor[k] * free[k];
+        }
+        if let Some(shared) = &self.coupling {
+            for j in 0..self.joints {
+                let acceleration = self.damped[j].acceleration * free[j];
+                for k in 0..self.joints {
+                    loaded[k] -= acceleration.scaled(shared[(k, j)]);
                 }
             }
         }
-        worst
-    }
-
-    /// How accelerations of one side load joint `k` of the other; `share` picks what joint j adds from S.
-    #[inline]
-    fn load(
-        &self,
-        k: usize,
-        accelerations: &[Stages; N],
-        share: impl Fn(&Matrix<f64, N, N>, usize) -> f64,
-    ) -> Stages {
-        let mut load = self.spring[k] * accelerations[k];
-        if let Some(S) = &self.coupling {
-            for (j, acceleration) in accelerations[..self.joints].iter().enumerate() {
-                load -= acceleration.scaled(share(S, j));
+        let link = self.solve_links(loaded);
+        for k in 0..self.joints {
+            let mut load = self.of_link[k] * link[k];
+            if let Some(shared) = &self.coupling {
+                for (j, link) in link[..self.joints].iter().enumerate() {
+                    load -= link.scaled(shared[(j, k)]);
+                }
             }
+            free[k] += self.motor[k] * load;
         }
-        load
+        (link, free)
     }
 
-    fn solve_links(&self, mut b: [Stages; N]) -> [Stages; N] {
+    fn solve_links(&self, mut b: [Stages<S>; N]) -> [Stages<S>; N] {
         for i in 0..self.joints {
             for j in 0..i {
                 let known = self.link[i][j] * b[j];
@@ -190,26 +163,29 @@ impl<const N: usize> StageSolver<N> {
     }
 }
 
-/// `entry(k)` for each of the first `joints` joints, `other` for those that only fill the capacity.
-fn per_joint<T: Copy, const N: usize>(joints: usize, other: T, entry: impl Fn(usize) -> T) -> [T; N] {
-    std::array::from_fn(|k| if k < joints { entry(k) } else { other })
+/// `entry(k)` for each of the first `joints` joints.
+fn per_joint<const S: usize, const N: usize>(
+    joints: usize,
+    entry: impl Fn(usize) -> Block<S>,
+) -> [Block<S>; N] {
+    std::array::from_fn(|k| if k < joints { entry(k) } else { Block::ZERO })
 }
 
 /// Inverse by Gauss–Jordan elimination with row pivoting.
-fn inverse(a: &Block) -> Block {
+fn inverse<const S: usize>(a: &Block<S>) -> Block<S> {
     let (mut a, mut inverse) = (*a, Block::identity());
-    for j in 0..STAGES {
-        let pivot = (j..STAGES).max_by(|&r, &s| a[(r, j)].abs().total_cmp(&a[(s, j)].abs())).unwrap_or(j);
+    for j in 0..S {
+        let pivot = (j..S).max_by(|&r, &s| a[(r, j)].abs().total_cmp(&a[(s, j)].abs())).unwrap_or(j);
         a.0.swap(j, pivot);
         inverse.0.swap(j, pivot);
         let reciprocal = 1.0 / a[(j, j)];
-        for k in 0..STAGES {
+        for k in 0..S {
             a[(j, k)] *= reciprocal;
             inverse[(j, k)] *= reciprocal;
         }
-        for i in (0..STAGES).filter(|&i| i != j) {
+        for i in (0..S).filter(|&i| i != j) {
             let factor = a[(i, j)];
-            for k in 0..STAGES {
+            for k in 0..S {
                 a[(i, k)] -= factor * a[(j, k)];
                 inverse[(i, k)] -= factor * inverse[(j, k)];
             }

@@ -1,60 +1,102 @@
-//! The coefficients of four-point Gauss–Legendre collocation.
+//! The coefficients of Gauss–Legendre collocation.
 
 use flexure_core::linalg::{Matrix, Vector};
 
-/// Number of collocation points; the order is twice that.
-pub(crate) const STAGES: usize = 4;
+/// One number per collocation point, or stage.
+pub(crate) type Stages<const S: usize> = Vector<f64, S>;
 
-/// One number per stage.
-pub(crate) type Stages = Vector<f64, STAGES>;
+/// One number per pair of stages.
+pub(crate) type Block<const S: usize> = Matrix<f64, S, S>;
 
-/// The collocation scheme on [0, 1].
+/// Collocation at the `S` points of Gauss on [0, 1], of order 2 S.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Scheme {
+pub(crate) struct Scheme<const S: usize> {
     /// Nodes c.
-    pub nodes: Stages,
+    pub nodes: Stages<S>,
     /// Weights b.
-    pub weights: Stages,
+    pub weights: Stages<S>,
     /// A: integrates stage values once.
-    pub once: Matrix<f64, STAGES, STAGES>,
+    pub once: Block<S>,
     /// A²: integrates them twice.
-    pub twice: Matrix<f64, STAGES, STAGES>,
+    pub twice: Block<S>,
     /// bᵀA, which integrates twice up to the end of the step.
-    pub end_twice: Stages,
-    /// Value at 0 of the polynomial through the stage values.
-    pub start: Stages,
+    pub end_twice: Stages<S>,
+    /// Coefficients, constant term first, of the polynomials that are 1 at one node and 0 at the others, a row each.
+    pub polynomials: Block<S>,
+    /// Values at 0 of these polynomials.
+    pub start: Stages<S>,
 }
 
-impl Scheme {
-    /// Four-point Gauss–Legendre.
+impl<const S: usize> Scheme<S> {
+    /// The defect at the start of a step of length h of an oscillation at ω, relative to its acceleration, in units of (h ω)^s for small
+    /// h ω.
+    pub(crate) const DEFECT: f64 = factorial(S) / factorial(2 * S);
+
+    /// What this makes by the end of the step, in the same units: the error of the exponential is s!² (h ω)^(2s+1) / ((2s)! (2s+1)!).
+    pub(crate) const ERROR_OF_DEFECT: f64 = factorial(S) / factorial(2 * S + 1);
+
+    /// How much larger the defect of half as many stages is, in units of (h ω)^(s/2).
+    pub(crate) const DEFECT_OF_HALF: f64 = factorial(S / 2) / factorial(2 * (S / 2)) / Self::DEFECT;
+
+    /// The points of Gauss.
     pub(crate) fn gauss() -> Self {
-        let inner = (3.0 / 7.0 - 2.0 / 7.0 * (6.0_f64 / 5.0).sqrt()).sqrt();
-        let outer = (3.0 / 7.0 + 2.0 / 7.0 * (6.0_f64 / 5.0).sqrt()).sqrt();
-        let nodes = Vector([-outer, -inner, inner, outer]).map(|x| 0.5 * (1.0 + x));
-        let heavy = (18.0 + 30.0_f64.sqrt()) / 72.0;
-        let light = (18.0 - 30.0_f64.sqrt()) / 72.0;
-        let weights = Vector([light, heavy, heavy, light]);
-        let polynomials: [[f64; STAGES]; STAGES] = std::array::from_fn(|j| lagrange(&nodes, j));
-        let once = Matrix::from_fn(|i, j| integral(&polynomials[j], nodes[i]));
-        let twice = once * once;
+        let nodes = gauss_nodes();
+        let polynomials = Matrix(std::array::from_fn(|j| lagrange(&nodes, j).0));
+        let integral = |j: usize, x| integral(&polynomials.row(j), x);
+        let weights = Vector::from_fn(|j| integral(j, 1.0));
+        let once = Matrix::from_fn(|i, j| integral(j, nodes[i]));
         Self {
             nodes,
             weights,
             once,
-            twice,
+            twice: once * once,
             end_twice: once.transpose() * weights,
-            start: Vector::from_fn(|j| polynomials[j][0]),
+            polynomials,
+            start: polynomials.column(0),
         }
+    }
+
+    /// What stage values are multiplied by to have their polynomial at `x`.
+    #[inline]
+    pub(crate) fn at(&self, x: f64) -> Stages<S> {
+        Vector::from_fn(|j| self.polynomials.0[j].iter().rev().fold(0.0, |sum, c| sum * x + c))
     }
 }
 
+/// The roots of the Legendre polynomial of degree `S`, moved to [0, 1], by Newton's iteration.
+fn gauss_nodes<const S: usize>() -> Stages<S> {
+    Vector::from_fn(|i| {
+        let mut x = -(std::f64::consts::PI * (i as f64 + 0.75) / (S as f64 + 0.5)).cos();
+        for _ in 0..10 {
+            let (mut before, mut value) = (1.0, x);
+            for n in 1..S {
+                let n = n as f64;
+                (before, value) = (value, ((2.0 * n + 1.0) * x * value - n * before) / (n + 1.0));
+            }
+            let slope = S as f64 * (x * value - before) / (x * x - 1.0);
+            x -= value / slope;
+        }
+        0.5 * (1.0 + x)
+    })
+}
+
+/// n!
+pub(crate) const fn factorial(n: usize) -> f64 {
+    let (mut product, mut k) = (1.0, 1);
+    while k < n {
+        k += 1;
+        product *= k as f64;
+    }
+    product
+}
+
 /// Coefficients, constant term first, of the Lagrange polynomial that is 1 at node `j`.
-fn lagrange(nodes: &Stages, j: usize) -> [f64; STAGES] {
-    let mut coefficients = [0.0; STAGES];
+fn lagrange<const S: usize>(nodes: &Stages<S>, j: usize) -> Stages<S> {
+    let mut coefficients = Vector::ZERO;
     coefficients[0] = 1.0;
     for (k, node) in nodes.iter().enumerate().filter(|&(k, _)| k != j) {
         let scale = 1.0 / (nodes[j] - nodes[k]);
-        for power in (0..STAGES).rev() {
+        for power in (0..S).rev() {
             let lower = if power == 0 { 0.0 } else { coefficients[power - 1] };
             coefficients[power] = (lower - node * coefficients[power]) * scale;
         }
@@ -63,6 +105,31 @@ fn lagrange(nodes: &Stages, j: usize) -> [f64; STAGES] {
 }
 
 /// ∫₀ˣ of a polynomial.
-fn integral(coefficients: &[f64; STAGES], x: f64) -> f64 {
-    coefficients.iter().enumerate().rev().fold(0.0, |sum, (k, c)| (sum + c / (k + 1) as f64) * x)
+fn integral<const S: usize>(coefficients: &Stages<S>, x: f64) -> f64 {
+    (0..S).rev().fold(0.0, |sum, k| (sum + coefficients[k] / (k + 1) as f64) * x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Scheme, factorial};
+
+    fn check<const S: usize>(node: f64) {
+        let scheme = Scheme::<S>::gauss();
+        assert!((scheme.nodes[0] - node).abs() < 1e-15, "{scheme:?}");
+        for power in (0..).take(2 * S) {
+            let sum: f64 = (0..S).map(|i| scheme.weights[i] * scheme.nodes[i].powi(power)).sum();
+            assert!((sum * f64::from(power + 1) - 1.0).abs() < 1e-14, "power {power}: {sum}");
+        }
+        // What is left of s^S / S! at 0.
+        let defect = scheme.start.dot(&scheme.nodes.map(|c| c.powi(i32::try_from(S).expect("a few")))).abs()
+            / factorial(S);
+        assert!((defect / Scheme::<S>::DEFECT - 1.0).abs() < 1e-13, "{defect}");
+    }
+
+    /// Abramowitz & Stegun, *Handbook of Mathematical Functions*, table 25.4.
+    #[test]
+    fn nodes_are_those_of_gauss() {
+        check::<2>(0.5 - 0.5 * 0.577_350_269_189_625_8);
+        check::<4>(0.5 - 0.5 * 0.861_136_311_594_052_6);
+    }
 }

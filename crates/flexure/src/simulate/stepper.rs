@@ -13,7 +13,7 @@ use crate::simulate::stepping::Stepping;
 #[expect(clippy::large_enum_variant, reason = "one a run")]
 pub enum Stepper<const N: usize> {
     /// Of high order, for smooth plants.
-    Smooth(Integrator),
+    Smooth(Integrator<N>),
     /// In short steps, for plants with dry friction, play or hysteresis.
     Rough(Stepping<N>),
 }

@@ -10,7 +10,8 @@ use flexure_core::linalg::{Matrix, Vector};
 use flexure_core::model::{Links, Motion};
 
 use crate::plant::{Friction, Plant, Sides};
-use crate::simulate::gauss::{StepFailure, is_finite, steps_in};
+use crate::simulate::collocation::is_finite;
+use crate::simulate::gauss::{StepFailure, steps_in};
 use crate::simulate::ledger::Ledger;
 use crate::simulate::stiction::{Slid, Stiction};
 

@@ -42,7 +42,10 @@ fn the_ideal_loop_tracks_at_one_kilohertz() {
 #[test]
 fn the_continuous_loop_tracks_to_rounding() {
     for name in ["two-link-tanh", "two-link-linear", "two-link-coupled-tanh"] {
-        let run = simulate(|s| (s.hold, s.duration) = (Hold::Continuous, 6.0), name);
+        let run = simulate(
+            |s| (s.hold, s.duration, s.integration_tolerance) = (Hold::Continuous, 6.0, 1e-12),
+            name,
+        );
         assert!(error_after(&run, 4.0) < 1e-11, "{name}: {}", error_after(&run, 4.0));
     }
 }
@@ -128,7 +131,10 @@ fn trace_and_summary_say_what_happened() {
 fn the_continuous_loop_starts_from_rest_on_the_reference() {
     // Exactly at rest, corrections of the stage equations are rounding of torques that cancel.
     for name in ["two-link-tanh-smooth", "two-link-linear-smooth", "two-link-coupled-tanh-smooth"] {
-        let run = simulate(|s| (s.hold, s.duration) = (Hold::Continuous, 5.0), name);
+        let run = simulate(
+            |s| (s.hold, s.duration, s.integration_tolerance) = (Hold::Continuous, 5.0, 1e-12),
+            name,
+        );
         assert!(run.divergence.is_none(), "{name}: {:?}", run.divergence);
         assert!(error_after(&run, 4.0) < 1e-11, "{name}: {}", error_after(&run, 4.0));
     }

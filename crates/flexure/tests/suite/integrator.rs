@@ -1,12 +1,12 @@
 //! The plant integrator: order, stiff damping, stiff springs, energy, and an independent solver.
 
 use differential_equations::prelude::{ExplicitRungeKutta, IVP, ODE};
-use flexure::simulate::{Integrator, Ledger};
+use flexure::simulate::{Integrator, Ledger, Order};
 use flexure_core::linalg::{Matrix, Vector};
 use flexure_core::model::{Fjr, Links, Motion};
 use flexure_core::robots::{Body, JointKind, Pendulum, PlanarTwoLink, Tree};
 
-use crate::common::{distance, exponential};
+use crate::common::{Random, distance, exponential};
 
 /// The paper's arm: motor damping over motor inertia is 9000 1/s.
 fn quanser() -> Fjr<f64, PlanarTwoLink<f64>, 2> {
@@ -69,7 +69,9 @@ fn the_order_is_eight() {
         Motion { v_l: Vector([3.0, -5.0]), v_m: Vector([1.0, 4.0]), ..Motion::at_rest(Vector([0.3, 1.2])) };
     let run = |count| {
         let torque = |t: f64, _: &Motion<f64, 2>| Vector([2.0 * t.cos(), 1.0]);
-        Integrator::new(1.0).advance_uniformly(&robot.into(), x, 1.0, count, &torque).expect("smooth")
+        Integrator::new(1.0)
+            .advance_uniformly(&robot.into(), x, 1.0, (Order::Eight, count), &torque)
+            .expect("smooth")
     };
     let reference = run(1024);
     let errors = [16, 32, 64].map(|count| distance(&run(count), &reference));
@@ -79,6 +81,70 @@ fn the_order_is_eight() {
         assert!((7.0..9.0).contains(&order), "order {order}, errors {errors:?}");
     }
     assert!(errors[2] < 1e-9, "{errors:?}");
+}
+
+#[test]
+fn the_lower_order_is_four() {
+    let robot = Fjr { motor_damping: Vector([0.2, 0.5]), ..quanser() };
+    let x =
+        Motion { v_l: Vector([3.0, -5.0]), v_m: Vector([1.0, 4.0]), ..Motion::at_rest(Vector([0.3, 1.2])) };
+    let run = |order, count| {
+        let torque = |t: f64, _: &Motion<f64, 2>| Vector([2.0 * t.cos(), 1.0]);
+        Integrator::new(1.0)
+            .advance_uniformly(&robot.into(), x, 1.0, (order, count), &torque)
+            .expect("smooth")
+    };
+    let reference = run(Order::Eight, 1024);
+    let errors = [256, 512, 1024].map(|count| distance(&run(Order::Four, count), &reference));
+    for pair in errors.windows(2) {
+        let order = (pair[0] / pair[1]).log2();
+        assert!((3.8..4.2).contains(&order), "order {order}, errors {errors:?}");
+    }
+    assert!(errors[2] < 1e-8, "{errors:?}");
+}
+
+/// What a damper of 9000 1/s takes within one step of 1 ms is exact: a step knows the exponential.
+#[test]
+fn one_step_goes_through_a_stiff_damper() {
+    let robot = joint(0.0107, 0.01, 4.0, [0.55, 90.0]);
+    for order in [Order::Four, Order::Eight] {
+        let mut x = Motion { v_m: Vector([0.5]), v_l: Vector([0.3]), ..Motion::at_rest(Vector([0.1])) };
+        let mut worst = 0.0_f64;
+        for k in 0..200 {
+            // As much as a torque changes within a period of a loop.
+            let u = 20.0 + 5.0 * (0.05 * f64::from(k)).sin();
+            let expected = exact(&robot, &x, u, 1e-3);
+            x = Integrator::new(1e-7)
+                .advance_uniformly(&robot.into(), x, 1e-3, (order, 1), &|_, _: &_| Vector([u]))
+                .expect("linear");
+            for (got, expected) in flat(&x).iter().zip(expected) {
+                worst = worst.max((got - expected).abs());
+            }
+        }
+        let bound = if order == Order::Four { 2e-6 } else { 3e-8 };
+        assert!(worst < bound, "{order:?}: {worst:e}");
+    }
+}
+
+/// After each jump of the torque the motor's speed is another within a ninth of the step, and what its spring gives to the link
+/// meanwhile adds up over the run.
+#[test]
+fn the_spring_feels_a_speed_that_is_damped_within_the_step() {
+    let robot = joint(0.0107, 0.01, 4.0, [0.55, 90.0]);
+    let mut integrator = Integrator::new(1e-7);
+    let start = Motion::at_rest(Vector([0.1]));
+    let (mut x, mut expected) = (start, start);
+    for k in 0..1000 {
+        let u = 20.0 * (5e-3 * f64::from(k)).sin();
+        x = integrator
+            .advance_uniformly(&robot.into(), x, 1e-3, (Order::Four, 1), &|_, _: &_| Vector([u]))
+            .expect("linear");
+        let [q_l, q_m, v_l, v_m] = exact(&robot, &expected, u, 1e-3).map(|x| Vector([x]));
+        expected = Motion { q_l, q_m, v_l, v_m };
+    }
+    // With what the spring gives at the stages alone it is 2.2e-8 rad/s.
+    let error = x.v_l[0] - expected.v_l[0];
+    assert!(error.abs() < 1e-8, "{error:e} rad/s");
 }
 
 #[test]
@@ -205,6 +271,76 @@ fn the_ledger_balances() {
     let residual = stored - ledger.supplied + ledger.dissipated;
     assert!(residual.abs() < 1e-9 * ledger.throughput, "{residual} J of {ledger:?}");
     assert!(ledger.dissipated > 0.0 && ledger.supplied > 0.0);
+}
+
+/// A motor alone under its damper: what the damper takes is known.
+#[test]
+fn the_ledger_knows_what_a_stiff_damper_takes() {
+    let robot = joint(1.0, 0.01, 1e-9, [0.0, 90.0]);
+    let x = Motion { v_m: Vector([10.0]), ..Motion::at_rest(Vector([0.0])) };
+    let (end, ledger, steps) = advance(&robot, x, 1e-3, Vector([45.0]));
+    // q̇ = v + (w − v) e^(−λ t) with v = u / D: ∫ D q̇² dt and u Δq.
+    let (rate, v, excess, t) = (9000.0_f64, 0.5, 9.5, 1e-3);
+    let left = (-rate * t).exp();
+    let first = excess * (1.0 - left) / rate;
+    let dissipated =
+        90.0 * (v * v * t + 2.0 * v * first + excess * excess * (1.0 - left * left) / (2.0 * rate));
+    assert!((ledger.dissipated / dissipated - 1.0).abs() < 1e-9, "{ledger:?} {dissipated} {steps}");
+    assert!((ledger.supplied / (45.0 * (v * t + first)) - 1.0).abs() < 1e-9, "{ledger:?}");
+    assert!((end.q_m[0] - (v * t + first)).abs() < 1e-12, "{end:?}");
+}
+
+/// Loops at random: arms and gains of all kinds, from smooth to wild, held and continuous, some with torques that jump within the
+/// intervals and with springs that harden.
+#[test]
+fn achieved_errors_follow_the_tolerance() {
+    let mut r = Random(20);
+    let mut worst = [0.0_f64; 3];
+    for case in 0..60 {
+        let mut between = |low: f64, high: f64| low * (high / low).powf(0.5 + 0.5 * r.next());
+        let mut pair = |low, high| Vector([between(low, high), between(low, high)]);
+        let robot = Fjr {
+            motor_inertia: pair(0.005, 0.5),
+            stiffness: pair(3.0, 3000.0),
+            link_damping: pair(0.01, 1.0),
+            motor_damping: pair(0.01, 100.0),
+            ..quanser()
+        };
+        let hardening = if case % 3 == 0 { pair(1.0, 1e4) } else { Vector::ZERO };
+        let plant = flexure::plant::Plant { spring_hardening: hardening, ..robot.into() };
+        let (gain, rate) = (pair(1.0, 50.0), pair(0.5, 20.0));
+        let jump = if case % 2 == 0 { 3.7e-3 * f64::from(case) } else { f64::INFINITY };
+        let law = |t: f64, x: &Motion<f64, 2>| {
+            let wave = Vector::from_fn(|k| (rate[k] * t).sin() + if t > jump { 0.5 } else { 0.0 });
+            gain.diag_mul(&(wave - x.q_m - x.v_m.scaled(0.05)))
+        };
+        let x = Motion {
+            v_l: Vector([r.next(), r.next()]).scaled(3.0),
+            ..Motion::at_rest(Vector([r.next(), r.next()]))
+        };
+        let run = |tolerance: f64| {
+            let (mut integrator, mut now) = (Integrator::new(tolerance), x);
+            for k in 0..100 {
+                let t = 5e-3 * f64::from(k);
+                let held = law(t, &now);
+                let held = |t: f64, x: &Motion<f64, 2>| if case % 4 < 2 { law(t, x) } else { held };
+                now = integrator.advance(&plant, now, t, 5e-3, &held, &mut Ledger::default()).unwrap_or_else(
+                    |failure| panic!("{case} {tolerance:e} {t} {failure:?} {robot:?} {gain:?}"),
+                );
+            }
+            now
+        };
+        let reference = run(1e-13);
+        let scale = 1.0 + distance(&reference, &Motion::at_rest(Vector::ZERO));
+        for (worst, tolerance) in worst.iter_mut().zip([1e-5, 1e-7, 1e-9]) {
+            // A torque that jumps is crossed by a step of 1e-5 of the interval whatever its error.
+            let across = if jump.is_finite() { 2e-8 } else { 0.0 };
+            *worst = worst.max(distance(&run(tolerance), &reference) / scale / (tolerance + across));
+        }
+    }
+    assert!(worst.iter().all(|&error| error < 10.0), "{worst:?}");
+    // Nor are steps much shorter than the tolerance asks for.
+    assert!(worst[0] > 0.1, "{worst:?}");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use differential_equations::prelude::{ExplicitRungeKutta, IVP, ODE};
 use flexure::plant::Plant;
-use flexure::simulate::{Integrator, Ledger};
+use flexure::simulate::{Integrator, Ledger, Order};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Motion, RotorCoupling};
 use flexure_core::robots::{Body, JointKind, Pendulum, PlanarTwoLink, Tree};
@@ -210,7 +210,9 @@ fn the_order_is_still_eight() {
         Motion { v_l: Vector([1.0, -2.0]), v_m: Vector([1.0, 1.0]), ..Motion::at_rest(Vector([0.3, 1.2])) };
     let run = |count| {
         let torque = |t: f64, _: &Motion<f64, 2>| Vector([2.0 * t.cos(), 1.0]);
-        Integrator::new(1.0).advance_uniformly(&plant, x, 1.0, count, &torque).expect("smooth")
+        Integrator::new(1.0)
+            .advance_uniformly(&plant, x, 1.0, (Order::Eight, count), &torque)
+            .expect("smooth")
     };
     let reference = run(2048);
     let errors = [32, 64, 128].map(|count| distance(&run(count), &reference));

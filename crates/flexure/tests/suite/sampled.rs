@@ -22,6 +22,8 @@ fn two_link(period: f64, reference: &str, more: &str) -> Scenario {
          [reference]\n{reference}\n\
          [controller]\nkind = \"pd\"\nstiffness = 1.0\ndamping = 1.0"
     ));
+    // What is measured are differences of motions.
+    scenario.integration_tolerance = 1e-12;
     scenario.controller =
         entrants(&["vcbc:tanh".to_owned()]).unwrap()[0].controller(&scenario.robot).unwrap();
     scenario

@@ -201,6 +201,18 @@ pub const SCENARIO_CASES: &[Case] = &[
     ("duration = 10.0", "duration = -10.0", "-10.0", "duration is -10 s, must be > 0"),
     ("period = 0.001", "period = 20", "20\n", "control_period is 20 s, must be <= duration, 10 s"),
     ("period = 0.001", "period = 1e-12", "1e-12", "control periods in 10 s, must be <= 5e6"),
+    (
+        "period = 0.001",
+        "period = 0.001\nintegration_tolerance = 1e-15",
+        "1e-15",
+        "integration_tolerance is 1e-15, must be from 1e-13 to 1e-3",
+    ),
+    (
+        "period = 0.001",
+        "period = 0.001\nintegration_tolerance = -1e-7",
+        "-1e-7",
+        "integration_tolerance is -1e-7, must be > 0",
+    ),
     ("period = 0.001", "period = 0.001\nhold = \"first-order\"", "\"first-order\"", "hold is 'first-order'"),
     (
         "[0.0, 0.0]",

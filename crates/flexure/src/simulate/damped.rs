@@ -1,0 +1,257 @@
+//! A motor under its damper, exactly.
+//!
+//! With a damper of rate λ = D_m / M_m the speed of a motor obeys q̈_m + λ q̇_m = f, and f, all other torque over the inertia, is as
+//! smooth as the springs are even where the speed is not. So f is what is collocated, and speed and position follow from its polynomial by
+//! exponentials: Hochbruck & Ostermann, *Exponential integrators*, Acta Numerica 19 (2010), section 2. Without a damper this is
+//! Gauss' collocation itself.
+
+use flexure_core::linalg::{Matrix, Vector};
+use flexure_core::scalar::Scalar;
+
+use crate::simulate::scheme::{Block, Scheme, Stages, factorial};
+
+/// φ_k(−x) for k = 0, 1, …: ∫₀¹ e^(−x (1 − s)) s^(k−1) / (k − 1)! ds.
+type Phi = [f64; COUNT];
+
+const COUNT: usize = 9;
+
+/// A damping rate times the length of a step from which on speeds are damped within the step. Below it positions at the stages are those of
+/// a polynomial through the speeds there, as in Gauss' method: that is what makes it symplectic where nothing is damped.
+const WITHIN: f64 = 1.0;
+
+/// How a damped motor moves by the instant c h of a step of length h, from its speed at the start and f at the stages.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reach<const S: usize> {
+    /// What is left of the speed: e^(−λ h c).
+    pub decay: f64,
+    /// How far the speed at the start carries, in h.
+    pub drift: f64,
+    /// What f adds to the speed, in h.
+    pub once: Stages<S>,
+    /// What f adds to the position, in h².
+    pub twice: Stages<S>,
+}
+
+/// The coefficients of one damped motor for steps of one length.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Damped<const S: usize> {
+    /// By the stages.
+    pub stages: [Reach<S>; S],
+    /// By the end of the step.
+    pub end: Reach<S>,
+    /// h² times this integrates f twice up to the stages.
+    pub twice: Block<S>,
+    /// What the acceleration at the stages has of f at the stages: q̈_m = f − λ q̇_m.
+    pub acceleration: Block<S>,
+    /// By how much means of e^(−λ t) over the weights of the stages exceed its values there, where that matters: a spring that feels the
+    /// means gets the impulse of a speed that is damped within the step.
+    pub excess: Stages<S>,
+    /// ∫ ℓ_i q̇_m dt for the polynomials ℓ_i of the stages, from the speed at the start, in h: they sum to `end.drift`.
+    pub work_of_speed: Stages<S>,
+    /// The same from f, in h².
+    pub work: Block<S>,
+    /// By how much the end of the step, its speed counted by how far it carries, moves for a defect of 1 at the start that vanishes
+    /// at the stages, in h.
+    pub error_of_defect: f64,
+}
+
+impl<const S: usize> Damped<S> {
+    /// For the damping rate times the length of the step, λ h ≥ 0.
+    pub(crate) fn new(scheme: &Scheme<S>, rate: f64) -> Self {
+        const { assert!(2 * S < COUNT) };
+        let exact: [Reach<S>; S] = std::array::from_fn(|i| Reach::new(scheme, rate, scheme.nodes[i]));
+        let speeds = Matrix(exact.map(|reach| reach.once.0));
+        let mut stages = exact;
+        if rate < WITHIN {
+            for (i, reach) in stages.iter_mut().enumerate() {
+                reach.drift = scheme.once.row(i).dot(&Vector(exact.map(|reach| reach.decay)));
+                reach.twice = (scheme.once * speeds).row(i);
+            }
+        }
+        let phi = phi(rate);
+        // ∫₀¹ s^m s^k φ_k(−λ h s) ds, by parts.
+        let moment = |m: usize, k: usize| {
+            (0..=m).fold(0.0, |sum, r| {
+                let sign = if r % 2 == 0 { 1.0 } else { -1.0 };
+                sum + sign * factorial(m) / factorial(m - r) * phi[k + 1 + r]
+            })
+        };
+        let p = &scheme.polynomials;
+        let end = Reach::new(scheme, rate, 1.0);
+        let over = |i: usize, k: usize| (0..S).map(|m| p[(i, m)] * moment(m, k)).sum::<f64>();
+        let work_of_speed: Stages<S> = Vector::from_fn(|i| over(i, 0));
+        let excess = Vector::from_fn(|i| work_of_speed[i] / scheme.weights[i] - stages[i].decay);
+        Self {
+            stages,
+            end,
+            twice: Matrix(stages.map(|reach| reach.twice.0)),
+            acceleration: Matrix::identity() - speeds.scaled(rate),
+            excess: if rate < WITHIN { Stages::ZERO } else { excess },
+            work_of_speed,
+            work: Matrix::from_fn(|i, j| (0..S).map(|k| p[(j, k)] * factorial(k) * over(i, k + 1)).sum()),
+            error_of_defect: error_of_defect(scheme, rate),
+        }
+    }
+}
+
+/// As [`Damped::error_of_defect`], for the damping rate times the length of the step.
+pub(crate) fn error_of_defect<const S: usize>(scheme: &Scheme<S>, rate: f64) -> f64 {
+    let phi = phi(rate);
+    // The polynomial that is 1 at the start and 0 at the stages: its leading coefficient, then the others.
+    let leading = scheme.nodes.iter().fold(1.0, |product, c| -product / c);
+    let power = |j: usize| scheme.nodes[j].powi(degree(S));
+    let rest = |m: usize| -leading * (0..S).map(|j| scheme.polynomials[(j, m)] * power(j)).sum::<f64>();
+    let at_end =
+        (0..S).fold(leading * factorial(S) * phi[S + 1], |sum, m| sum + rest(m) * factorial(m) * phi[m + 1]);
+    (at_end * phi[1]).abs()
+}
+
+impl<const S: usize> Reach<S> {
+    fn new(scheme: &Scheme<S>, rate: f64, c: f64) -> Self {
+        let phi = phi(rate * c);
+        // ∫₀ᶜ e^(−λh (c − s)) s^k ds = k! c^(k+1) φ_(k+1)(−λh c), and once more.
+        let integral = |times: usize| {
+            let weights: Stages<S> = Vector::from_fn(|j| {
+                let power = |k: usize| factorial(k) * c.powi(degree(k + times)) * phi[k + times];
+                (0..S).map(|k| scheme.polynomials[(j, k)] * power(k)).sum()
+            });
+            // What f does that is constant is known without the cancellations.
+            weights.scaled(c.powi(degree(times)) * phi[times] / weights.iter().sum::<f64>())
+        };
+        Self { decay: phi[0], drift: c * phi[1], once: integral(1), twice: integral(2) }
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "a few stages")]
+fn degree(n: usize) -> i32 {
+    n as i32
+}
+
+/// φ_k(−x) for x ≥ 0.
+fn phi(x: f64) -> Phi {
+    let mut phi = [0.0; COUNT];
+    if x < 4.0 {
+        // The last one from its series, the others from φ_k = 1/k! − x φ_(k+1), which shrinks errors here.
+        let last = COUNT - 1;
+        let mut term = 1.0 / factorial(last);
+        for j in 1..40 {
+            phi[last] += term;
+            term *= -x / (last + j) as f64;
+        }
+        for k in (0..last).rev() {
+            phi[k] = 1.0 / factorial(k) - x * phi[k + 1];
+        }
+    } else {
+        phi[0] = Scalar::exp(-x);
+        for k in 1..COUNT {
+            phi[k] = (1.0 / factorial(k - 1) - phi[k - 1]) / x;
+        }
+    }
+    phi
+}
+
+#[cfg(test)]
+mod tests {
+    use flexure_core::linalg::Vector;
+
+    use super::{Damped, Reach};
+    use crate::linalg::{Dense, exponential};
+    use crate::simulate::scheme::Scheme;
+
+    const RATES: [f64; 8] = [0.0, 1e-9, 0.3, 3.99, 4.01, 9.0, 50.0, 3e4];
+
+    /// ∫₀¹ by Gauss' rule in parts that are short where e^(−λ s) or e^(−λ (1 − s)) changes.
+    fn integral(rate: f64, f: impl Fn(f64) -> f64) -> f64 {
+        let scheme = Scheme::<4>::gauss();
+        let mut edges = vec![0.0];
+        let shortest = 0.1 / (1.0 + rate);
+        while edges[edges.len() - 1] < 0.5 {
+            let last = edges[edges.len() - 1];
+            edges.push((last + shortest.max(0.1 * last)).min(0.5));
+        }
+        let mirrored: Vec<_> = edges.iter().rev().skip(1).map(|x| 1.0 - x).collect();
+        edges.extend(mirrored);
+        let part = |from: f64, to: f64| {
+            (0..4)
+                .map(|i| (to - from) * scheme.weights[i] * f(from + (to - from) * scheme.nodes[i]))
+                .sum::<f64>()
+        };
+        edges.windows(2).map(|edge| part(edge[0], edge[1])).sum()
+    }
+
+    /// Position, speed and the powers 1, s, … as one linear system, whose exponential is exact.
+    fn exact<const S: usize>(rate: f64, c: f64, speed: f64, powers: &[f64; S]) -> [f64; 2] {
+        let mut columns = vec![vec![0.0; S + 2]; S + 2];
+        columns[1][0] = 1.0;
+        columns[1][1] = -rate;
+        for k in 0..S {
+            // f = Σ p_k s^k with the derivatives of s^k chained.
+            columns[2 + k][1] = powers[k];
+            if k + 1 < S {
+                columns[2 + k][2 + k + 1] = (k + 1) as f64;
+            }
+        }
+        let flow = exponential(&Dense::from_columns(&columns).scaled(c));
+        [0, 1].map(|row| flow[(row, 1)] * speed + flow[(row, 2)])
+    }
+
+    fn check<const S: usize>() {
+        let scheme = Scheme::<S>::gauss();
+        let (speed, powers): (f64, [f64; S]) = (0.7, std::array::from_fn(|k| [1.3, -2.0, 0.9, 1.7][k]));
+        let at = |s: f64| powers.iter().rev().fold(0.0, |sum, p: &f64| sum * s + p);
+        let f = scheme.nodes.map(at);
+        for rate in RATES {
+            let damped = Damped::new(&scheme, rate);
+            let reaches = scheme.nodes.iter().zip(damped.stages).chain([(1.0, damped.end)]);
+            for (i, (c, reach)) in reaches.enumerate() {
+                let got =
+                    [reach.drift * speed + reach.twice.dot(&f), reach.decay * speed + reach.once.dot(&f)];
+                let mut expected = exact(rate, c, speed, &powers);
+                if rate < 1.0 && i < S {
+                    let speeds = scheme.nodes.map(|c| exact(rate, c, speed, &powers)[1]);
+                    expected[0] = scheme.once.row(i).dot(&speeds);
+                }
+                // Squaring the exponential of the oracle loses bits.
+                for (got, expected) in got.iter().zip(expected) {
+                    assert!(
+                        (got - expected).abs() < 1e-12 * (1.0 + rate).sqrt(),
+                        "{rate}, {c}: {got} {expected}"
+                    );
+                }
+            }
+            for i in 0..S {
+                let here = |s: f64| scheme.at(s)[i];
+                let moved = |s: f64| Reach::new(&scheme, rate, s);
+                let of_speed = integral(rate, |s| here(s) * moved(s).decay);
+                assert!((damped.work_of_speed[i] - of_speed).abs() < 1e-11, "{rate}: {of_speed}");
+                let of_f = integral(rate, |s| here(s) * moved(s).once.dot(&f));
+                assert!((damped.work.row(i).dot(&f) - of_f).abs() < 1e-11, "{rate}: {of_f}");
+                let mean = of_speed / scheme.weights[i] - (-rate * scheme.nodes[i]).exp();
+                let felt = if rate < 1.0 { 0.0 } else { mean };
+                assert!((damped.excess[i] - felt).abs() < 1e-10, "{rate}: {felt}");
+            }
+            let defect = |s: f64| scheme.nodes.iter().fold(1.0, |product, c| product * (c - s) / c);
+            let at_end = integral(rate, |s| (-rate * (1.0 - s)).exp() * defect(s));
+            let error = (at_end * damped.end.drift).abs();
+            assert!((damped.error_of_defect - error).abs() < 1e-12, "{rate}: {error}");
+        }
+    }
+
+    #[test]
+    fn a_damped_motor_moves_as_the_exponential_says() {
+        check::<2>();
+        check::<4>();
+    }
+
+    #[test]
+    fn without_a_damper_it_is_collocation() {
+        let scheme = Scheme::<4>::gauss();
+        let Damped { stages, end, twice, .. } = Damped::new(&scheme, 0.0);
+        for (i, stage) in stages.iter().enumerate() {
+            let differences = [stage.once - scheme.once.row(i), twice.row(i) - scheme.twice.row(i)];
+            assert!(differences.iter().flat_map(Vector::iter).all(|x| x.abs() < 1e-14), "{differences:?}");
+        }
+        let differences = [end.once - scheme.weights, end.twice - scheme.end_twice];
+        assert!(differences.iter().flat_map(Vector::iter).all(|x| x.abs() < 1e-14), "{differences:?}");
+    }
+}
