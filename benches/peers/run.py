@@ -227,7 +227,7 @@ def motion_rows(work, flexure, packages):
     tight.run(0)
     check.run(0)
     apart = distance(tight.numbers(), check.numbers())
-    for method, name in (("", "Gauss-8"), ("-midpoint", "midpoint 1 ms")):
+    for method, name in (("", "collocation"), ("-midpoint", "midpoint 1 ms")):
         own = motion(flexure, work + method)
         row = Row(work + method, f"{title}: {name}", own, [peer(*one) for one in INTEGRATORS], SAME_PLANT, tight.numbers())
         if not apart <= SAME_PLANT:

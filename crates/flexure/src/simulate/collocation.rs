@@ -1,4 +1,4 @@
-//! One step of collocation, and how far it can be trusted.
+//! One step of collocation.
 
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Links, Motion, Power};
@@ -6,11 +6,9 @@ use flexure_core::model::{Links, Motion, Power};
 use crate::plant::{Plant, Sides};
 use crate::simulate::damped::{Damped, Reach, error_of_defect};
 use crate::simulate::ledger::Ledger;
+use crate::simulate::local_error::{Values, estimate, speeds};
 use crate::simulate::newton::{Anchor, StageSolver, StepSolution};
 use crate::simulate::scheme::{Scheme, Stages};
-
-/// Speed [rad/s] below which errors count as absolute.
-const SLOW: f64 = 1e-3;
 
 /// Corrections of this size relative to the speeds of a step are rounding.
 const ROUNDING: f64 = 1e-14;
@@ -55,8 +53,8 @@ pub(crate) struct Step<const S: usize, const N: usize> {
 /// Motor torques at the stages and at the end of a step [N m].
 #[derive(Clone, Copy)]
 pub(crate) struct Torques<const S: usize, const N: usize> {
-    stages: [Vector<f64, N>; S],
-    end: Vector<f64, N>,
+    pub(super) stages: [Vector<f64, N>; S],
+    pub(super) end: Vector<f64, N>,
 }
 
 /// What a step leaves for the next: where its iteration matrix was made and how it converges, and its polynomials.
@@ -363,53 +361,6 @@ impl<const S: usize, const N: usize> Collocation<S, N> {
     }
 }
 
-/// What the error of a step is estimated from.
-struct Values<'a, const S: usize, const N: usize> {
-    start: &'a Sides<N>,
-    solution: &'a StepSolution<S, N>,
-    torques: &'a Torques<S, N>,
-    /// What stage values are multiplied by to have the value at the start of the polynomial whose error is asked for, and of that
-    /// of half as many stages.
-    at_start: [Stages<S>; 2],
-}
-
-/// The estimated error of a step of `C` stages, relative to the speeds of the joints. The defect of its polynomials at the start, where
-/// their slope is known, and of the torque at the end is of lower order than the error. What it becomes grows with the rates at
-/// which the robot moves by itself, and with that at which it is seen to be moved: defects of more stages are smaller by the powers of
-/// that rate. So a torque that jumps, whose defects are alike, counts in full. A defect of a motor is also damped away.
-fn estimate<const C: usize, const S: usize, L: Links<f64, N>, const N: usize>(
-    task: &Task<'_, L, N>,
-    solver: &StageSolver<S, N>,
-    values: &Values<'_, S, N>,
-    of_damped: impl Fn(usize) -> f64,
-) -> f64 {
-    let Task { plant, x, h, .. } = *task;
-    let Values { start, solution, torques: Torques { stages, end }, at_start: [own, half] } = values;
-    let speeds = speeds(x, h, solver, start);
-    let known = (0..C).fold(1.0, |power, _| power * solver.fastest);
-    let mut worst = 0.0_f64;
-    for k in 0..plant.robot.links.joints() {
-        let mut effect = |known_value: f64, unit: f64, damped: f64, value: &dyn Fn(usize) -> f64| {
-            let (mut a, mut b) = (known_value, known_value);
-            for i in 0..S {
-                a -= own[i] * value(i);
-                b -= half[i] * value(i);
-            }
-            if a != 0.0 {
-                let seen = Scheme::<C>::DEFECT_OF_HALF * a / b;
-                let growth = (Scheme::<C>::ERROR_OF_DEFECT * known.max(seen * seen)).min(1.0);
-                worst = worst.max(a.abs() * unit * (growth + damped));
-            }
-        };
-        effect(start[0][k], h / speeds[0][k], 0.0, &|i| solution.link[i][k]);
-        effect(start[1][k], h / speeds[1][k], of_damped(k), &|i| solution.motor[i][k]);
-        // The points lie alike from both ends.
-        let of_torque = h / plant.robot.motor_inertia[k] / speeds[1][k];
-        effect(end[k], of_torque, 0.0, &|i| stages[S - 1 - i][k]);
-    }
-    worst
-}
-
 /// What stage values are multiplied by to have the value at 0 of the polynomial through their polynomial at the points of half as many
 /// stages.
 fn half<const S: usize>(scheme: &Scheme<S>) -> Stages<S> {
@@ -450,18 +401,6 @@ fn felt<const S: usize, const N: usize>(
         }
     }
     felt
-}
-
-/// What errors of links and motors count by [rad/s].
-fn speeds<const S: usize, const N: usize>(
-    x: &Motion<f64, N>,
-    h: f64,
-    solver: &StageSolver<S, N>,
-    start: &Sides<N>,
-) -> Sides<N> {
-    let link = Vector::from_fn(|k| x.v_l[k].abs().max(h * start[0][k].abs()) + SLOW);
-    let gained = |k: usize| h * solver.damped[k].end.drift * start[1][k].abs();
-    [link, Vector::from_fn(|k| x.v_m[k].abs().max(gained(k)) + SLOW)]
 }
 
 #[inline]

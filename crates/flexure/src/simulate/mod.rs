@@ -18,6 +18,7 @@ mod interface;
 mod lanes;
 mod ledger;
 mod limits;
+mod local_error;
 mod memory;
 mod names;
 mod newton;
