@@ -77,14 +77,15 @@ def test_the_law_is_rewarded_and_nothing_is_not() -> None:
 
 def test_steps_are_those_of_the_plant() -> None:
     """Against the loop: the law's torque on the plant, period by period, is the ideal sampled loop."""
-    scenario = flexure.Scenario("planar-2r-tanh", set={"hold": "zero-order"})
+    # A plant begins each call anew, a loop begins each step with the last one's polynomials: the same motion to the tolerance.
+    scenario = flexure.Scenario("planar-2r-tanh", set={"hold": "zero-order", "integration_tolerance": 1e-12})
     plant, law, held = flexure.Plant(scenario), scenario.controller(), scenario.open()
     held.step()
     x = held.x
     for k in range(200):
         x = plant.roll(x, law.torque(x, k * plant.period)[None], first=k)[-1]
         held.step()
-    np.testing.assert_allclose(x, held.x, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(x, held.x, rtol=0, atol=1e-11)
 
 
 def test_a_batch_rolls_as_its_rows() -> None:
