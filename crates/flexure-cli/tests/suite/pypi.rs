@@ -40,7 +40,11 @@ pub fn environment(name: &str, wanted: &str) -> PathBuf {
         return python;
     }
     must(Path::new("python3"), &["-m", "venv", "--clear", folder.to_str().unwrap()], NO_PYTHON);
-    must(&python, &["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r", wanted], NO_PYPI);
+    must(
+        &python,
+        &["-m", "pip", "install", "--quiet", "--no-compile", "--disable-pip-version-check", "-r", wanted],
+        NO_PYPI,
+    );
     std::fs::write(&done, requirements).unwrap();
     python
 }

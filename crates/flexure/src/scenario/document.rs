@@ -36,7 +36,8 @@ const MOST_PERIODS: f64 = 5e6;
 const UNEVEN: f64 = 1e-6;
 
 /// Tolerated local error of integration steps, relative to the speeds of the joints, where the file has none: links and motors of the
-/// built-in arms are then within 2e-10 rad of their motion after a second.
+/// built-in arms under given torques are then within 2e-10 rad of their motion after a second, and the built-in loops, over all of their
+/// time, within 6e-9 rad of what they are with 1e-12.
 pub(crate) const INTEGRATION_TOLERANCE: f64 = 1e-7;
 
 /// The smallest and the largest that a file may have.
