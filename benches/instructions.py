@@ -6,6 +6,7 @@ Counts repeat to a few instructions, whatever else the machine does. They belong
 The program is the example `peers` in the profile release; `cargo test --release --workspace` has built it too, so `--no-build` after that.
 """
 
+import argparse
 import os
 import re
 import shutil
@@ -102,4 +103,8 @@ def main(to_write, build):
 
 
 if __name__ == "__main__":
-    sys.exit(main("--write" in sys.argv, "--no-build" not in sys.argv))
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--write", action="store_true", help="writes the table anew")
+    parser.add_argument("--no-build", action="store_true", help="counts the program that is there")
+    options = parser.parse_args()
+    sys.exit(main(options.write, not options.no_build))

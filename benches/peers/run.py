@@ -324,6 +324,9 @@ def main():
     parser.add_argument("--json", type=Path, metavar="FILE")
     parser.add_argument("--markdown", type=Path, metavar="FILE")
     options = parser.parse_args()
+    known = [*CALLS, *PLANTS, *LOOPS]
+    if unknown := [row for row in options.rows if row not in known]:
+        parser.error(f"no row is {', '.join(unknown)}; there are {', '.join(known)}")
     FOLDER.mkdir(parents=True, exist_ok=True)
     python, packages = environment()
     flexure = flexure_program()
