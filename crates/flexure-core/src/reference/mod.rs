@@ -16,6 +16,7 @@
 //! The laws on flexible joints use four derivatives: a reference that is C⁴ asks for a continuous motor torque, one
 //! that is C³ for a torque with steps, anything less for infinite torque.
 
+mod argument;
 mod multisine;
 mod point_to_point;
 mod retimed;

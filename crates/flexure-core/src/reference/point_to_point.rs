@@ -1,8 +1,9 @@
 //! Rest to rest.
 
+use super::argument::{Argument, Line, fraction};
 use super::{Reference, Smoothstep};
 use crate::linalg::Vector;
-use crate::scalar::{Over, Piecewise, Scalar};
+use crate::scalar::{Jet, Over, Piecewise, Scalar};
 
 /// A straight line in joint space, from rest to rest: from + s((t − start) / duration) (to − from).
 ///
@@ -23,11 +24,26 @@ pub struct PointToPoint<C, const N: usize> {
     pub step: Smoothstep,
 }
 
+impl<C: Scalar, const N: usize> PointToPoint<C, N> {
+    /// Where the links are when so much of the time is over.
+    #[inline]
+    fn when<T: Over<C> + Piecewise>(&self, done: impl Argument<T>) -> Vector<T, N> {
+        let progress = self.step.progress(done);
+        Vector::from_fn(|i| progress.between(T::constant(self.from[i]), T::constant(self.to[i])))
+    }
+}
+
 impl<C: Scalar, const N: usize> Reference<C, N> for PointToPoint<C, N> {
     #[inline]
     fn on<T: Over<C> + Piecewise>(&self, t: T) -> Vector<T, N> {
-        let tau = (t - T::constant(self.start)).scale(self.duration.recip());
-        let progress = self.step.at(tau);
-        Vector::from_fn(|i| progress.between(T::constant(self.from[i]), T::constant(self.to[i])))
+        self.when(fraction(t, self.start, self.duration))
+    }
+
+    #[inline]
+    fn at<const K: usize>(&self, t: C) -> Vector<Jet<C, K>, N>
+    where
+        C: Over<C> + Piecewise,
+    {
+        self.when(Line::fraction(t, self.start, self.duration))
     }
 }

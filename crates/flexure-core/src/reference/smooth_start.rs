@@ -1,5 +1,6 @@
 //! Joining a moving reference from where the robot is and how it moves.
 
+use super::argument::{Argument, Line, fraction};
 use super::{Reference, Smoothstep, Stop};
 use crate::linalg::Vector;
 use crate::scalar::{Jet, Over, Piecewise, Scalar};
@@ -38,11 +39,10 @@ impl<C: Scalar, R, const N: usize> SmoothStart<C, R, N> {
         Self { from, duration, then }
     }
 
-    /// p joined with `r`, positions of the reference at `t`.
+    /// The motion `p` to rest joined with `r`, the reference, where so much of the transition is done.
     #[inline]
-    fn join<T: Over<C> + Piecewise>(&self, t: T, r: &Vector<T, N>) -> Vector<T, N> {
-        let tau = (t - T::constant(self.from.start)).scale(self.duration.recip());
-        let (progress, p) = (Smoothstep::Nonic.at(tau), self.from.on(t));
+    fn join<T: Piecewise>(done: impl Argument<T>, p: &Vector<T, N>, r: &Vector<T, N>) -> Vector<T, N> {
+        let progress = Smoothstep::Nonic.progress(done);
         Vector::from_fn(|i| progress.between(p[i], r[i]))
     }
 }
@@ -50,7 +50,8 @@ impl<C: Scalar, R, const N: usize> SmoothStart<C, R, N> {
 impl<C: Scalar, R: Reference<C, N>, const N: usize> Reference<C, N> for SmoothStart<C, R, N> {
     #[inline]
     fn on<T: Over<C> + Piecewise>(&self, t: T) -> Vector<T, N> {
-        self.join(t, &self.then.on(t))
+        let done = fraction(t, self.from.start, self.duration);
+        Self::join(done, &self.from.on(t), &self.then.on(t))
     }
 
     /// With the derivatives of r as it finds them fastest.
@@ -59,6 +60,7 @@ impl<C: Scalar, R: Reference<C, N>, const N: usize> Reference<C, N> for SmoothSt
     where
         C: Over<C> + Piecewise,
     {
-        self.join(Jet::variable(t), &self.then.at(t))
+        let done = Line::fraction(t, self.from.start, self.duration);
+        Self::join(done, &self.from.at(t), &self.then.at(t))
     }
 }

@@ -1,6 +1,7 @@
 //! The polynomials that go from 0 to 1 and are at rest at both ends.
 
-use crate::scalar::{Piecewise, Scalar};
+use super::argument::Argument;
+use crate::scalar::Piecewise;
 
 /// The polynomial s of degree 2m + 1 with s(0) = 0, s(1) = 1 and m zero derivatives at both ends.
 ///
@@ -47,9 +48,16 @@ impl Smoothstep {
     /// digits.
     #[inline]
     pub fn at<T: Piecewise>(self, tau: T) -> Progress<T> {
-        let tau = tau.clamp(T::ZERO, T::ONE);
-        let remaining = T::ONE - tau;
-        Progress { done: self.polynomial(tau), left: self.polynomial(remaining), early: remaining - tau }
+        self.progress(tau)
+    }
+
+    /// [`at`](Self::at), at any argument.
+    #[inline]
+    pub(super) fn progress<T: Piecewise, X: Argument<T>>(self, tau: X) -> Progress<T> {
+        let tau = tau.within_unit();
+        let remaining = tau.rest_to_one();
+        let early = remaining.number() - tau.number();
+        Progress { done: self.polynomial(tau), left: self.polynomial(remaining), early }
     }
 
     /// ∫ s from 0 to τ, for any τ: 0 up to τ = 0, exactly τ − ½ from τ = 1 on.
@@ -65,22 +73,21 @@ impl Smoothstep {
 
     /// ∫ s from 0 to τ, for τ from 0 to 1.
     #[inline]
-    fn antiderivative<T: Scalar>(self, tau: T) -> T {
-        let quotient = match self {
-            Self::Quintic => horner(const { &integrated::<3>() }, tau),
-            Self::Septic => horner(const { &integrated::<4>() }, tau),
-            Self::Nonic => horner(const { &integrated::<5>() }, tau),
-        };
-        quotient * tau
+    fn antiderivative<T: Piecewise>(self, tau: T) -> T {
+        match self {
+            Self::Quintic => tau.polynomial(const { &integrated::<3, 7>() }),
+            Self::Septic => tau.polynomial(const { &integrated::<4, 9>() }),
+            Self::Nonic => tau.polynomial(const { &integrated::<5, 11>() }),
+        }
     }
 
     /// The polynomial itself.
     #[inline]
-    fn polynomial<T: Scalar>(self, tau: T) -> T {
+    fn polynomial<T: Piecewise, X: Argument<T>>(self, tau: X) -> T {
         match self {
-            Self::Quintic => horner(const { &coefficients::<3>() }, tau),
-            Self::Septic => horner(const { &coefficients::<4>() }, tau),
-            Self::Nonic => horner(const { &coefficients::<5>() }, tau),
+            Self::Quintic => tau.polynomial(const { &coefficients::<3, 6>() }),
+            Self::Septic => tau.polynomial(const { &coefficients::<4, 8>() }),
+            Self::Nonic => tau.polynomial(const { &coefficients::<5, 10>() }),
         }
     }
 }
@@ -106,45 +113,34 @@ impl<T: Piecewise> Progress<T> {
     }
 }
 
-/// τᴹ Σ_k c_k (−τ)ᵏ.
-#[inline]
-fn horner<T: Scalar, const M: usize>(coefficients: &[f64; M], tau: T) -> T {
-    let mut sum = T::ZERO;
-    for &c in coefficients.iter().rev() {
-        sum = T::from_f64(c) - sum * tau;
-    }
-    for _ in 0..M {
-        sum *= tau;
-    }
-    sum
-}
-
-/// C(m+k, k) C(2m+1, m−k) for k = 0 … m, where M = m + 1.
+/// Coefficients of τᴹ Σ_k C(m+k, k) C(2m+1, m−k) (−τ)ᵏ, lowest order first, where M = m + 1 and D = 2 M.
 #[expect(
     clippy::indexing_slicing,
     reason = "evaluated by the compiler, where a wrong index is a build error"
 )]
-const fn coefficients<const M: usize>() -> [f64; M] {
+const fn coefficients<const M: usize, const D: usize>() -> [f64; D] {
     let m = M - 1;
-    let mut c = [0.0; M];
+    let mut c = [0.0; D];
     let mut k = 0;
     while k < M {
-        c[k] = (binomial(m + k, k) * binomial(2 * m + 1, m - k)) as f64;
+        let size = (binomial(m + k, k) * binomial(2 * m + 1, m - k)) as f64;
+        c[M + k] = if k % 2 == 0 { size } else { -size };
         k += 1;
     }
     c
 }
 
-/// The [`coefficients`] over the exponents of their integrals, M + 1 + k; binary fractions all of them, so exact.
+/// Coefficients of its integral, where D = 2 M + 1; binary fractions all of them, so exact.
 #[expect(
     clippy::indexing_slicing,
     reason = "evaluated by the compiler, where a wrong index is a build error"
 )]
-const fn integrated<const M: usize>() -> [f64; M] {
-    let mut c = coefficients::<M>();
-    let mut k = 0;
-    while k < M {
-        c[k] /= (M + 1 + k) as f64;
+const fn integrated<const M: usize, const D: usize>() -> [f64; D] {
+    let step = coefficients::<M, D>();
+    let mut c = [0.0; D];
+    let mut k = 1;
+    while k < D {
+        c[k] = step[k - 1] / k as f64;
         k += 1;
     }
     c

@@ -1,6 +1,7 @@
 //! Coming to rest from any motion.
 
 use super::Reference;
+use super::argument::{Argument, Line, fraction};
 use crate::linalg::Vector;
 use crate::scalar::{Float, Jet, Over, Piecewise, Scalar};
 
@@ -41,12 +42,14 @@ impl<C: Float, const N: usize> Stop<C, N> {
     }
 }
 
-impl<C: Scalar, const N: usize> Reference<C, N> for Stop<C, N> {
+impl<C: Scalar, const N: usize> Stop<C, N> {
+    /// Where the links are when so much of the time is over.
     #[inline]
-    fn on<T: Over<C> + Piecewise>(&self, t: T) -> Vector<T, N> {
-        let tau = (t - T::constant(self.start)).scale(self.duration.recip()).clamp(T::ZERO, T::ONE);
-        let left = T::ONE - tau;
-        let (early, late) = (begun(tau), ended(left));
+    fn when<T: Over<C> + Piecewise, X: Argument<T>>(&self, done: X) -> Vector<T, N> {
+        let tau = done.within_unit();
+        let left = tau.rest_to_one();
+        let (early, late) = (begun::<C, T, X>(tau), ended::<C, T, X>(left));
+        let is_early = left.number() - tau.number();
         let sum = |way: &[T; 3], taylor: [C; 3]| {
             way[0].scale(taylor[0]) + way[1].scale(taylor[1]) + way[2].scale(taylor[2])
         };
@@ -57,44 +60,47 @@ impl<C: Scalar, const N: usize> Reference<C, N> for Stop<C, N> {
                 self.from[i].coefficient(k) * power
             });
             let q = T::constant(self.from[i].coefficient(0));
-            (left - tau).select(q + sum(&early, taylor), q + sum(&late, taylor))
+            is_early.select(q + sum(&early, taylor), q + sum(&late, taylor))
         })
+    }
+}
+
+impl<C: Scalar, const N: usize> Reference<C, N> for Stop<C, N> {
+    #[inline]
+    fn on<T: Over<C> + Piecewise>(&self, t: T) -> Vector<T, N> {
+        self.when(fraction(t, self.start, self.duration))
+    }
+
+    #[inline]
+    fn at<const K: usize>(&self, t: C) -> Vector<Jet<C, K>, N>
+    where
+        C: Over<C> + Piecewise,
+    {
+        self.when(Line::fraction(t, self.start, self.duration))
     }
 }
 
 /// Where the Taylor coefficients of orders 1, 2, 3 have carried the joint at τ, as polynomials in τ: τᵏ + τ⁵ (…).
 #[inline]
-fn begun<T: Scalar>(tau: T) -> [T; 3] {
-    let (square, fifth) = (tau * tau, fifth_of_14(tau));
-    let tails = [[-98, 196, -140, 35], [-112, 210, -144, 35], [-84, 140, -90, 21]]
-        .map(|coefficients| fifth * cubic(coefficients, tau));
-    [tau + tails[0], square + tails[1], square * tau + tails[2]]
+fn begun<C: Scalar, T: Over<C> + Piecewise, X: Argument<T>>(tau: X) -> [T; 3] {
+    let tails = [[-98.0, 196.0, -140.0, 35.0], [-112.0, 210.0, -144.0, 35.0], [-84.0, 140.0, -90.0, 21.0]]
+        .map(|coefficients| fifth::<C, T, X>(coefficients, tau));
+    let square = tau.polynomial(&[0.0, 0.0, 1.0]);
+    [tau.number() + tails[0], square + tails[1], tau.polynomial(&[0.0, 0.0, 0.0, 1.0]) + tails[2]]
 }
 
 /// The same polynomials in 1 − τ, which do not cancel near the end: what is reached at last + (1 − τ)⁵ (…).
 #[inline]
-fn ended<T: Scalar>(left: T) -> [T; 3] {
-    let fifth = fifth_of_14(left);
-    let tails = [[-98, 196, -140, 35], [-84, 182, -136, 35], [-42, 98, -78, 21]]
-        .map(|coefficients| fifth * cubic(coefficients, left));
+fn ended<C: Scalar, T: Over<C> + Piecewise, X: Argument<T>>(left: X) -> [T; 3] {
+    let tails = [[-98.0, 196.0, -140.0, 35.0], [-84.0, 182.0, -136.0, 35.0], [-42.0, 98.0, -78.0, 21.0]]
+        .map(|coefficients| fifth::<C, T, X>(coefficients, left));
     let reached =
         [(1, 2), (3, 14), (1, 14)].map(|(numerator, denominator)| T::from_ratio(numerator, denominator));
     [reached[0] + tails[0], reached[1] + tails[1], reached[2] + tails[2]]
 }
 
-/// x⁵ / 14: times this the coefficients of the cubics are integers.
+/// x⁵ (a + b x + c x² + d x³) / 14: over 14 the coefficients are integers.
 #[inline]
-fn fifth_of_14<T: Scalar>(x: T) -> T {
-    let square = x * x;
-    square * square * x * T::from_ratio(1, 14)
-}
-
-/// The cubic with these coefficients, lowest order first.
-#[inline]
-fn cubic<T: Scalar>(coefficients: [i32; 4], x: T) -> T {
-    let mut sum = T::ZERO;
-    for c in coefficients.into_iter().rev() {
-        sum = sum * x + T::from_f64(f64::from(c));
-    }
-    sum
+fn fifth<C: Scalar, T: Over<C>, X: Argument<T>>([a, b, c, d]: [f64; 4], x: X) -> T {
+    x.polynomial(&[0.0, 0.0, 0.0, 0.0, 0.0, a, b, c, d]).scale(C::from_ratio(1, 14))
 }

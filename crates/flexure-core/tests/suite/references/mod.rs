@@ -8,7 +8,7 @@ use flexure_core::linalg::Vector;
 use flexure_core::reference::{
     Clock, Multisine, PointToPoint, Reference, Retimed, Sine, SmoothStart, Smoothstep, Stop, Term,
 };
-use flexure_core::scalar::{Dual, Jet};
+use flexure_core::scalar::{Dual, Interval, Jet};
 
 const STEPS: [Smoothstep; 3] = [Smoothstep::Quintic, Smoothstep::Septic, Smoothstep::Nonic];
 
@@ -210,6 +210,61 @@ impl Law for NotANumberStaysOne {
 #[test]
 fn not_a_number_stays_one() {
     sweep(&NotANumberStaysOne);
+}
+
+/// Polynomials evaluated at a straight line in time take no products of jets: they are those of any jet but for rounding.
+#[test]
+fn straight_lines_are_jets_like_any_other() {
+    for t in instants().chain([0.0, 0.5, 2.0, 2.5]) {
+        let check = |name: &str, [line, jet]: [Vector<Jet<f64, 6>, 2>; 2]| {
+            for (line, jet) in line.iter().zip(jet.iter()) {
+                for k in 0..6 {
+                    // Derivatives of these polynomials reach 5e3, from summands some ten times larger: 20 ε of those.
+                    let what = format!("{name} at {t} s, derivative {k}");
+                    assert_close(line.derivative(k), jet.derivative(k), 2e-10, &what);
+                }
+            }
+        };
+        for step in STEPS {
+            let q_d = point_to_point(step);
+            check("point to point", [q_d.at(t), q_d.on(Jet::variable(t))]);
+        }
+        check("stop", [STOP.at(t), STOP.on(Jet::variable(t))]);
+        check("smooth start in motion", [MOVING_START.at(t), MOVING_START.on(Jet::variable(t))]);
+    }
+}
+
+/// On intervals of time they enclose every derivative in them, and hardly anything else than those of any jet do.
+#[test]
+fn straight_lines_enclose_as_jets_do() {
+    let point = |x: f64| Interval::point(x);
+    let stop = Stop {
+        from: STOP.from.map(|jet| Jet::from_fn(|k| point(jet.coefficient(k)))),
+        start: point(STOP.start),
+        duration: point(STOP.duration),
+    };
+    // On either side of an end, across it, and of no width.
+    for (lo, hi) in [(-0.1, 0.1), (0.2, 0.3), (0.9, 1.1), (1.9, 2.1), (3.0, 3.5), (0.7, 0.7)] {
+        let t = Interval::new(lo, hi).expect("in order");
+        let (line, jet) = (stop.at::<5>(t), stop.on(Jet::<_, 5>::variable(t)));
+        for i in 0..2 {
+            for k in 0..5 {
+                let what = format!("joint {i}, derivative {k} on [{lo}, {hi}] s");
+                let [line, jet] = [&line, &jet].map(|q_d| q_d[i].coefficient(k));
+                assert_close(line.lo(), jet.lo(), 1e-12 * (1.0 + jet.width()), &what);
+                assert_close(line.hi(), jet.hi(), 1e-12 * (1.0 + jet.width()), &what);
+                for part in 0..=10 {
+                    let inside = lo + (hi - lo) * 0.1 * f64::from(part);
+                    // Of points an interval of no width, which rounding does not leave.
+                    let there = stop.at::<5>(point(inside.clamp(lo, hi)))[i].coefficient(k);
+                    assert!(
+                        line.lo() <= there.hi() && there.lo() <= line.hi(),
+                        "{what}: not that at {inside} s"
+                    );
+                }
+            }
+        }
+    }
 }
 
 #[test]
