@@ -53,7 +53,9 @@ impl Progress {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to [0, 1]")]
     pub fn set(&self, part: usize, fraction: f64) -> ControlFlow<()> {
         let now = (fraction.clamp(0.0, 1.0) * RESOLUTION) as u64;
-        if now > self.parts[part].0.fetch_max(now, Ordering::Relaxed) {
+        let so_far = &self.parts[part].0;
+        // Asked at every control instant of every thread: reading disturbs nobody, writing does.
+        if now > so_far.load(Ordering::Relaxed) && now > so_far.fetch_max(now, Ordering::Relaxed) {
             let done: f64 =
                 self.parts.iter().map(|(part, weight)| weight * part.load(Ordering::Relaxed) as f64).sum();
             self.bar.set_position(done as u64);

@@ -31,7 +31,7 @@ pub use point_to_point::PointToPoint;
 pub use retimed::{Clock, Retimed};
 pub use sine::Sine;
 pub use smooth_start::SmoothStart;
-pub use smoothstep::{Progress, Smoothstep};
+pub use smoothstep::Smoothstep;
 pub use stop::Stop;
 
 use crate::linalg::Vector;

@@ -28,8 +28,7 @@ impl<C: Scalar, const N: usize> PointToPoint<C, N> {
     /// Where the links are when so much of the time is over.
     #[inline]
     fn when<T: Over<C> + Piecewise>(&self, done: impl Argument<T>) -> Vector<T, N> {
-        let progress = self.step.progress(done);
-        Vector::from_fn(|i| progress.between(T::constant(self.from[i]), T::constant(self.to[i])))
+        self.step.blend_all(&self.from.lift(), &self.to.lift(), done)
     }
 }
 

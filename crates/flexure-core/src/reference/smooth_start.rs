@@ -1,6 +1,6 @@
 //! Joining a moving reference from where the robot is and how it moves.
 
-use super::argument::{Argument, Line, fraction};
+use super::argument::{Line, fraction};
 use super::{Reference, Smoothstep, Stop};
 use crate::linalg::Vector;
 use crate::scalar::{Jet, Over, Piecewise, Scalar};
@@ -38,20 +38,13 @@ impl<C: Scalar, R, const N: usize> SmoothStart<C, R, N> {
         let from = Stop { from: q_0.map(Jet::value), start: C::ZERO, duration };
         Self { from, duration, then }
     }
-
-    /// The motion `p` to rest joined with `r`, the reference, where so much of the transition is done.
-    #[inline]
-    fn join<T: Piecewise>(done: impl Argument<T>, p: &Vector<T, N>, r: &Vector<T, N>) -> Vector<T, N> {
-        let progress = Smoothstep::Nonic.progress(done);
-        Vector::from_fn(|i| progress.between(p[i], r[i]))
-    }
 }
 
 impl<C: Scalar, R: Reference<C, N>, const N: usize> Reference<C, N> for SmoothStart<C, R, N> {
     #[inline]
     fn on<T: Over<C> + Piecewise>(&self, t: T) -> Vector<T, N> {
         let done = fraction(t, self.from.start, self.duration);
-        Self::join(done, &self.from.on(t), &self.then.on(t))
+        Smoothstep::Nonic.blend_all(&self.from.on(t), &self.then.on(t), done)
     }
 
     /// With the derivatives of r as it finds them fastest.
@@ -61,6 +54,6 @@ impl<C: Scalar, R: Reference<C, N>, const N: usize> Reference<C, N> for SmoothSt
         C: Over<C> + Piecewise,
     {
         let done = Line::fraction(t, self.from.start, self.duration);
-        Self::join(done, &self.from.at(t), &self.then.at(t))
+        Smoothstep::Nonic.blend_all(&self.from.at(t), &self.then.at(t), done)
     }
 }

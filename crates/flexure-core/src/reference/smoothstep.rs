@@ -1,6 +1,7 @@
 //! The polynomials that go from 0 to 1 and are at rest at both ends.
 
 use super::argument::Argument;
+use crate::linalg::Vector;
 use crate::scalar::Piecewise;
 
 /// The polynomial s of degree 2m + 1 with s(0) = 0, s(1) = 1 and m zero derivatives at both ends.
@@ -39,25 +40,37 @@ impl Smoothstep {
     /// derivatives up to order m.
     #[inline]
     pub fn blend<T: Piecewise>(self, from: T, to: T, tau: T) -> T {
-        self.at(tau).between(from, to)
+        let [blended] = self.blend_all(&Vector([from]), &Vector([to]), tau).0;
+        blended
     }
 
-    /// How far the step is at τ, for any τ: to blend many numbers at once.
+    /// [`blend`](Self::blend) of many numbers at once, at any argument.
     ///
-    /// Beyond τ = ½ it counts from the other end: there the polynomial would cancel, its last derivative by five
-    /// digits.
+    /// Beyond τ = ½ it counts from the other end: there the polynomial would cancel, its last derivative by five digits. Numbers
+    /// that cannot tell the first half from the second see the hull of two enclosures of the same polynomial, not the polynomial at
+    /// the hull of τ and 1 − τ, which would not know whether it goes up or down.
     #[inline]
-    pub fn at<T: Piecewise>(self, tau: T) -> Progress<T> {
-        self.progress(tau)
-    }
-
-    /// [`at`](Self::at), at any argument.
-    #[inline]
-    pub(super) fn progress<T: Piecewise, X: Argument<T>>(self, tau: X) -> Progress<T> {
+    pub(super) fn blend_all<T: Piecewise, X: Argument<T>, const N: usize>(
+        self,
+        from: &Vector<T, N>,
+        to: &Vector<T, N>,
+        tau: X,
+    ) -> Vector<T, N> {
         let tau = tau.within_unit();
         let remaining = tau.rest_to_one();
-        let early = remaining.number() - tau.number();
-        Progress { done: self.polynomial(tau), left: self.polynomial(remaining), early }
+        let way = *to - *from;
+        let is_early = remaining.number() - tau.number();
+        is_early.select_of(
+            || {
+                let done = self.polynomial(tau);
+                Vector::from_fn(|i| from[i] + way[i] * done)
+            },
+            || {
+                let left = self.polynomial(remaining);
+                Vector::from_fn(|i| to[i] - way[i] * left)
+            },
+            |is_early, early, late| Vector::from_fn(|i| is_early.select(early[i], late[i])),
+        )
     }
 
     /// ∫ s from 0 to τ, for any τ: 0 up to τ = 0, exactly τ − ½ from τ = 1 on.
@@ -89,27 +102,6 @@ impl Smoothstep {
             Self::Septic => tau.polynomial(const { &coefficients::<4, 8>() }),
             Self::Nonic => tau.polynomial(const { &coefficients::<5, 10>() }),
         }
-    }
-}
-
-/// Where a step is: s(τ) and s(1 − τ).
-///
-/// Numbers that cannot tell the first half from the second see the hull of two enclosures of the same polynomial, not the
-/// polynomial at the hull of τ and 1 − τ, which would not know whether it goes up or down.
-#[derive(Clone, Copy, Debug)]
-pub struct Progress<T> {
-    done: T,
-    left: T,
-    /// 1 − 2τ: not negative in the first half.
-    early: T,
-}
-
-impl<T: Piecewise> Progress<T> {
-    /// from + s(τ) (to − from), for any `from` and `to` of one unit.
-    #[inline]
-    pub fn between(&self, from: T, to: T) -> T {
-        let way = to - from;
-        self.early.select(from + way * self.done, to - way * self.left)
     }
 }
 

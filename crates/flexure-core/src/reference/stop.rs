@@ -48,20 +48,23 @@ impl<C: Scalar, const N: usize> Stop<C, N> {
     fn when<T: Over<C> + Piecewise, X: Argument<T>>(&self, done: X) -> Vector<T, N> {
         let tau = done.within_unit();
         let left = tau.rest_to_one();
-        let (early, late) = (begun::<C, T, X>(tau), ended::<C, T, X>(left));
         let is_early = left.number() - tau.number();
-        let sum = |way: &[T; 3], taylor: [C; 3]| {
-            way[0].scale(taylor[0]) + way[1].scale(taylor[1]) + way[2].scale(taylor[2])
+        let carried = |way: [T; 3]| {
+            Vector::from_fn(|i| {
+                let mut power = C::ONE;
+                let mut q = T::constant(self.from[i].coefficient(0));
+                for (k, way) in (1..).zip(way) {
+                    power *= self.duration;
+                    q += way.scale(self.from[i].coefficient(k) * power);
+                }
+                q
+            })
         };
-        Vector::from_fn(|i| {
-            let mut power = C::ONE;
-            let taylor = [1, 2, 3].map(|k| {
-                power *= self.duration;
-                self.from[i].coefficient(k) * power
-            });
-            let q = T::constant(self.from[i].coefficient(0));
-            is_early.select(q + sum(&early, taylor), q + sum(&late, taylor))
-        })
+        is_early.select_of(
+            || carried(begun::<C, T, X>(tau)),
+            || carried(ended::<C, T, X>(left)),
+            |is_early, early, late| Vector::from_fn(|i| is_early.select(early[i], late[i])),
+        )
     }
 }
 

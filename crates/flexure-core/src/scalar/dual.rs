@@ -170,6 +170,15 @@ impl<S: Piecewise, const M: usize> Piecewise for Dual<S, M> {
     fn select(self, then: Self, otherwise: Self) -> Self {
         then.zip(otherwise, self.value.select(then.value, otherwise.value), |a, b| self.value.select(a, b))
     }
+    #[inline]
+    fn select_of<R>(
+        self,
+        then: impl FnOnce() -> R,
+        otherwise: impl FnOnce() -> R,
+        merge: impl FnOnce(Self, R, R) -> R,
+    ) -> R {
+        self.value.select_of(then, otherwise, |_, then, otherwise| merge(self, then, otherwise))
+    }
 }
 
 /// A value and its derivative in one direction.

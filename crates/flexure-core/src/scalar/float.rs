@@ -75,6 +75,21 @@ macro_rules! float {
                     self // NaN
                 }
             }
+            #[inline]
+            fn select_of<R>(
+                self,
+                then: impl FnOnce() -> R,
+                otherwise: impl FnOnce() -> R,
+                merge: impl FnOnce(Self, R, R) -> R,
+            ) -> R {
+                if self >= 0.0 {
+                    then()
+                } else if self < 0.0 {
+                    otherwise()
+                } else {
+                    merge(self, then(), otherwise())
+                }
+            }
             // Comparing, not subtracting: ∞ − ∞ is not a number, yet equals itself.
             #[inline]
             fn min(self, other: Self) -> Self {

@@ -318,4 +318,13 @@ impl<S: Piecewise, const K: usize> Piecewise for Jet<S, K> {
         let head = self.head();
         Self::from_fn(|k| head.select(then.coefficients[k], otherwise.coefficients[k]))
     }
+    #[inline]
+    fn select_of<R>(
+        self,
+        then: impl FnOnce() -> R,
+        otherwise: impl FnOnce() -> R,
+        merge: impl FnOnce(Self, R, R) -> R,
+    ) -> R {
+        self.head().select_of(then, otherwise, |_, then, otherwise| merge(self, then, otherwise))
+    }
 }

@@ -119,6 +119,18 @@ pub trait Piecewise: Scalar {
     /// `then` where `self ≥ 0`, `otherwise` where `self < 0`.
     fn select(self, then: Self, otherwise: Self) -> Self;
 
+    /// `then()` where `self ≥ 0`, `otherwise()` where `self < 0`, for pieces that take time: a number that can tell asks for one of them.
+    /// Of one that cannot `merge(self, then(), otherwise())` selects, entry by entry.
+    #[inline]
+    fn select_of<R>(
+        self,
+        then: impl FnOnce() -> R,
+        otherwise: impl FnOnce() -> R,
+        merge: impl FnOnce(Self, R, R) -> R,
+    ) -> R {
+        merge(self, then(), otherwise())
+    }
+
     /// Absolute value.
     #[inline]
     fn abs(self) -> Self {
