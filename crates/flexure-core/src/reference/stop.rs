@@ -60,11 +60,13 @@ impl<C: Scalar, const N: usize> Stop<C, N> {
                 q
             })
         };
-        is_early.select_of(
-            || carried(begun::<C, T, X>(tau)),
-            || carried(ended::<C, T, X>(left)),
-            |is_early, early, late| Vector::from_fn(|i| is_early.select(early[i], late[i])),
-        )
+        let select = |is: T, then: Vector<T, N>, otherwise: Vector<T, N>| {
+            Vector::from_fn(|i| is.select(then[i], otherwise[i]))
+        };
+        let moving = || {
+            is_early.select_of(|| carried(begun::<C, T, X>(tau)), || carried(ended::<C, T, X>(left)), select)
+        };
+        (done.number() - T::ONE).select_of(|| carried(reached()), moving, select)
     }
 }
 
@@ -97,9 +99,14 @@ fn begun<C: Scalar, T: Over<C> + Piecewise, X: Argument<T>>(tau: X) -> [T; 3] {
 fn ended<C: Scalar, T: Over<C> + Piecewise, X: Argument<T>>(left: X) -> [T; 3] {
     let tails = [[-98.0, 196.0, -140.0, 35.0], [-84.0, 182.0, -136.0, 35.0], [-42.0, 98.0, -78.0, 21.0]]
         .map(|coefficients| fifth::<C, T, X>(coefficients, left));
-    let reached =
-        [(1, 2), (3, 14), (1, 14)].map(|(numerator, denominator)| T::from_ratio(numerator, denominator));
+    let reached = reached::<T>();
     [reached[0] + tails[0], reached[1] + tails[1], reached[2] + tails[2]]
+}
+
+/// What they have carried it in the end.
+#[inline]
+fn reached<T: Scalar>() -> [T; 3] {
+    [(1, 2), (3, 14), (1, 14)].map(|(numerator, denominator)| T::from_ratio(numerator, denominator))
 }
 
 /// x⁵ (a + b x + c x² + d x³) / 14: over 14 the coefficients are integers.

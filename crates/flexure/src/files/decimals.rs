@@ -19,6 +19,10 @@ pub(crate) enum Decimals {
 impl Decimals {
     /// What `text`, a decimal that was read as `x`, is.
     pub fn of(text: &str, x: f64) -> Self {
+        // So do most numbers, and printing them takes its time.
+        if x.is_normal() && digits(text) <= 15 {
+            return Self::Shortest;
+        }
         let shortest = format!("{:e}", x.abs());
         let same = match (parts(text), parts(&shortest)) {
             (Some(text), Some(shortest)) => text == shortest,
@@ -42,6 +46,11 @@ impl Decimals {
         };
         enclosed.unwrap_or(Interval::point(x))
     }
+}
+
+/// Number of digits of a decimal before its exponent.
+fn digits(text: &str) -> usize {
+    text.bytes().take_while(|byte| !matches!(byte, b'e' | b'E')).filter(u8::is_ascii_digit).count()
 }
 
 /// Significant digits of a decimal and the power of ten of the last one, without its sign.

@@ -57,11 +57,13 @@ impl Figures {
             error = error.max(e_l.abs());
             *sum += e_l * e_l;
         }
-        for (i, &u_m) in instant.applied.iter().enumerate() {
+        for (sum, u_m) in self.squared_u_m.iter_mut().zip(&instant.applied) {
             torque = torque.max(u_m.abs());
-            self.squared_u_m[i] += u_m * u_m;
-            let change = self.last.get(i).map_or(0.0, |last| u_m - last);
-            self.squared_change[i] += change * change;
+            *sum += u_m * u_m;
+        }
+        let changes = instant.applied.iter().zip(&self.last).map(|(u_m, last)| u_m - last);
+        for (sum, change) in self.squared_change.iter_mut().zip(changes) {
+            *sum += change * change;
         }
         self.last.clone_from(&instant.applied);
         self.instants += 1;

@@ -123,23 +123,25 @@ impl Watch {
         }
         let settled = t >= self.criteria.settling;
         self.settled += u32::from(settled);
-        for i in 0..n {
-            let (reference, torque) = (instant.reference[i], instant.applied[i]);
-            self.size[i] = self.size[i].max((reference - self.start[i]).abs());
-            let error = if settled { q_l[i] - reference } else { 0.0 };
-            for (worst, value) in self.worst.iter_mut().zip([error, torque, v_l[i], q_m[i] - q_l[i]]) {
-                let value = value.abs();
-                // What is no number stays the worst.
-                if value > worst[i].value || value.is_nan() {
-                    worst[i] = Worst { value, time: t };
-                }
+        let sizes = self.size.iter_mut().zip(self.start.iter().zip(&instant.reference));
+        for (size, (start, reference)) in sizes {
+            *size = size.max((reference - start).abs());
+        }
+        let [errors, torques, speeds, deflections] = &mut self.worst;
+        if settled {
+            raise(errors, t, q_l.iter().zip(&instant.reference).map(|(q_l, reference)| q_l - reference));
+            let changes = instant.applied.iter().zip(&self.last).map(|(torque, last)| torque - last);
+            for (sum, change) in self.squared_change.iter_mut().zip(changes) {
+                *sum += change * change;
             }
-            if settled {
-                let change = self.last.get(i).map_or(0.0, |last| torque - last);
-                self.squared_change[i] += change * change;
-                self.at_limit[i] += u32::from(instant.command[i].abs() >= self.limits[i]);
+            let commands = instant.command.iter().zip(&self.limits);
+            for (count, (command, limit)) in self.at_limit.iter_mut().zip(commands) {
+                *count += u32::from(command.abs() >= *limit);
             }
         }
+        raise(torques, t, instant.applied.iter().copied());
+        raise(speeds, t, v_l.iter().copied());
+        raise(deflections, t, q_m.iter().zip(q_l).map(|(q_m, q_l)| q_m - q_l));
         self.last.clone_from(&instant.applied);
         self.stopped_since = instant.stopped.then(|| self.stopped_since.unwrap_or(t));
     }
@@ -232,6 +234,16 @@ impl Watch {
                 words,
             }
         })
+    }
+}
+
+/// Takes in `values` at `time`, a joint each: of the largest so far the first counts, and what is no number stays.
+fn raise(worst: &mut [Worst], time: f64, values: impl Iterator<Item = f64>) {
+    for (worst, value) in worst.iter_mut().zip(values) {
+        let value = value.abs();
+        if value > worst.value || value.is_nan() {
+            *worst = Worst { value, time };
+        }
     }
 }
 
