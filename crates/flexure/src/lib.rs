@@ -12,6 +12,7 @@ pub mod feasible;
 pub mod files;
 pub mod identify;
 pub mod imperfections;
+mod lanes;
 pub mod laws;
 pub mod linalg;
 pub mod logs;

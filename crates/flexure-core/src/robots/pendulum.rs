@@ -13,6 +13,13 @@ pub struct Pendulum<C> {
     pub weight_moment: C,
 }
 
+impl<C: Scalar> Pendulum<C> {
+    /// The same pendulum with constants of another type.
+    pub fn map<D>(&self, f: impl Fn(C) -> D) -> Pendulum<D> {
+        Pendulum { inertia: f(self.inertia), weight_moment: f(self.weight_moment) }
+    }
+}
+
 impl<C: Scalar> Links<C, 1> for Pendulum<C> {
     type Factor<'a, T: Over<C>>
         = Ldl<T, 1>

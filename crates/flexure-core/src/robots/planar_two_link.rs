@@ -24,6 +24,11 @@ impl<C: Scalar> PlanarTwoLink<C> {
         }
     }
 
+    /// The same arm with constants of another type.
+    pub fn map<D: Scalar>(&self, f: impl Fn(C) -> D) -> PlanarTwoLink<D> {
+        PlanarTwoLink { a1: f(self.a1), a2: f(self.a2), b: f(self.b) }
+    }
+
     /// The mass matrix where the elbow's angle has the cosine `c2`.
     #[inline]
     fn mass<T: Over<C>>(&self, c2: T) -> Matrix<T, 2, 2> {

@@ -12,15 +12,14 @@ mod ranking;
 mod score;
 mod task;
 
-use std::iter;
-
 use rayon::prelude::*;
 
 use crate::files::{Problem, Problems};
 use crate::progress::{PartProgress, Parts, Progress};
 use crate::sampled::probe;
-use crate::simulate::{Criteria, measure_watched};
-use crate::tune::{Costs, has_random_points, tune_from};
+use crate::scenario::Scenario;
+use crate::simulate::{Criteria, measure_together};
+use crate::tune::{has_random_points, tune_each};
 
 pub use entrant::{Entrant, entrants};
 pub use leaderboard::{Leaderboard, Loss, TaskScores, is_vcbc};
@@ -101,24 +100,28 @@ fn score(task: &Task, entrant: Entrant, search: Search, progress: Progress<'_>) 
     let is_random = task.is_random();
     // Where neither the run nor the search draws a number, every seed gives the same.
     let seeds = if is_random || has_random_points(search.budget) { search.seeds.max(1) } else { 1 };
-    let (parts, shared) = (Parts::new(seeds), Costs::default());
+    let parts = Parts::new(seeds);
+    let tell = |number: usize, fraction: f64| progress(parts.with(number, fraction));
     let with_seed = |number: usize| {
         let more = number as u64;
+        // The same noise for every law.
+        let noise = if is_random { more } else { 0 };
         let mut own = scenario.clone();
-        // The same noise for every law; what is known of runs with another is of no use.
-        let (noise, costs) = if is_random { (more, &Costs::default()) } else { (0, &shared) };
-        own.seed = scenario.seed.wrapping_add(noise);
-        let seed = search.seed.wrapping_add(more);
-        let part = |fraction: f64| progress(parts.with(number, fraction));
-        let tuned = tune_from(&own, search.budget, seed, costs, &part)?;
-        own.controller = tuned.controller.clone();
-        let run = measure_watched(&own, &Criteria::of(&own)?, &|_| part(1.0))?;
-        Ok((seed, tuned, run))
+        own.seed = own.seed.wrapping_add(noise);
+        (own, search.seed.wrapping_add(more))
     };
-    // The first finds out what the others need not compute again.
-    let first = with_seed(0)?;
-    let others: Vec<_> = (1..seeds).into_par_iter().map(with_seed).collect();
-    let found: Vec<_> = iter::once(Ok(first)).chain(others).collect::<Result<_, Problems>>()?;
+    let mut starts: Vec<(Scenario, u64)> = (0..seeds).map(with_seed).collect();
+    let tuned = tune_each(&starts, search.budget, &tell)?;
+    for ((own, _), tuned) in starts.iter_mut().zip(&tuned) {
+        own.controller = tuned.controller.clone();
+    }
+    let criteria: Vec<Criteria> =
+        starts.iter().map(|(own, _)| Criteria::of(own)).collect::<Result<_, Problems>>()?;
+    let jobs: Vec<_> = starts.iter().zip(&criteria).map(|((own, _), criteria)| (own, criteria)).collect();
+    let runs = measure_together(&jobs, &|number, _| tell(number, 1.0));
+    let found = starts.iter().zip(tuned.into_iter().zip(runs));
+    let found: Vec<_> =
+        found.map(|((_, seed), (tuned, run))| Ok((*seed, tuned, run?))).collect::<Result<_, Problems>>()?;
     Score::new(&entrant.name(), &found, |controller| {
         scenario.controller = controller.clone();
         probe(&scenario)

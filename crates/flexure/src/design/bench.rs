@@ -12,7 +12,7 @@ use crate::laws::Controller;
 use crate::margins::Change;
 use crate::sampled::Outlook;
 use crate::scenario::Scenario;
-use crate::simulate::{Criteria, Run, measure_watched};
+use crate::simulate::{Criteria, Run, measure_together};
 use crate::tune::penalised_error;
 
 /// The loops that gains are tried in.
@@ -184,10 +184,9 @@ impl Bench {
         controller: &Controller,
         watch: &Watch<'_>,
     ) -> Result<Vec<Run>, Problems> {
-        let one = |(scenario, criteria): (&Scenario, &Criteria)| {
-            measure_watched(&scenario.under(controller), criteria, &|_| watch.go_on())
-        };
-        scenarios.par_iter().zip(&self.criteria).map(one).collect()
+        let scenarios: Vec<Scenario> = scenarios.iter().map(|scenario| scenario.under(controller)).collect();
+        let jobs: Vec<_> = scenarios.iter().zip(&self.criteria).collect();
+        measure_together(&jobs, &|_, _| watch.go_on()).into_iter().collect()
     }
 }
 

@@ -2,8 +2,6 @@
 
 use serde::Serialize;
 
-use crate::files::Problems;
-
 /// The largest change under which a loop still holds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "edge")]
@@ -68,53 +66,107 @@ impl Way {
         Self { from, first: from * step, last }
     }
 
-    /// The edge between what `holds` and what does not, and how many changes were tried. `holds` is also told the [`Stage`] of
-    /// the search; what it breaks off ends [open](Edge::Open).
-    ///
-    /// # Errors
-    /// Those of `holds`.
-    pub fn edge(&self, holds: &Trial<'_>) -> Result<(Edge, usize), Problems> {
-        let mut seen = Seen { good: self.from, tried: 0 };
-        match self.search(&mut seen, holds) {
-            Err(problems) if problems.is_interrupted() => Ok((Edge::Open { holds: seen.good }, seen.tried)),
-            found => Ok((found?, seen.tried)),
-        }
-    }
-
-    fn search(&self, seen: &mut Seen, holds: &Trial<'_>) -> Result<Edge, Problems> {
-        let growth = if self.last > self.from { GROWTH } else { 1.0 / GROWTH };
-        let short_of_last = |x: f64| if growth > 1.0 { x < self.last } else { x > self.last };
-        let mut bad = self.first;
-        loop {
-            let to_last = whole((self.last / bad).ln() / growth.ln());
-            // Where the edge lies nobody knows: as far again as was gone, or at the end if that is nearer.
-            let left = seen.tried.clamp(1, to_last.max(1)) + bisections(bad / growth, bad);
-            if !seen.tries(bad, left, holds)? {
-                break;
-            }
-            if !short_of_last(bad) {
-                return Ok(Edge::Beyond { holds: bad });
-            }
-            bad *= growth;
-            bad = if short_of_last(bad) { bad } else { self.last };
-        }
-        // Of a loop that bears nothing at all the bracket would shrink for ever.
-        let least = LEAST * (self.first - self.from).abs();
-        let is_wide = |good: f64, bad: f64| {
-            (bad - good).abs() > RESOLUTION * good.abs().max(bad.abs()) && (bad - self.from).abs() > least
-        };
-        while is_wide(seen.good, bad) {
-            let middle = 0.5 * (seen.good + bad);
-            if !seen.tries(middle, bisections(seen.good, middle), holds)? {
-                bad = middle;
-            }
-        }
-        Ok(Edge::Between { holds: seen.good, fails: bad })
+    /// A search for the edge that has seen nothing yet.
+    pub fn search(self) -> Search {
+        Search { way: self, good: self.from, tried: 0, phase: Phase::Outward { next: self.first } }
     }
 }
 
-/// Whether a loop holds under a change; also told how far the search is.
-pub type Trial<'a> = dyn Fn(f64, Stage) -> Result<bool, Problems> + 'a;
+/// A search for an edge, trial by trial.
+#[derive(Clone, Copy, Debug)]
+pub struct Search {
+    way: Way,
+    /// The farthest change that was seen to hold.
+    good: f64,
+    tried: usize,
+    phase: Phase,
+}
+
+/// What a search is about to do.
+#[derive(Clone, Copy, Debug)]
+enum Phase {
+    /// Nothing has failed yet.
+    Outward {
+        next: f64,
+    },
+    /// The edge is nearer than what failed.
+    Between {
+        next: f64,
+        bad: f64,
+    },
+    Done(Edge),
+}
+
+impl Search {
+    /// The change that is to be tried next, and how far the search is; none once the edge is found.
+    pub fn next(&self) -> Option<(f64, Stage)> {
+        let (next, left) = match self.phase {
+            Phase::Outward { next } => {
+                let growth = self.growth();
+                let to_last = whole((self.way.last / next).ln() / growth.ln());
+                // Where the edge lies nobody knows: as far again as was gone, or at the end if that is nearer.
+                (next, self.tried.clamp(1, to_last.max(1)) + bisections(next / growth, next))
+            }
+            Phase::Between { next, .. } => (next, bisections(self.good, next)),
+            Phase::Done(_) => return None,
+        };
+        Some((next, Stage { tried: self.tried, left }))
+    }
+
+    /// Takes in whether the loop holds under the [next](Self::next) change.
+    pub fn tell(&mut self, holds: bool) {
+        self.phase = match self.phase {
+            Phase::Outward { next } if holds => {
+                self.good = next;
+                if self.is_short_of_last(next) {
+                    let farther = next * self.growth();
+                    let next = if self.is_short_of_last(farther) { farther } else { self.way.last };
+                    Phase::Outward { next }
+                } else {
+                    Phase::Done(Edge::Beyond { holds: next })
+                }
+            }
+            Phase::Between { next, bad } if holds => {
+                self.good = next;
+                self.narrowed(bad)
+            }
+            Phase::Outward { next } | Phase::Between { next, .. } => self.narrowed(next),
+            done @ Phase::Done(_) => done,
+        };
+        self.tried += 1;
+    }
+
+    /// The edge, and how many changes were tried; an [open](Edge::Open) one if it is not found yet.
+    pub fn edge(&self) -> (Edge, usize) {
+        let edge = match self.phase {
+            Phase::Done(edge) => edge,
+            _ => Edge::Open { holds: self.good },
+        };
+        (edge, self.tried)
+    }
+
+    /// On between what holds and what fails, `bad`, if that is still wide.
+    fn narrowed(&self, bad: f64) -> Phase {
+        let Self { way, good, .. } = *self;
+        // Of a loop that bears nothing at all the bracket would shrink for ever.
+        let least = LEAST * (way.first - way.from).abs();
+        let is_wide =
+            (bad - good).abs() > RESOLUTION * good.abs().max(bad.abs()) && (bad - way.from).abs() > least;
+        if is_wide {
+            Phase::Between { next: 0.5 * (good + bad), bad }
+        } else {
+            Phase::Done(Edge::Between { holds: good, fails: bad })
+        }
+    }
+
+    fn growth(&self) -> f64 {
+        if self.way.last > self.way.from { GROWTH } else { 1.0 / GROWTH }
+    }
+
+    fn is_short_of_last(&self, x: f64) -> bool {
+        if self.growth() > 1.0 { x < self.way.last } else { x > self.way.last }
+    }
+}
 
 /// How far a search is.
 #[derive(Clone, Copy, Debug)]
@@ -132,24 +184,6 @@ impl Stage {
     }
 }
 
-/// What a search has seen.
-struct Seen {
-    /// The farthest change that holds.
-    good: f64,
-    tried: usize,
-}
-
-impl Seen {
-    fn tries(&mut self, x: f64, left: usize, holds: &Trial<'_>) -> Result<bool, Problems> {
-        let is_good = holds(x, Stage { tried: self.tried, left })?;
-        self.tried += 1;
-        if is_good {
-            self.good = x;
-        }
-        Ok(is_good)
-    }
-}
-
 /// A number of trials, rounded up.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to [0, 1000]")]
 fn whole(trials: f64) -> usize {
@@ -163,12 +197,17 @@ fn bisections(good: f64, bad: f64) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use std::cell::{Cell, RefCell};
+    use super::{Edge, Stage, Way};
 
-    use super::{Edge, Problems, Way};
-
-    fn edge(way: Way, holds: impl Fn(f64) -> bool) -> Edge {
-        way.edge(&|x, _| Ok(holds(x))).expect("nothing goes wrong").0
+    /// The edge of what `holds`, how many changes were tried, and the stage of each.
+    fn edge(way: Way, holds: impl Fn(f64) -> bool) -> (Edge, usize, Vec<Stage>) {
+        let (mut search, mut stages) = (way.search(), Vec::new());
+        while let Some((x, stage)) = search.next() {
+            stages.push(stage);
+            search.tell(holds(x));
+        }
+        let (edge, tried) = search.edge();
+        (edge, tried, stages)
     }
 
     #[test]
@@ -179,7 +218,7 @@ mod tests {
             (Way::inward(1.0, 0.01), 0.41),
         ] {
             let inside = |x: f64| (x < at) == (way.last > way.from);
-            let Edge::Between { holds, fails } = edge(way, inside) else { panic!("an edge at {at}") };
+            let (Edge::Between { holds, fails }, ..) = edge(way, inside) else { panic!("an edge at {at}") };
             assert!(inside(holds) && !inside(fails));
             assert!((holds - fails).abs() <= 0.01 * holds.max(fails));
         }
@@ -187,8 +226,7 @@ mod tests {
 
     #[test]
     fn what_bears_nothing_is_found_soon() {
-        let (found, tried) =
-            Way::outward(0.0, 1e-4, 1.0).edge(&|_, _| Ok(false)).expect("nothing goes wrong");
+        let (found, tried, _) = edge(Way::outward(0.0, 1e-4, 1.0), |_| false);
         assert!(
             tried < 30 && matches!(found, Edge::Between { holds: 0.0, fails } if fails < 1e-9),
             "{found:?}"
@@ -197,42 +235,36 @@ mod tests {
 
     #[test]
     fn stops_at_the_end_of_the_way() {
-        assert_eq!(edge(Way::inward(1.0, 0.01), |_| true), Edge::Beyond { holds: 0.01 });
-        assert_eq!(edge(Way::outward(0.0, 0.1, 1.0), |_| true), Edge::Beyond { holds: 1.0 });
+        assert_eq!(edge(Way::inward(1.0, 0.01), |_| true).0, Edge::Beyond { holds: 0.01 });
+        assert_eq!(edge(Way::outward(0.0, 0.1, 1.0), |_| true).0, Edge::Beyond { holds: 1.0 });
     }
 
     /// A search that is broken off says how far it came; its fraction is 1 at the end, near the truth once the edge lies between
     /// two trials, and before, when nobody knows how far the edge is, not less than half of it.
     #[test]
     fn a_search_says_how_far_it_is() {
-        let way = Way::outward(0.0, 1e-4, 1.0);
-        let (stages, outward) = (RefCell::new(Vec::new()), Cell::new(0));
-        let (_, tried) = way
-            .edge(&|x, stage| {
-                stages.borrow_mut().push(stage);
-                if outward.get() == 0 && x >= 0.0123 {
-                    outward.set(stage.tried + 1);
-                }
-                Ok(x < 0.0123)
-            })
-            .expect("nothing goes wrong");
-        let stages = stages.into_inner();
-        assert!(stages.iter().enumerate().all(|(i, stage)| stage.tried == i));
+        let (way, at) = (Way::outward(0.0, 1e-4, 1.0), 0.0123);
+        let (_, tried, stages) = edge(way, |x| x < at);
+        let mut search = way.search();
+        let mut outward = 0;
+        for (i, stage) in stages.iter().enumerate() {
+            assert_eq!(stage.tried, i);
+            let (open, after) = search.edge();
+            assert_eq!(after, i);
+            let Edge::Open { holds } = open else { panic!("{open:?}") };
+            assert!((0.0..at).contains(&holds) && (i == 0) == (holds == 0.0), "{holds}");
+            let x = search.next().expect("it is not done").0;
+            search.tell(x < at);
+            if outward == 0 && x >= at {
+                outward = i + 1;
+            }
+        }
         let last = stages.last().expect("some").fraction(1.0);
         assert!(last > 0.9, "{last}");
         for stage in &stages {
             let (said, truth) = (stage.fraction(0.0), stage.tried as f64 / tried as f64);
-            let least = if stage.tried < outward.get() { 0.5 * truth } else { truth - 0.1 };
+            let least = if stage.tried < outward { 0.5 * truth } else { truth - 0.1 };
             assert!(said >= least && said < truth + 0.2, "{said} of {truth}");
-        }
-        for limit in [0, 3, tried - 1] {
-            let broken = way.edge(&|x, stage| {
-                if stage.tried == limit { Err(Problems::interrupted()) } else { Ok(x < 0.0123) }
-            });
-            let (edge, after) = broken.expect("an open edge");
-            assert_eq!(after, limit);
-            let Edge::Open { holds } = edge else { panic!("{edge:?}") };
-            assert!((0.0..0.0123).contains(&holds) && (limit == 0) == (holds == 0.0), "{holds}");
         }
     }
 }

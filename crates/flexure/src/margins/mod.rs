@@ -3,15 +3,16 @@
 mod change;
 mod edge;
 
-use rayon::prelude::*;
+use std::ops::ControlFlow;
+
 use serde::Serialize;
 
 use crate::feasible;
 use crate::files::{Problem, Problems};
-use crate::progress::{Parts, Progress};
+use crate::progress::{PartProgress, Parts, Progress};
 use crate::sampled::{Sampled, probe};
 use crate::scenario::{Hold, Scenario};
-use crate::simulate::{Criteria, Run, measure_watched};
+use crate::simulate::{Asking, Criteria, Run, in_turns, measure_watched};
 
 pub use change::Change;
 pub use edge::Edge;
@@ -128,29 +129,25 @@ pub fn margins(scenario: &Scenario, progress: Progress<'_>) -> Result<Margins, P
         (Change::TorqueGain, edge::Way::inward(1.0, 0.01)),
     ];
     let parts = Parts::new(searches.len());
-    let search = |(part, (change, way)): (usize, &Search)| {
-        if !follows {
-            return (part, Ok((Edge::Nowhere, 0)));
+    let tell = |part, fraction| progress(before + SEARCHES * parts.with(part, fraction));
+    let hunts = searches.iter().enumerate().map(|(part, (change, way))| Hunt {
+        part,
+        change: *change,
+        search: way.search(),
+        scenario: &scenario,
+        criteria: &criteria,
+        allowed: &allowed,
+        tell: &tell,
+        problems: None,
+    });
+    let mut edges = vec![(Edge::Nowhere, 0); searches.len()];
+    if follows {
+        for (edge, hunt) in edges.iter_mut().zip(in_turns(hunts.collect())) {
+            *edge = hunt.found()?;
         }
-        let tell = |fraction: f64| progress(before + SEARCHES * parts.with(part, fraction));
-        let found = way.edge(&|x, stage| {
-            let changed = change(x).of(&scenario);
-            let run = measure_watched(&changed, &criteria, &|fraction| tell(stage.fraction(fraction)))?;
-            Ok(allowed.holds(&run))
-        });
-        // One that is done sooner than it seemed counts as done.
-        let _ = tell(1.0);
-        (part, found)
-    };
-    let mut found: Vec<_> = searches.iter().enumerate().par_bridge().map(search).collect();
-    found.sort_by_key(|(part, _)| *part);
-    let mut edges = Vec::new();
-    let mut runs = 1;
-    for (_, found) in found {
-        let (edge, tried) = found?;
-        edges.push(edge);
-        runs += tried;
     }
+    let mut runs = 1 + edges.iter().map(|(_, tried)| tried).sum::<usize>();
+    let edges: Vec<Edge> = edges.into_iter().map(|(edge, _)| edge).collect();
     let mut broken_off = edges.iter().any(|edge| matches!(edge, Edge::Open { .. }));
     let [noise, delay, stiffness_high, stiffness_low, gain_high, gain_low] =
         edges.try_into().expect("six searches");
@@ -166,6 +163,7 @@ pub fn margins(scenario: &Scenario, progress: Progress<'_>) -> Result<Margins, P
         }
         noisy => noisy?,
     };
+    runs += usize::from(noisy.is_some());
     let per_noise = |of: fn(&Run) -> f64| {
         let (little, noisy) = little.zip(noisy.as_ref().filter(|run| run.divergence.is_none()))?;
         let excess = of(noisy).powi(2) - of(&nominal).powi(2);
@@ -188,10 +186,63 @@ pub fn margins(scenario: &Scenario, progress: Progress<'_>) -> Result<Margins, P
         noise,
         noise_to_error: per_noise(|run| run.summary.rms_e_l),
         noise_to_torque: per_noise(|run| run.summary.rms_torque_change),
-        runs: runs + usize::from(noisy.is_some()),
+        runs,
         sampled: if broken_off { None } else { probe(&scenario)? },
         broken_off,
     })
+}
+
+/// A search for one of the edges.
+struct Hunt<'a> {
+    part: usize,
+    change: fn(f64) -> Change,
+    search: edge::Search,
+    scenario: &'a Scenario,
+    criteria: &'a Criteria,
+    allowed: &'a Allowed,
+    /// Told the number of the search and how far it is.
+    tell: PartProgress<'a>,
+    /// What ended it.
+    problems: Option<Problems>,
+}
+
+impl Hunt<'_> {
+    /// The edge that it found, open if it was broken off, and how many changes were tried.
+    fn found(self) -> Result<(Edge, usize), Problems> {
+        match self.problems {
+            Some(problems) if !problems.is_interrupted() => Err(problems),
+            _ => Ok(self.search.edge()),
+        }
+    }
+}
+
+impl Asking for Hunt<'_> {
+    fn ask(&mut self) -> Option<Scenario> {
+        let next = self.search.next().filter(|_| self.problems.is_none());
+        if next.is_none() {
+            // One that is done sooner than it seemed counts as done.
+            let _ = (self.tell)(self.part, 1.0);
+        }
+        next.map(|(x, _)| (self.change)(x).of(self.scenario))
+    }
+
+    fn criteria(&self) -> &Criteria {
+        self.criteria
+    }
+
+    fn watch(&self, fraction: f64) -> ControlFlow<()> {
+        match self.search.next() {
+            Some((_, stage)) => (self.tell)(self.part, stage.fraction(fraction)),
+            None => ControlFlow::Continue(()),
+        }
+    }
+
+    fn tell(&mut self, _: &Scenario, run: Result<Run, Problems>) {
+        match run {
+            Ok(run) => self.search.tell(self.allowed.holds(&run)),
+            Err(problems) => self.problems = Some(problems),
+        }
+    }
 }
 
 /// What a loop may come to under a change and still hold.

@@ -12,7 +12,7 @@ use crate::references::{self, AnyPath, Instant, TimeScaling, when};
 /// On intervals it encloses the reference that the decimals of the scenario make exactly. Only a path through samples *is*
 /// the spline with the coefficients that floats gave it, which are points on intervals: samples are measured or computed,
 /// not meant to the last digit.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum AnyReference<C: Instant, const N: usize> {
     /// As it is registered.
     Path(AnyPath<C, N>),

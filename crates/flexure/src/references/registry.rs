@@ -12,7 +12,7 @@ use crate::files::{Entry, Places, Problem};
 use crate::references::Reference;
 
 /// A number that a time can be: where it lies among floats.
-pub trait Instant: Scalar {
+pub trait Instant: Scalar + PartialEq {
     /// The largest float that is at most the number.
     fn lowest(self) -> f64;
     /// The smallest float that is at least the number.
@@ -53,7 +53,7 @@ pub struct Jump {
 /// A kind of reference, as data: all that a `kind` in `[reference]` stands for but its reader.
 pub trait ReferenceKind {
     /// The reference itself.
-    type Core<C: Instant, const N: usize>: reference::Reference<C, N> + Clone + Debug;
+    type Core<C: Instant, const N: usize>: reference::Reference<C, N> + Clone + Debug + PartialEq;
 
     /// The reference with its numbers through `number`; `places` say where the keys stand.
     ///
@@ -145,7 +145,7 @@ macro_rules! references {
         }
 
         /// Any registered reference at its own speed, for `N` joints, with constants of type `C`.
-        #[derive(Clone, Debug)]
+        #[derive(Clone, Debug, PartialEq)]
         pub enum AnyPath<C: Instant, const N: usize> {
             $(
                 #[doc = concat!("[`", stringify!($kind), "`].")]

@@ -36,7 +36,7 @@ use crate::references::septic::{Segment, interpolate};
 /// assert!((jet.derivative(0) - 0.8).abs() < 1e-15);
 /// # Ok::<(), flexure::references::SamplesError>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Samples<C, const N: usize> {
     end: C,
     /// At least one, in the order of time.

@@ -11,7 +11,7 @@ use flexure_core::scalar::{Dual, Over, Scalar};
 type Knot<T> = [T; 4];
 
 /// A polynomial of degree 7 in τ = (t − start) / width, with constants of type `C`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Segment<C, const N: usize> {
     /// Its first instant in s.
     pub(crate) start: C,

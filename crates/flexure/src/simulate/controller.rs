@@ -9,7 +9,7 @@ use flexure_core::model::{Fjr, Links, Motion};
 use flexure_core::reference::{Reference, Stop};
 use flexure_core::scalar::Jet;
 
-use crate::imperfections::stages::{Actuator, Computer, Pieces, Sensors, Tick};
+use crate::imperfections::stages::{Actuator, Computer, Measured, Pieces, Sensors, Tick};
 use crate::laws::{self, AnyLaw};
 use crate::simulate::guarded::{Asked, Guarded};
 
@@ -98,6 +98,19 @@ pub(crate) struct State<const N: usize> {
     pub(crate) applied: Vector<f64, N>,
     /// How the robot moved when the law took over from the guard, and how it would have come to rest.
     pub(crate) rejoined: Option<Stop<f64, N>>,
+}
+
+/// What a controller knows at an instant before its law is asked.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sensed<const N: usize> {
+    measured: Measured<N>,
+    age: Age,
+    /// The motion that the law goes by.
+    pub(crate) seen: Motion<f64, N>,
+    /// Torque on the motors that the model does not explain [N m], and whether the law's is less by it.
+    disturbance: Option<(Vector<f64, N>, bool)>,
+    /// Where the links shall be, q_ld in rad to order 4.
+    pub(crate) reference: Vector<Jet<f64, 5>, N>,
 }
 
 /// What a controller does at an instant.
@@ -191,8 +204,22 @@ where
 
     /// What happens at a control instant at which the robot moves as `x`. Nothing is allocated.
     pub fn step(&mut self, tick: &Tick, x: &Motion<f64, N>) -> Action<N> {
+        match self.sense(tick, x, None) {
+            None => self.silent(tick),
+            Some(sensed) => self.act(tick, &sensed, None),
+        }
+    }
+
+    /// What is known at a control instant before the law is asked; nothing if the computer stands still. `path` is the reference then, if
+    /// it is known already.
+    pub(crate) fn sense(
+        &mut self,
+        tick: &Tick,
+        x: &Motion<f64, N>,
+        path: Option<&Vector<Jet<f64, 5>, N>>,
+    ) -> Option<Sensed<N>> {
         if self.computer.is_still(tick) {
-            return self.silent(tick);
+            return None;
         }
         let measured = self.sensors.sense(tick, x);
         let applied = self.state.applied;
@@ -207,9 +234,24 @@ where
         let disturbance = self.disturbance.as_mut().map(|disturbance| {
             (disturbance.observer.update(&self.robot, &seen, &applied).motor, disturbance.compensate)
         });
-        let reference = self.reference_at(tick.t);
+        let reference = match path {
+            Some(known) if !self.has_rejoined() => *known,
+            _ => self.reference_at(tick.t),
+        };
+        Some(Sensed { measured, age, seen, disturbance, reference })
+    }
+
+    /// What is done at a control instant at which this was `sensed`. `torque` is what the law asks there [N m], if it was asked already.
+    pub(crate) fn act(
+        &mut self,
+        tick: &Tick,
+        sensed: &Sensed<N>,
+        torque: Option<Vector<f64, N>>,
+    ) -> Action<N> {
+        let Sensed { measured, age, seen, disturbance, reference } = sensed;
+        let applied = self.state.applied;
         let compensated = match disturbance {
-            Some((torque, true)) => torque,
+            Some((torque, true)) => *torque,
             _ => Vector::ZERO,
         };
         let Self { robot, reference: path, law, guard, .. } = self;
@@ -218,28 +260,29 @@ where
             path,
             law,
             t: tick.t,
-            reference: &reference,
+            reference,
             compensated,
+            known: torque.map(|torque| (*seen, torque)),
             wanted: Cell::new(None),
         };
         let (u_m, status) = match guard {
-            None => (asked.follow(&seen), None),
+            None => (asked.follow(seen), None),
             Some(guarded) => {
-                let decision = guarded.decide(tick, &measured, age, &seen, &applied, &mut asked);
+                let decision = guarded.decide(tick, measured, *age, seen, &applied, &mut asked);
                 (decision.torque, Some(decision.status))
             }
         };
         let wanted = asked.wanted.get();
         if let (Some(Status { phase: Phase::Rejoined, .. }), Some(guarded)) = (status, &self.guard) {
-            self.state.rejoined = Some(guarded.joined(&self.robot, tick.t, &seen));
+            self.state.rejoined = Some(guarded.joined(&self.robot, tick.t, seen));
         }
         let command = (!self.computer.misses(tick)).then_some(u_m);
         let pieces = self.driven(tick, command);
         let disturbance = disturbance.map_or(Vector::ZERO, |(torque, _)| torque);
         Action {
-            reference,
+            reference: *reference,
             measured: measured.motion,
-            seen,
+            seen: *seen,
             disturbance,
             u_m,
             applied: pieces,
@@ -253,7 +296,7 @@ where
     }
 
     /// An instant at which the computer stands still.
-    fn silent(&mut self, tick: &Tick) -> Action<N> {
+    pub(crate) fn silent(&mut self, tick: &Tick) -> Action<N> {
         let nothing = Motion::at_rest(Vector([f64::NAN; N]));
         let pieces = self.driven(tick, None);
         Action {

@@ -62,36 +62,36 @@ enum Own {
 
 /// The loop of `scenario` with its own law, or with that of the caller.
 fn opened(scenario: &Scenario, own: Option<Own>) -> Result<Box<dyn Loop>, Problems> {
-    let simulated = assembly::simulated(scenario);
-    Ok(sized!(&scenario.robot, L, N => {
-        let [model, simulated] = pair::<L<f64>, N>(&scenario.robot, &simulated)?;
-        let law = match own {
-            None => HeldLaw::Registered(any_law(&scenario.controller, |x| x)),
-            Some(Own::Law(law)) => HeldLaw::Own(law),
-            Some(Own::Shaping(gains, shaping)) => HeldLaw::Shaped(Box::new(shaping.law(&gains))),
-        };
-        Box::new(Held::new(scenario, model, simulated, law)?)
-    }))
+    Ok(sized!(&scenario.robot, L, N => Box::new(Held::<L<f64>, N>::new(scenario, own)?)))
 }
 
 #[cfg(test)]
 mod tests;
 
 /// A loop whose size is known to the compiler.
-struct Held<L, const N: usize> {
-    simulation: Simulation<L, AnyReference<f64, N>, HeldLaw<N>, AnyEstimator<f64, N>, N>,
+pub(super) struct Held<L, const N: usize> {
+    pub(super) simulation: Simulation<L, AnyReference<f64, N>, HeldLaw<N>, AnyEstimator<f64, N>, N>,
     scenario: Scenario,
     columns: Columns,
     signals: Vec<Signal>,
 }
 
 impl<L: FromFile<f64, N> + Clone, const N: usize> Held<L, N> {
-    fn new(
-        scenario: &Scenario,
-        model: Fjr<f64, L, N>,
-        simulated: Fjr<f64, L, N>,
-        law: HeldLaw<N>,
-    ) -> Result<Self, Problems> {
+    /// The loop of `scenario` with its own law.
+    ///
+    /// # Errors
+    /// As [`Scenario::open`].
+    pub(super) fn of(scenario: &Scenario) -> Result<Self, Problems> {
+        Self::new(scenario, None)
+    }
+
+    fn new(scenario: &Scenario, own: Option<Own>) -> Result<Self, Problems> {
+        let [model, simulated] = pair(&scenario.robot, &assembly::simulated(scenario))?;
+        let law = match own {
+            None => HeldLaw::Registered(any_law(&scenario.controller, |x| x)),
+            Some(Own::Law(law)) => HeldLaw::Own(law),
+            Some(Own::Shaping(gains, shaping)) => HeldLaw::Shaped(Box::new(shaping.law(&gains))),
+        };
         let plant = assembly::plant(scenario, simulated);
         if !plant.carries_its_rotors(&assembly::initial::<N>(scenario).q_l) {
             return Err(too_heavy(scenario).into());
@@ -127,8 +127,14 @@ fn too_heavy(scenario: &Scenario) -> Problem {
 }
 
 impl<L: Links<f64, N>, const N: usize> Held<L, N> {
-    fn robot(&self) -> &Fjr<f64, L, N> {
+    /// The robot that the law knows.
+    pub(super) fn robot(&self) -> &Fjr<f64, L, N> {
         &self.simulation.controller().robot
+    }
+
+    /// The scenario that it is the loop of.
+    pub(super) fn scenario(&self) -> &Scenario {
+        &self.scenario
     }
 
     fn reference_at(&self, t: f64) -> Vector<Jet<f64, 5>, N> {

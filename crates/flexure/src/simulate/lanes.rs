@@ -5,23 +5,13 @@ use std::array;
 use flexure_core::control::Input;
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion};
-use flexure_core::scalar::{Jet, Lanes, Scalar};
+use flexure_core::scalar::{Jet, Scalar};
 
+use crate::lanes::{Several, WIDTH};
 use crate::laws::Law;
 
-/// Numbers that fit a register of the processor that this is compiled for: x86-64 has at least SSE2, aarch64 NEON.
-const WIDTH: usize = if cfg!(target_feature = "avx512f") {
-    8
-} else if cfg!(target_feature = "avx") {
-    4
-} else {
-    2
-};
-
-type Several = Lanes<f64, WIDTH>;
-
 /// What `law` asks of the motors of `robot`, of `n` joints, at each of the `motions` (4n numbers each), into `u_m` (n numbers each)
-/// [N m]: what it asks at one of them, but for the last digits of sines and tanh ([`Lanes`]), wherever among the others it stands.
+/// [N m]: what it asks at one of them, but for the last digits of sines and tanh ([`Several`]), wherever among the others it stands.
 #[inline(never)]
 pub(crate) fn torques<L: Links<f64, N>, const N: usize>(
     law: &Law<f64, N>,

@@ -1,18 +1,14 @@
 //! A scenario as a simulated run: from its file to trace and summary.
 
 use std::ops::ControlFlow;
-use std::time::Instant as Clock;
 
 use crate::files::Problems;
-use crate::imperfections::Imperfection;
 use crate::progress::{Progress, unwatched};
 use crate::scenario::Scenario;
-use crate::simulate::assembly;
+use crate::simulate::course::Course;
 use crate::simulate::criteria::Criteria;
 use crate::simulate::fault_log::FaultLog;
-use crate::simulate::figures::Figures;
-use crate::simulate::following::{Following, Watch};
-use crate::simulate::interface::{Loop, Observed, Signal};
+use crate::simulate::interface::{Loop, Signal};
 use crate::simulate::own_law::{OwnLaw, OwnShaping};
 use crate::simulate::simulation::Divergence;
 use crate::simulate::sink::Sink;
@@ -144,43 +140,23 @@ fn simulated(
     progress: Progress<'_>,
     sinks: Option<&mut [&mut dyn Sink]>,
 ) -> Run {
-    let started = Clock::now();
-    let mut observed = Observed::new(held.joints());
-    let limits = assembly::acting_limits(scenario);
-    let mut figures = Figures::new(limits.clone());
-    let mut watch = Watch::new(criteria.clone(), limits);
+    let mut course = Course::new(scenario, &*held, criteria);
     let mut reader = sinks.map(|sinks| Reader::new(&*held, sinks));
-    let (mut divergence, mut broken_off) = (None, None);
-    let last = periods(scenario);
-    for instant in 0..=last {
+    while course.goes_on() {
         if let Err(diverged) = held.step() {
-            divergence = Some(diverged);
+            course.diverge(diverged);
             break;
         }
-        held.observe(&mut observed).expect("made for it");
         let (rate, taken) = match &mut reader {
             Some(reader) => reader.read(&*held),
             None => (f64::NAN, ControlFlow::Continue(())),
         };
-        figures.record(&observed, rate);
-        watch.record(&observed);
-        // The last instant is the end of the run, whoever watches.
-        let told = progress(observed.t / scenario.duration);
-        if (told.is_break() || taken.is_break()) && instant < last {
-            broken_off = Some(observed.t);
-            break;
+        let done = course.record(&*held, rate);
+        if progress(done).is_break() || taken.is_break() {
+            course.break_off();
         }
     }
-    let seconds = started.elapsed().as_secs_f64();
-    let following = watch.verdict(&scenario.robot.joints, divergence.as_ref(), broken_off);
-    let summary = summary(scenario, &figures, following, &*held, divergence.is_some(), seconds);
-    Run { summary, trace: Trace::default(), divergence, broken_off, faults: held.faults() }
-}
-
-/// Number of control periods in the run.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to [1, 1e9]")]
-fn periods(scenario: &Scenario) -> u32 {
-    (scenario.duration / scenario.control_period).round().clamp(1.0, 1e9) as u32
+    course.run(&*held)
 }
 
 /// Reads every signal at every instant, for every sink.
@@ -208,41 +184,5 @@ impl<'a, 'b> Reader<'a, 'b> {
             }
         }
         (self.rate.map_or(f64::NAN, |column| self.row[column]), taken)
-    }
-}
-
-fn summary(
-    scenario: &Scenario,
-    figures: &Figures,
-    following: Following,
-    held: &dyn Loop,
-    diverged: bool,
-    wall_seconds: f64,
-) -> Summary {
-    // Errors of a run that diverged are beyond those that were recorded: no number stands for them.
-    let ended = |error: f64| if diverged { f64::NAN } else { error };
-    let rate = figures.seen(figures.rate);
-    Summary {
-        name: scenario.name.clone(),
-        controller: scenario.controller.kind().to_owned(),
-        phi: scenario.controller.phi().map(str::to_owned),
-        plant: scenario.plant.options(),
-        imperfections: scenario.imperfections.iter().map(Imperfection::kind).collect(),
-        following,
-        max_abs_e_l: ended(figures.max_abs_e_l),
-        rms_e_l: ended(figures.rms_e_l()),
-        final_abs_e_l: ended(figures.final_abs_e_l),
-        settling_time: figures.settled_since.filter(|_| !diverged),
-        max_abs_u_m: figures.seen(figures.max_abs_u_m),
-        rms_u_m: figures.rms_u_m(),
-        rms_torque_change: figures.rms_torque_change(),
-        saturated_fraction: figures.limited_fraction(),
-        suspended_fraction: figures.suspended_fraction(),
-        stops: figures.stops,
-        rate_pointwise: if rate.is_finite() { rate } else { f64::NAN },
-        rate_certified: None,
-        energy_drift: held.energy_drift(),
-        steps: held.steps(),
-        wall_seconds,
     }
 }

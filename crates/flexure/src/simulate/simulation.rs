@@ -106,6 +106,9 @@ pub struct Simulation<L, R, F, E, const N: usize> {
     pub(crate) divergence: Option<Divergence>,
 }
 
+/// Motion and energy that went through until a control instant.
+pub(crate) type Kept<const N: usize> = (Motion<f64, N>, Ledger);
+
 /// What happened at a control instant.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Happened<const N: usize> {
@@ -157,29 +160,45 @@ where
         if let Some(divergence) = self.divergence {
             return Err(divergence);
         }
-        let (motion, ledger) = (self.motion, self.world.ledger);
-        self.next().inspect_err(|divergence| {
-            self.divergence = Some(*divergence);
-            // What is seen is still the last good instant.
-            (self.motion, self.world.ledger) = (motion, ledger);
-        })
+        let kept = self.kept();
+        self.next().inspect_err(|divergence| self.end(*divergence, kept))
+    }
+
+    /// What is seen of the last good instant once the loop has diverged.
+    pub(crate) fn kept(&self) -> Kept<N> {
+        (self.motion, self.world.ledger)
+    }
+
+    /// The loop has diverged: what is seen is still the last good instant.
+    pub(crate) fn end(&mut self, divergence: Divergence, kept: Kept<N>) {
+        self.divergence = Some(divergence);
+        (self.motion, self.world.ledger) = kept;
     }
 
     fn next(&mut self) -> Result<(), Divergence> {
-        let tick = match &self.last {
-            None => Tick::new(0, self.timing.period),
-            Some(last) => {
-                let tick = last.tick;
-                self.advance()?;
-                Tick::new(tick.k + 1, self.timing.period)
-            }
-        };
-        let mut action = self.controller.step(&tick, &self.motion);
+        let tick = self.tick();
+        self.advance()?;
+        let action = self.controller.step(&tick, &self.motion);
+        self.arrive(tick, action, self.world.energy(&self.motion))
+    }
+
+    /// The next control instant.
+    pub(crate) fn tick(&self) -> Tick {
+        Tick::new(self.last.as_ref().map_or(0, |last| last.tick.k + 1), self.timing.period)
+    }
+
+    /// Books what the controller does at an instant at which the robot has moved there and has the total energy `energy` in J.
+    pub(crate) fn arrive(
+        &mut self,
+        tick: Tick,
+        mut action: Action<N>,
+        energy: f64,
+    ) -> Result<(), Divergence> {
         let given = action.applied.map(|torque| self.world.plant.torque_gain.diag_mul(&torque));
         // A drive that does not give what it believes voids what is proved of the law.
         action.certificate &= given == action.applied;
         action.applied = given;
-        let (energy, ledger) = (self.world.energy(&self.motion), self.world.ledger);
+        let ledger = self.world.ledger;
         let residual = energy - self.balance.start - ledger.supplied + ledger.dissipated;
         self.balance.scale =
             self.balance.scale.max(energy.abs()).max(ledger.throughput).max(ledger.dissipated);
@@ -193,8 +212,8 @@ where
         Ok(())
     }
 
-    /// Over the control period after the last instant.
-    fn advance(&mut self) -> Result<(), Divergence> {
+    /// Over the control period after the last instant, if there was one.
+    pub(crate) fn advance(&mut self) -> Result<(), Divergence> {
         let Self { controller, world, timing, motion, last: Some(Happened { tick, action, .. }), .. } = self
         else {
             return Ok(());
@@ -273,7 +292,7 @@ pub(crate) struct World<L, const N: usize> {
 }
 
 impl<L: Links<f64, N>, const N: usize> World<L, N> {
-    fn energy(&self, x: &Motion<f64, N>) -> f64 {
+    pub(crate) fn energy(&self, x: &Motion<f64, N>) -> f64 {
         self.stepper.total_energy(&self.plant, x)
     }
 

@@ -1,11 +1,14 @@
 //! A row: what comes of one run.
 
+use std::ops::Range;
+
 use serde::Serialize;
 
 use super::{Sweep, Value};
 use crate::files::Problems;
 use crate::progress::Progress;
-use crate::simulate::{Criteria, Run, measure_watched};
+use crate::scenario::Scenario;
+use crate::simulate::{Criteria, Run, measure_together};
 
 /// What became of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -60,13 +63,35 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Runs a row.
-    pub(super) fn of(sweep: &Sweep, row: u64, progress: Progress<'_>) -> Result<Self, Problems> {
-        let scenario = sweep.scenario(row)?;
-        let run = measure_watched(&scenario, &Criteria::of(&scenario)?, progress)?;
-        let metrics = sweep.metrics().iter().map(|metric| metric.value(&scenario, &run));
+    /// Runs rows, side by side where they are alike.
+    ///
+    /// # Errors
+    /// [`Problems::interrupted`] if it was broken off.
+    pub(super) fn of(sweep: &Sweep, rows: Range<u64>, progress: Progress<'_>) -> Result<Vec<Self>, Problems> {
+        let prepared = |row| {
+            let scenario = sweep.scenario(row)?;
+            let criteria = Criteria::of(&scenario)?;
+            Ok((scenario, criteria))
+        };
+        let prepared: Vec<Result<_, Problems>> = rows.clone().map(prepared).collect();
+        let jobs: Vec<_> =
+            prepared.iter().flatten().map(|(scenario, criteria)| (scenario, criteria)).collect();
+        let mut runs = measure_together(&jobs, &|_, fraction| progress(fraction)).into_iter();
+        let finished = |(row, prepared): (u64, &Result<(Scenario, Criteria), Problems>)| {
+            let run = prepared.as_ref().ok().and_then(|(scenario, _)| Some((scenario, runs.next()?)));
+            let Some((scenario, run)) = run else { return Ok(Self::refused(sweep, row)) };
+            match run.and_then(|run| Self::with(sweep, row, scenario, &run)) {
+                Err(problems) if !problems.is_interrupted() => Ok(Self::refused(sweep, row)),
+                outcome => outcome,
+            }
+        };
+        rows.zip(&prepared).map(finished).collect()
+    }
+
+    fn with(sweep: &Sweep, row: u64, scenario: &Scenario, run: &Run) -> Result<Self, Problems> {
+        let metrics = sweep.metrics().iter().map(|metric| metric.value(scenario, run));
         let metrics = metrics.collect::<Result<_, _>>()?;
-        Ok(Self { status: Status::of(&run), metrics, ..Self::refused(sweep, row) })
+        Ok(Self { status: Status::of(run), metrics, ..Self::refused(sweep, row) })
     }
 
     /// A row that was not run.

@@ -1,23 +1,21 @@
 //! Gains by search: the same effort for every law.
 
+mod bench;
+mod local;
 mod search;
 
-use std::collections::HashMap;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
-
-use rayon::prelude::*;
-
+use bench::{Bench, Climb};
+use local::Local;
+use search::Search;
 pub(crate) use search::together;
 pub use search::{BestPoint, has_random_points, search};
 
-use crate::feasible;
 use crate::files::Problems;
 use crate::laws::Controller;
-use crate::progress::{Parts, Progress};
+use crate::progress::{PartProgress, Progress};
 use crate::sampled::is_stable;
 use crate::scenario::Scenario;
-use crate::simulate::{Criteria, Run, Summary, measure_watched};
+use crate::simulate::{Run, Summary, in_turns};
 
 /// Gains that were searched for, and what they cost.
 #[derive(Clone, Debug)]
@@ -60,85 +58,53 @@ pub fn tune(
     seed: u64,
     progress: Progress<'_>,
 ) -> Result<Tuned, Problems> {
-    tune_from(scenario, budget, seed, &Costs::default(), progress)
+    let mut tuned = tune_each(&[(scenario.clone(), seed)], budget, &|_, fraction| progress(fraction))?;
+    Ok(tuned.remove(0))
 }
 
-/// What runs of one scenario cost, by the exponents of their gains: searches with other seeds begin with the same runs.
-#[derive(Debug, Default)]
-pub(crate) struct Costs(Mutex<HashMap<Vec<u64>, f64>>);
-
-impl Costs {
-    /// The cost at `exponents`, computed the first time; twice if it is asked for twice at a time.
-    fn at(&self, exponents: &[f64], compute: impl FnOnce() -> f64) -> f64 {
-        let key: Vec<u64> = exponents.iter().map(|x| x.to_bits()).collect();
-        let known = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let found = known().get(&key).copied();
-        found.unwrap_or_else(|| {
-            let cost = compute();
-            known().insert(key, cost);
-            cost
-        })
-    }
-}
-
-/// As [`tune`], with what is known of the `costs` of this very scenario.
-pub(crate) fn tune_from(
-    scenario: &Scenario,
+/// As [`tune`] for several scenarios side by side, with a seed of the search each. They differ in their own seeds alone: what is known of the
+/// gains of one is known of those with the same. `progress` is told how far each is, by its place.
+pub(crate) fn tune_each(
+    starts: &[(Scenario, u64)],
     budget: usize,
-    seed: u64,
-    costs: &Costs,
-    progress: Progress<'_>,
-) -> Result<Tuned, Problems> {
-    let trial = feasible::pinned(scenario)?;
-    let criteria = Criteria::of(&trial)?;
-    // Whatever is wrong with the scenario is so for all gains.
-    let start = measure_watched(&trial, &criteria, &|_| progress(0.0))?;
-    let (start_cost, start_error) = (judged(&trial, &start), penalised_error(&start.summary));
-    let gains: Vec<Vec<f64>> =
-        scenario.controller.gains().into_iter().map(|(_, values)| values.to_vec()).collect();
-    let powers = scenario.controller.speed_powers();
-    let scaled = |exponents: &[f64]| {
-        let (speed, own) = exponents.split_first().unwrap_or((&0.0, &[]));
-        let factors = own.iter().zip(&powers).map(|(own, &power)| (own + f64::from(power) * speed).exp());
-        let scaled = gains.iter().zip(factors).map(|(gain, x)| gain.iter().map(|g| g * x).collect());
-        scenario.controller.with_gains(&scaled.collect::<Vec<Vec<f64>>>())
-    };
-    let (tried, broken) = (AtomicUsize::new(0), AtomicBool::new(false));
-    let parts = Parts::new(budget.max(1));
-    let at = |exponents: &Vec<f64>| {
-        // What the search still asks for once it is broken off costs nothing.
-        if broken.load(Ordering::Relaxed) {
-            return f64::INFINITY;
+    progress: PartProgress<'_>,
+) -> Result<Vec<Tuned>, Problems> {
+    let bench = Bench::new(starts, budget, progress)?;
+    let begun = bench.started()?;
+    let dimension = bench.dimension();
+    let mut searches: Vec<Search> =
+        starts.iter().map(|(_, seed)| Search::new(dimension, HALF_WIDTH, budget, *seed)).collect();
+    for points in [Search::first, Search::scattered] {
+        let points: Vec<Vec<Vec<f64>>> = searches.iter().map(points).collect();
+        let asked =
+            points.iter().enumerate().flat_map(|(place, points)| points.iter().map(move |at| (place, at)));
+        let mut costs = bench.costs(&asked.collect::<Vec<_>>())?.into_iter();
+        for (search, points) in searches.iter_mut().zip(&points) {
+            search.consider_all(points, &costs.by_ref().take(points.len()).collect::<Vec<_>>());
         }
-        let part = tried.fetch_add(1, Ordering::Relaxed).min(budget.saturating_sub(1));
-        let watched = |fraction: f64| progress(parts.with(part, fraction));
-        let cost = costs.at(exponents, || {
-            let mut trial = trial.clone();
-            trial.controller = scaled(exponents);
-            match measure_watched(&trial, &criteria, &watched) {
-                Ok(run) => judged(&trial, &run),
-                Err(problems) => {
-                    broken.fetch_or(problems.is_interrupted(), Ordering::Relaxed);
-                    f64::INFINITY
-                }
-            }
-        });
-        // What is known already or ended early is done, too.
-        parts.with(part, 1.0);
-        cost
-    };
-    let all = |points: &[Vec<f64>]| points.par_iter().map(at).collect();
-    let best = search(1 + gains.len(), HALF_WIDTH, budget, seed, &all);
-    if broken.load(Ordering::Relaxed) {
+    }
+    let climbs = searches.into_iter().enumerate().map(|(place, search)| Climb {
+        bench: &bench,
+        place,
+        local: Local::begin(search),
+        at: None,
+        broken: false,
+    });
+    let found = in_turns(climbs.collect());
+    if found.iter().any(|climb| climb.broken) {
         return Err(Problems::interrupted());
     }
-    Ok(Tuned {
-        controller: scaled(&best.at),
-        cost: best.cost,
-        start_cost,
-        start_error,
-        evaluations: best.evaluations,
-    })
+    let tuned = |(climb, (start_cost, start_error)): (Climb<'_>, (f64, f64))| {
+        let best = climb.local.best();
+        Tuned {
+            controller: bench.scaled(&best.at),
+            cost: best.cost,
+            start_cost,
+            start_error,
+            evaluations: best.evaluations,
+        }
+    };
+    Ok(found.into_iter().zip(begun).map(tuned).collect())
 }
 
 /// What a run of a scenario costs; one whose sampled loop is unstable has only ended before that shows.

@@ -1,5 +1,8 @@
 //! A search for the smallest value of a function that is expensive, has no derivatives and may be cliffs.
 
+use std::cell::RefCell;
+use std::iter;
+
 use cobyla::{RhoBeg, minimize};
 use rand_distr::{Distribution, Uniform};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -19,7 +22,7 @@ pub struct BestPoint {
 /// First step of the local search, as a part of the half width.
 const FIRST_STEP: f64 = 0.25;
 
-/// The best of at most `budget` points within ±`half_width` of zero in each of `dimension` directions: zero itself first, a quarter
+/// The best of at most `budget` points within ±`half_width` of zero in each of `dimension` directions: zero itself and a quarter
 /// of the budget evenly along the first direction, a quarter at random around the best of those, and the rest by Powell's
 /// COBYLA from the best so far. Random numbers come from `seed` alone.
 ///
@@ -35,64 +38,107 @@ pub fn search(
     seed: u64,
     costs: &dyn Fn(&[Vec<f64>]) -> Vec<f64>,
 ) -> BestPoint {
-    let finite = |points: &[Vec<f64>]| {
-        let numbers = costs(points).into_iter();
-        numbers.map(|cost| if cost.is_nan() { f64::INFINITY } else { cost }).collect::<Vec<_>>()
-    };
-    let origin = vec![0.0; dimension];
-    let mut best = BestPoint { cost: f64::INFINITY, at: origin.clone(), evaluations: 0 };
-    best.consider_all(std::slice::from_ref(&origin), &finite);
-    let [_, along, scattered] = together(dimension, budget);
-    let line = (0..along).map(|i| {
-        let mut at = origin.clone();
-        at[0] = half_width * (2.0 * (i as f64 + 0.5) / along as f64 - 1.0);
-        at
-    });
-    best.consider_all(&line.collect::<Vec<_>>(), &finite);
-    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
-    let around =
-        Uniform::new_inclusive(-0.5 * half_width, 0.5 * half_width).expect("a half width above zero");
-    let center = best.at.clone();
-    let points = (0..scattered).map(|_| {
-        let step = |x: &f64| (x + around.sample(&mut random)).clamp(-half_width, half_width);
-        center.iter().map(step).collect()
-    });
-    best.consider_all(&points.collect::<Vec<_>>(), &finite);
-    let left = budget.saturating_sub(best.evaluations);
-    if left == 0 || dimension == 0 {
-        return best;
-    }
-    let start = best.at.clone();
-    let tried = std::cell::RefCell::new(best);
-    let objective = |x: &[f64], (): &mut ()| {
-        let cost = finite(&[x.to_vec()])[0];
-        tried.borrow_mut().consider(x, cost);
-        // The method fits planes: infinity has none.
-        cost.min(f64::MAX.sqrt())
-    };
-    let bounds = vec![(-half_width, half_width); dimension];
-    let unconstrained: [fn(&[f64], &mut ()) -> f64; 0] = [];
-    // However it ends, what counts is the best point that was seen.
-    let _ = minimize(
-        objective,
-        &start,
-        &bounds,
-        &unconstrained,
-        (),
-        left,
-        RhoBeg::All(FIRST_STEP * half_width),
-        None,
-    );
-    tried.into_inner()
+    let mut search = Search::new(dimension, half_width, budget, seed);
+    let first = search.first();
+    search.consider_all(&first, &costs(&first));
+    let scattered = search.scattered();
+    search.consider_all(&scattered, &costs(&scattered));
+    search.local(|x| costs(&[x.to_vec()])[0])
 }
 
-/// How many points a search asks for together: the first, those along the first direction, those at random. The rest come one by one.
-pub(crate) fn together(dimension: usize, budget: usize) -> [usize; 3] {
-    if dimension == 0 {
-        return [1, 0, 0];
+/// A search as [`search`] does it, part by part: several of them may go on side by side.
+#[derive(Clone, Debug)]
+pub(super) struct Search {
+    half_width: f64,
+    budget: usize,
+    seed: u64,
+    best: BestPoint,
+}
+
+impl Search {
+    /// One that has seen nothing yet.
+    pub(super) fn new(dimension: usize, half_width: f64, budget: usize, seed: u64) -> Self {
+        let best = BestPoint { cost: f64::INFINITY, at: vec![0.0; dimension], evaluations: 0 };
+        Self { half_width, budget, seed, best }
     }
-    let along = budget / 4;
-    [1, along, budget.div_ceil(2).saturating_sub(1 + along)]
+
+    /// Points to look at before anything is known: zero, and those along the first direction.
+    pub(super) fn first(&self) -> Vec<Vec<f64>> {
+        let origin = vec![0.0; self.best.at.len()];
+        let along = along(origin.len(), self.budget);
+        let line = (0..along).map(|i| {
+            let mut at = origin.clone();
+            at[0] = self.half_width * (2.0 * (i as f64 + 0.5) / along as f64 - 1.0);
+            at
+        });
+        iter::once(origin.clone()).chain(line).collect()
+    }
+
+    /// Points at random around the best so far.
+    ///
+    /// # Panics
+    /// Unless the half width is a number above zero.
+    pub(super) fn scattered(&self) -> Vec<Vec<f64>> {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(self.seed);
+        let half = 0.5 * self.half_width;
+        let around = Uniform::new_inclusive(-half, half).expect("a half width above zero");
+        let [_, scattered] = together(self.best.at.len(), self.budget);
+        let point = |_| {
+            let step = |x: &f64| (x + around.sample(&mut random)).clamp(-self.half_width, self.half_width);
+            self.best.at.iter().map(step).collect()
+        };
+        (0..scattered).map(point).collect()
+    }
+
+    /// Takes in what `points` cost.
+    pub(super) fn consider_all(&mut self, points: &[Vec<f64>], costs: &[f64]) {
+        for (at, cost) in points.iter().zip(costs) {
+            self.best.consider(at, *cost);
+        }
+    }
+
+    /// The best point after the rest of the budget, spent one point after the other from the best so far.
+    pub(super) fn local(self, mut cost: impl FnMut(&[f64]) -> f64) -> BestPoint {
+        let Self { half_width, budget, best, .. } = self;
+        let dimension = best.at.len();
+        let left = budget.saturating_sub(best.evaluations);
+        if left == 0 || dimension == 0 {
+            return best;
+        }
+        let start = best.at.clone();
+        let state = RefCell::new((best, &mut cost));
+        let objective = |x: &[f64], (): &mut ()| {
+            let (best, cost) = &mut *state.borrow_mut();
+            let cost = best.consider(x, cost(x));
+            // The method fits planes: infinity has none.
+            cost.min(f64::MAX.sqrt())
+        };
+        let bounds = vec![(-half_width, half_width); dimension];
+        let unconstrained: [fn(&[f64], &mut ()) -> f64; 0] = [];
+        // However it ends, what counts is the best point that was seen.
+        let _ = minimize(
+            objective,
+            &start,
+            &bounds,
+            &unconstrained,
+            (),
+            left,
+            RhoBeg::All(FIRST_STEP * half_width),
+            None,
+        );
+        state.into_inner().0
+    }
+}
+
+/// How many points lie along the first direction.
+fn along(dimension: usize, budget: usize) -> usize {
+    if dimension == 0 { 0 } else { budget / 4 }
+}
+
+/// How many points a search asks for together: at first, and at random. The rest come one by one.
+pub(crate) fn together(dimension: usize, budget: usize) -> [usize; 2] {
+    let first = 1 + along(dimension, budget);
+    [first, if dimension == 0 { 0 } else { budget.div_ceil(2).saturating_sub(first) }]
 }
 
 /// Whether a search with this budget tries points at random.
@@ -101,18 +147,15 @@ pub fn has_random_points(budget: usize) -> bool {
 }
 
 impl BestPoint {
-    fn consider_all(&mut self, points: &[Vec<f64>], costs: &dyn Fn(&[Vec<f64>]) -> Vec<f64>) {
-        for (at, cost) in points.iter().zip(costs(points)) {
-            self.consider(at, cost);
-        }
-    }
-
-    fn consider(&mut self, at: &[f64], cost: f64) {
+    /// Takes in a point; gives its cost, infinite where it is not a number.
+    fn consider(&mut self, at: &[f64], cost: f64) -> f64 {
+        let cost = if cost.is_nan() { f64::INFINITY } else { cost };
         self.evaluations += 1;
         if cost < self.cost {
             self.cost = cost;
             self.at = at.to_vec();
         }
+        cost
     }
 }
 

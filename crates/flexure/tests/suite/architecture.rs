@@ -5,10 +5,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms of `src`, from the bottom up: each may use those above it in this list, and none below.
-const ROOMS: [&str; 29] = [
+const ROOMS: [&str; 30] = [
     "units",         // how numbers are measured and how that is written
     "files",         // text with places, problems that point at it, files that appear whole
     "linalg",        // matrices of run-time sizes
+    "lanes",         // numbers side by side in a register
     "verify",        // the checker of certificates
     "progress",      // how far long jobs are
     "robot",         // robot files, URDFs, Arm

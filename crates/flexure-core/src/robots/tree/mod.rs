@@ -173,6 +173,13 @@ impl<C: Scalar, const N: usize> Tree<C, N> {
         (0..self.count).filter_map(|i| Some((i, (self.joints.get(i)?, poses.get(i)?))))
     }
 
+    /// Whether it has the structure of `other`, whatever the numbers: as many joints, of the same kinds, on the same bodies.
+    pub fn is_like(&self, other: &Self) -> bool {
+        let structure = |joint: &Joint<C>| (joint.parent, joint.kind);
+        let mut joints = self.joints.iter().zip(&other.joints);
+        self.count == other.count && joints.all(|(a, b)| structure(a) == structure(b))
+    }
+
     /// The same robot with constants of another type.
     pub fn map<D: Scalar>(&self, f: impl Fn(C) -> D) -> Tree<D, N> {
         Tree {

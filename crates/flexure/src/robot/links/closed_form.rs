@@ -69,6 +69,15 @@ macro_rules! closed_forms {
                     }
                 }
             }
+
+            impl SideBySide<{ <$kind as ClosedForm<f64>>::JOINTS }> for robots::$kind<f64> {
+                type Several = robots::$kind<Several>;
+
+                fn side_by_side(links: &Each<&Self>) -> Option<Self::Several> {
+                    let numbers = links.map(|form| numbers(|number| form.map(number)));
+                    together(&numbers, |number| links[0].map(number))
+                }
+            }
         )+
 
         /// What the links are, as data with numbers of type `C`.

@@ -22,6 +22,7 @@ use crate::files::base::Base;
 use crate::files::decimals::Decimals;
 use crate::files::field::{Field, Joints};
 use crate::files::table::Table;
+use crate::lanes::{Each, Several, numbers, together};
 pub(crate) use closed_form::ClosedForm;
 use closed_form::{LineBody, ReadClosedForm, closed_forms};
 
@@ -48,6 +49,27 @@ impl<C: Scalar, const N: usize> FromFile<C, N> for Tree<C, N> {
             Links::Tree(bodies) => Self::from_bodies(bodies, gravity, approximate),
             _ => None,
         }
+    }
+}
+
+/// Links whose numbers can stand side by side with those of others.
+pub(crate) trait SideBySide<const N: usize>: model::Links<f64, N> + Sized {
+    /// The links of every lane.
+    type Several: model::Links<Several, N> + Copy + Send + Sync;
+
+    /// The links of each lane side by side; none if they are not of one structure.
+    fn side_by_side(links: &Each<&Self>) -> Option<Self::Several>;
+}
+
+impl<const N: usize> SideBySide<N> for Tree<f64, N> {
+    type Several = Tree<Several, N>;
+
+    fn side_by_side(links: &Each<&Self>) -> Option<Self::Several> {
+        if !links.iter().all(|tree| tree.is_like(links[0])) {
+            return None;
+        }
+        let numbers = links.map(|tree| numbers(|number| tree.map(number)));
+        together(&numbers, |number| links[0].map(number))
     }
 }
 

@@ -6,12 +6,8 @@ use flexure_core::robots::Tree;
 
 use super::Held;
 use crate::files::SCENARIOS;
-use crate::laws::any_law;
-use crate::robot::sized::pair;
 use crate::scenario::{Scenario, scenario_from_text};
-use crate::simulate::assembly;
 use crate::simulate::interface::Loop;
-use crate::simulate::own_law::HeldLaw;
 
 /// What a smooth plant can have: estimator, disturbance observer, guard, sensors, drive, a push.
 const DEVICES: &str = r#"
@@ -94,10 +90,7 @@ fn bits(held: &mut dyn Loop) -> Vec<u64> {
 fn room_for_more_joints_changes_no_bit() {
     for more in ["", DEVICES, &format!("{DEVICES}{FRICTION}")] {
         let scenario = panda(more);
-        let [model, simulated] =
-            pair::<Tree<f64, 7>, 7>(&scenario.robot, &assembly::simulated(&scenario)).unwrap();
-        let law = HeldLaw::Registered(any_law(&scenario.controller, |x| x));
-        let mut exact = Held::new(&scenario, model, simulated, law).unwrap();
+        let mut exact = Held::<Tree<f64, 7>, 7>::of(&scenario).unwrap();
         let mut roomy = scenario.open().unwrap();
         let names = |held: &dyn Loop| held.signals().to_vec();
         assert_eq!((roomy.joints(), names(&*roomy)), (7, names(&exact)));

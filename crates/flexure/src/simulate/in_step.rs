@@ -1,0 +1,228 @@
+//! Loops that go in step, several to a SIMD register.
+//!
+//! What is most of the work of a loop, its law, is the code of one loop on [`Several`] numbers; sensors, estimator, guard and drive, which
+//! decide and draw, are each loop's own. A lane never looks at its neighbours: what a loop comes to does not depend on which others
+//! go beside it.
+
+use std::array;
+
+use flexure_core::control::ControlLaw as _;
+use flexure_core::linalg::Vector;
+use flexure_core::model::Fjr;
+use flexure_core::scalar::Jet;
+
+use crate::files::Problems;
+use crate::lanes::{self, Each, Several, WIDTH};
+use crate::laws::{AnyLaw, any_law};
+use crate::robot::links::{FromFile, SideBySide};
+use crate::robot::sized::sized;
+use crate::scenario::{self, Scenario};
+use crate::simulate::controller::Sensed;
+use crate::simulate::held::Held;
+use crate::simulate::interface::Loop;
+use crate::simulate::simulation::{Divergence, Kept, Simulation};
+
+/// Loops that go in step, their joint count hidden.
+pub(crate) trait InStep {
+    /// The loop in a lane.
+    fn lane(&self, lane: usize) -> &dyn Loop;
+
+    /// How a loop diverged, if it did: it stays where it is.
+    fn divergence(&self, lane: usize) -> Option<Divergence>;
+
+    /// Moves the loops in the lanes that are `going` on to their next control instant.
+    fn step(&mut self, going: Each<bool>);
+}
+
+/// Whether the loops of two scenarios may go in step, as far as their files say.
+pub(crate) fn may_go_together(a: &Scenario, b: &Scenario) -> bool {
+    let kind = |scenario: &Scenario| (scenario.controller.kind(), scenario.controller.phi());
+    goes_in_step(a)
+        && goes_in_step(b)
+        && kind(a) == kind(b)
+        && a.robot.links.what() == b.robot.links.what()
+        && a.robot.joint_count() == b.robot.joint_count()
+}
+
+/// Whether loops of a scenario go in step with others at all: those in continuous time ask their law within steps.
+pub(crate) fn goes_in_step(scenario: &Scenario) -> bool {
+    scenario.hold == scenario::Hold::ZeroOrder
+}
+
+/// Loops with the numbers of the scenarios that they are of, and scenarios that there is no loop of.
+pub(crate) struct Opened<K> {
+    /// At most [`WIDTH`] in each.
+    pub(crate) groups: Vec<(Vec<K>, Box<dyn InStep>)>,
+    pub(crate) refused: Vec<(K, Problems)>,
+}
+
+/// The loops of at most [`WIDTH`] scenarios that may go together: in one group, if their structures allow it.
+///
+/// # Errors
+/// If their robots have more joints than this program was built for.
+pub(crate) fn opened<K>(scenarios: Vec<(K, &Scenario)>) -> Result<Opened<K>, Problems> {
+    let mut opened = Opened { groups: Vec::new(), refused: Vec::new() };
+    let Some((_, first)) = scenarios.first() else { return Ok(opened) };
+    sized!(&first.robot, L, N => {
+        let (mut keys, mut loops) = (Vec::new(), Vec::new());
+        for (key, scenario) in scenarios {
+            match Held::<L<f64>, N>::of(scenario) {
+                Ok(held) => {
+                    keys.push(key);
+                    loops.push(held);
+                }
+                Err(problems) => opened.refused.push((key, problems)),
+            }
+        }
+        grouped(keys, loops, &mut opened);
+    });
+    Ok(opened)
+}
+
+/// Puts loops into one group, or each into one of its own.
+fn grouped<K, L, const N: usize>(keys: Vec<K>, loops: Vec<Held<L, N>>, opened: &mut Opened<K>)
+where
+    L: FromFile<f64, N> + SideBySide<N> + Clone + Send + Sync + 'static,
+{
+    if loops.is_empty() {
+        return;
+    }
+    match Group::new(loops) {
+        Ok(group) => opened.groups.push((keys, Box::new(group))),
+        Err(loops) => {
+            for (key, held) in keys.into_iter().zip(loops) {
+                // One is like itself.
+                if let Ok(group) = Group::new(vec![held]) {
+                    opened.groups.push((vec![key], Box::new(group)));
+                }
+            }
+        }
+    }
+}
+
+/// Loops whose size is known to the compiler.
+struct Group<L: SideBySide<N>, const N: usize> {
+    /// At most [`WIDTH`]; lanes beyond have the numbers of the first.
+    loops: Vec<Held<L, N>>,
+    /// The robots that the laws know.
+    models: Fjr<Several, L::Several, N>,
+    laws: AnyLaw<Several, N>,
+    /// Whether all follow the same reference.
+    one_path: bool,
+}
+
+impl<L: FromFile<f64, N> + SideBySide<N> + Clone, const N: usize> Group<L, N> {
+    /// The loops, if they are of one structure; else they are given back.
+    fn new(loops: Vec<Held<L, N>>) -> Result<Self, Vec<Held<L, N>>> {
+        let lane = |lane: usize| loops.get(lane).unwrap_or(&loops[0]);
+        let each: Each<&Held<L, N>> = array::from_fn(lane);
+        let models = robots(&each.map(Held::robot));
+        let laws = laws(&each.map(Held::scenario));
+        let path = |held: &Held<L, N>| held.simulation.controller().reference.clone();
+        let one_path = loops.iter().all(|held| path(held) == path(&loops[0]));
+        match models.zip(laws) {
+            Some((models, laws)) => Ok(Self { loops, models, laws, one_path }),
+            None => Err(loops),
+        }
+    }
+}
+
+/// Robots side by side; none if their links are not of one structure.
+fn robots<L: SideBySide<N>, const N: usize>(
+    robots: &Each<&Fjr<f64, L, N>>,
+) -> Option<Fjr<Several, L::Several, N>> {
+    Some(Fjr {
+        links: L::side_by_side(&robots.map(|robot| &robot.links))?,
+        motor_inertia: lanes::vector(&robots.map(|robot| &robot.motor_inertia)),
+        stiffness: lanes::vector(&robots.map(|robot| &robot.stiffness)),
+        link_damping: lanes::vector(&robots.map(|robot| &robot.link_damping)),
+        motor_damping: lanes::vector(&robots.map(|robot| &robot.motor_damping)),
+    })
+}
+
+/// The laws of scenarios whose laws are of one kind; none if not all of them have the same gains.
+fn laws<const N: usize>(scenarios: &Each<&Scenario>) -> Option<AnyLaw<Several, N>> {
+    let numbers =
+        scenarios.map(|scenario| lanes::numbers(|number| any_law::<f64, N>(&scenario.controller, number)));
+    lanes::together(&numbers, |number| any_law(&scenarios[0].controller, number))
+}
+
+impl<L, const N: usize> InStep for Group<L, N>
+where
+    L: FromFile<f64, N> + SideBySide<N> + Clone + Send + Sync,
+{
+    fn lane(&self, lane: usize) -> &dyn Loop {
+        &self.loops[lane]
+    }
+
+    fn divergence(&self, lane: usize) -> Option<Divergence> {
+        self.loops[lane].simulation.divergence
+    }
+
+    fn step(&mut self, going: Each<bool>) {
+        let kept: Each<Option<Kept<N>>> = array::from_fn(|lane| {
+            going[lane].then(|| self.loops.get(lane)).flatten().map(|held| held.simulation.kept())
+        });
+        let mut ended: Each<Option<Divergence>> = self.advanced(going);
+        let arriving = array::from_fn(|lane| kept[lane].is_some() && ended[lane].is_none());
+        let sensed = self.sensed(arriving);
+        let torques = self.torques(&sensed);
+        for lane in (0..WIDTH).filter(|&lane| arriving[lane]) {
+            let simulation = &mut self.loops[lane].simulation;
+            let tick = simulation.tick();
+            let action = match &sensed[lane] {
+                Some(sensed) => simulation.controller.act(&tick, sensed, Some(torques[lane])),
+                None => simulation.controller.silent(&tick),
+            };
+            let energy = simulation.world.energy(&simulation.motion);
+            ended[lane] = simulation.arrive(tick, action, energy).err();
+        }
+        for (held, ended) in self.loops.iter_mut().zip(ended.iter().zip(kept)) {
+            if let (Some(divergence), Some(kept)) = ended {
+                held.simulation.end(*divergence, kept);
+            }
+        }
+    }
+}
+
+impl<L, const N: usize> Group<L, N>
+where
+    L: FromFile<f64, N> + SideBySide<N> + Clone + Send + Sync,
+{
+    /// Moves the robots over the control period after their last instant; the loops that diverged on the way.
+    fn advanced(&mut self, going: Each<bool>) -> Each<Option<Divergence>> {
+        let mut ended = [None; WIDTH];
+        for (lane, held) in self.loops.iter_mut().enumerate().filter(|(lane, _)| going[*lane]) {
+            ended[lane] = held.simulation.advance().err();
+        }
+        ended
+    }
+
+    /// What each controller knows before its law is asked.
+    fn sensed(&mut self, arriving: Each<bool>) -> Each<Option<Sensed<N>>> {
+        let mut sensed = [None; WIDTH];
+        let mut path: Option<(f64, Vector<Jet<f64, 5>, N>)> = None;
+        for lane in (0..WIDTH).filter(|&lane| arriving[lane]) {
+            let tick = self.loops[lane].simulation.tick();
+            let Simulation { controller, motion, .. } = &mut self.loops[lane].simulation;
+            #[expect(clippy::float_cmp, reason = "the same instant, or another")]
+            let known = path.as_ref().filter(|(t, _)| self.one_path && *t == tick.t).map(|(_, path)| path);
+            sensed[lane] = controller.sense(&tick, motion, known);
+            if let Some(found) = sensed[lane].as_ref().filter(|_| !controller.has_rejoined()) {
+                path = Some((tick.t, found.reference));
+            }
+        }
+        sensed
+    }
+
+    /// What the law of each loop asks for at what its controller knows [N m]; anything for loops that know nothing.
+    fn torques(&self, sensed: &Each<Option<Sensed<N>>>) -> Each<Vector<f64, N>> {
+        let Some(filling) = sensed.iter().flatten().next() else { return [Vector::ZERO; WIDTH] };
+        let sensed = sensed.each_ref().map(|sensed| sensed.as_ref().unwrap_or(filling));
+        let x = lanes::motion(&sensed.map(|sensed| &sensed.seen));
+        let q_ld = Vector::from_fn(|i| {
+            Jet::from_fn(|k| Several::from_array(sensed.map(|sensed| sensed.reference[i].coefficient(k))))
+        });
+        lanes::apart(&self.laws.torque(&self.models, &x, &q_ld))
+    }
+}
