@@ -49,11 +49,12 @@ impl<'a> Outcome<'a> {
 }
 
 pub fn run(scenario: &str, reading: Reading<'_>, traced: &Traced, json: bool) -> Result<(), Failure> {
-    told(load_scenario_with(scenario, reading)?, traced, json)
+    told(load_scenario_with(scenario, reading)?, None, traced, json)
 }
 
-/// Runs `scenario`, writes its files as `traced` says, and tells what came of it.
-pub fn told(scenario: Scenario, traced: &Traced, json: bool) -> Result<(), Failure> {
+/// Runs `scenario`, writes its files as `traced` says, and tells what came of it, after `first`: who prints before the end has no word left
+/// for what Ctrl-C breaks off.
+pub fn told(scenario: Scenario, first: Option<&str>, traced: &Traced, json: bool) -> Result<(), Failure> {
     let Traced { output, columns, every } = traced;
     let excerpt = Excerpt::new(&scenario.signals()?, columns, *every)?;
     say(&scenario.warnings);
@@ -71,10 +72,11 @@ pub fn told(scenario: Scenario, traced: &Traced, json: bool) -> Result<(), Failu
     if experiment.run.divergence.is_none() {
         say(&experiment.exceeded);
     }
+    say(unbalanced(&experiment).as_slice());
     if json {
         print::json(&Outcome::new(&experiment, files))?;
     } else {
-        if let Some(words) = &broken_off {
+        for words in first.into_iter().chain(broken_off.as_deref()) {
             print::line(words)?;
         }
         print::line(&summary_table(std::slice::from_ref(&experiment.run.summary), print::columns()))?;
@@ -114,6 +116,28 @@ pub fn told(scenario: Scenario, traced: &Traced, json: bool) -> Result<(), Failu
 fn broken_off(scenario: &Scenario, time: f64) -> String {
     let [time, end] = [time, scenario.duration].map(|seconds| short(seconds, 4));
     format!("{}: broken off at t = {time} s of {end} s", scenario.name)
+}
+
+/// Part of the energy that goes through a robot that its simulation may lose without a word.
+const LOST_ENERGY: f64 = 1e-3;
+
+/// A warning that the simulation does not keep the energy of the robot, if it does not.
+fn unbalanced(Experiment { scenario, run, .. }: &Experiment) -> Option<Problem> {
+    let drift = run.summary.energy_drift;
+    let message = format!(
+        "{}: the simulation gains or loses {} % of the energy that goes through the robot: what is printed of this run is not to be \
+         relied on",
+        scenario.name,
+        short(100.0 * drift, 2)
+    );
+    let help = if scenario.is_rough() {
+        "friction, play and hysteresis are stepped at 0.1 ms: springs or links of this robot are too fast for that"
+    } else {
+        "a smaller integration_tolerance in the scenario, or a shorter control_period"
+    };
+    // A loop that diverges is told for that.
+    (run.divergence.is_none() && drift > LOST_ENERGY)
+        .then(|| scenario.places.problem("integration_tolerance", "energy", message, help).warning())
 }
 
 /// What the table does not say of a real loop.

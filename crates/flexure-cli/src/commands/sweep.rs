@@ -151,14 +151,12 @@ fn replay(folder: &Path, row: u64, traced: &Traced, json: bool) -> Result<(), Fa
     let (_, sweep) = Folder::open(folder)?;
     let mut scenario = sweep.scenario(row)?;
     scenario.name = format!("{}-row-{row}", sweep.name());
-    if !json {
-        let values = sweep.values(row);
-        let said = sweep.parameters().iter().zip(&values).map(|(parameter, value)| {
-            let times = if parameter.relative { "× " } else { "" };
-            format!("{} {times}{value}", parameter.key)
-        });
-        let said: Vec<String> = said.collect();
-        print::line(&format!("row {row}: {}; seed {}", said.join(", "), sweep.seed(row)))?;
-    }
-    run::told(scenario, traced, json)
+    let values = sweep.values(row);
+    let said = sweep.parameters().iter().zip(&values).map(|(parameter, value)| {
+        let times = if parameter.relative { "× " } else { "" };
+        format!("{} {times}{value}", parameter.key)
+    });
+    let said: Vec<String> = said.collect();
+    let first = format!("row {row}: {}; seed {}", said.join(", "), sweep.seed(row));
+    run::told(scenario, Some(&first), traced, json)
 }

@@ -58,6 +58,16 @@ impl Imperfection {
         self.place() == Place::Devices
     }
 
+    /// Whether it makes the simulated robot one that is not smooth: dry friction, play or hysteresis.
+    pub fn is_rough(&self) -> bool {
+        let any = |numbers: &[f64]| numbers.iter().any(|number| *number > 0.0);
+        let rubs = |friction: &Friction| {
+            any(&friction.coulomb) || friction.stribeck.as_ref().is_some_and(|rise| any(&rise.breakaway))
+        };
+        let plays = |spring: &Spring| any(&spring.dead_zone) || any(&spring.hysteresis_stiffness);
+        self.of().is_some_and(rubs) || self.of().is_some_and(plays)
+    }
+
     /// The data, if this is of kind `K`.
     pub(crate) fn of<K: Kind>(&self) -> Option<&K> {
         self.data().downcast_ref()

@@ -34,6 +34,7 @@ pub(crate) fn agree(real: &Loop<'_>) {
     real.ages();
     real.unguarded();
     real.unlimited();
+    real.tolerance();
 }
 
 impl<'a> Loop<'a> {
@@ -164,6 +165,23 @@ impl<'a> Loop<'a> {
                 1.0 / period
             );
             field.error("range", message, "with encoders = \"motor\"; a tenth of that is a good start");
+        }
+    }
+
+    /// A tolerance is of plants that are integrated to one.
+    fn tolerance(&self) {
+        let rough = self.found.iter().find(|found| found.what.is_rough());
+        if let (Some(found), Some(field)) = (rough, self.root.get("integration_tolerance")) {
+            let message = format!(
+                "{} in line {} makes the robot one that is stepped at 0.1 ms, whatever integration_tolerance is",
+                found.what.kind(),
+                found.field.line()
+            );
+            field.warn(
+                "unused",
+                message,
+                "smooth robots are integrated to it: those without friction, play and hysteresis",
+            );
         }
     }
 

@@ -29,7 +29,7 @@ use crate::scenario::plant::{self, Plant};
 /// Farthest that a reference without smooth start may be from the robot at t = 0 \[rad\].
 const FAR: f64 = 0.5;
 
-/// Most control periods in a run: every one of them is kept in memory until the trace is written.
+/// Most control periods in a run: a trace that is held, as in Python, keeps every one of them in memory.
 const MOST_PERIODS: f64 = 5e6;
 
 /// Largest part of a control period that a run may be longer or shorter than whole ones without a word.
@@ -159,6 +159,11 @@ impl Scenario {
     #[must_use]
     pub fn under(&self, controller: &Controller) -> Self {
         Self { controller: controller.clone(), ..self.clone() }
+    }
+
+    /// Whether the simulated robot is not smooth: dry friction, play or hysteresis.
+    pub fn is_rough(&self) -> bool {
+        self.imperfections.iter().any(Imperfection::is_rough)
     }
 
     /// Whether the file leaves the gains to the [starting rule](Controller::default_for): it has none.

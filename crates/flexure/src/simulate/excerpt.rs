@@ -21,13 +21,14 @@ impl Excerpt {
     }
 
     /// The columns that a pattern of `patterns` stands for, in the order of the trace, each once and the time always: names, in which
-    /// `*` is any text and `?` any character. Without patterns all of them. Of the rows the first, and every `every`-th after it.
+    /// `*` is any text and `?` any character; spaces around them do not count. Without patterns all of them. Of the rows the first, and every `every`-th after it.
     ///
     /// # Errors
     /// `unknown-name` for a pattern that stands for no column.
     pub fn new(signals: &[Signal], patterns: &[String], every: NonZeroU32) -> Result<Self, Problem> {
         let names = signals.iter().map(|signal| signal.name.as_str());
-        for pattern in patterns {
+        let patterns: Vec<&str> = patterns.iter().map(|pattern| pattern.trim()).collect();
+        for pattern in &patterns {
             if !names.clone().any(|name| matches(pattern, name)) {
                 let what = if pattern.contains(['*', '?']) { "matches" } else { "is" };
                 let message =

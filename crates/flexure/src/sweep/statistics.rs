@@ -11,9 +11,10 @@ use super::{Metric, Outcome, Status, Sweep};
 /// Quantiles are off by this part of themselves at most.
 const ACCURACY: f64 = 0.005;
 
-/// Different sizes that a sketch tells apart, from 1e-9 up; smaller numbers are zero to it. Steps of a hundredth: 46 decades.
+/// Different sizes that a sketch tells apart, from 1e-30 up; smaller numbers are zero to it: below the rounding of everything that is kept.
+/// Steps of a hundredth: 43 decades. A sketch holds those between its smallest and its largest number only.
 const BINS: u32 = 10_000;
-const SMALLEST: f64 = 1e-9;
+const SMALLEST: f64 = 1e-30;
 
 /// Rows that were counted, and their metrics.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -201,7 +202,7 @@ impl Figures {
         (self.count > 1).then(|| (self.squares / (self.count - 1) as f64).sqrt())
     }
 
-    /// The smallest of them that at least this part of them does not exceed, to half a percent; what is less than 1e-9 is 0.
+    /// The smallest of them that at least this part of them does not exceed, to half a percent; what is less than 1e-30 is 0.
     pub fn quantile(&self, part: f64) -> Option<f64> {
         let last = self.count.saturating_sub(1) as f64;
         // The sketch takes ranks from 0 to the last, rounded down.
@@ -249,6 +250,16 @@ mod tests {
         let mean = sorted.iter().sum::<f64>() / 1000.0;
         let deviation = (sorted.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / 999.0).sqrt();
         assert!(near(whole.mean, mean) && near(whole.deviation().unwrap(), deviation));
+    }
+
+    /// Errors of ideal loops and of energy balances are rounding: their quantiles are told, too.
+    #[test]
+    fn small_numbers_have_quantiles() {
+        let small = of(&[5e-15, 1e-13, 2e-11, 1.3e-10, 4e-9]);
+        for (part, truth) in [(0.05, 5e-15), (0.4, 1e-13), (0.5, 2e-11), (0.8, 1.3e-10), (0.95, 4e-9)] {
+            let found = small.quantile(part).unwrap();
+            assert!((found - truth).abs() <= 0.01 * truth, "{part}: {found}, not {truth}");
+        }
     }
 
     /// Of few values, too: the largest of three is what 95 % do not exceed.

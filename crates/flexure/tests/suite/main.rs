@@ -50,6 +50,7 @@ mod sampled;
 mod samples;
 mod sinks;
 mod suites;
+mod together;
 mod urdf;
 mod verify;
 mod within;
