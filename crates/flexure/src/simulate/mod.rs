@@ -29,6 +29,7 @@ mod scheme;
 mod signals;
 mod simulation;
 mod sink;
+mod span;
 mod stepper;
 mod stepping;
 mod stiction;
