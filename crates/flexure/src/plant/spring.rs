@@ -82,8 +82,7 @@ impl<C: Piecewise + Over<C>, L: Links<C, N>, const N: usize> Plant<L, N, C> {
         let slack = self.slack(x);
         Vector::from_fn(|i| {
             let wound = zeta[i] - slack[i];
-            let slope =
-                self.robot.stiffness[i] + C::from_f64(3.0) * self.spring_hardening[i] * wound * wound;
+            let slope = self.robot.stiffness[i] + C::from_f64(3.0) * self.spring_hardening[i] * wound * wound;
             (zeta[i].abs() - C::from_f64(0.5 * self.spring_gap[i])).select(slope, C::ZERO)
         })
     }

@@ -33,6 +33,8 @@ mod span;
 mod stepper;
 mod stepping;
 mod stiction;
+#[allow(dead_code, reason = "for blocks of loops")]
+mod strides;
 mod summary;
 mod trace;
 mod trace_file;

@@ -105,7 +105,8 @@ impl<const S: usize, const N: usize, T: Piecewise + Over<T> + Over<f64>> StageSo
         inverse: impl Fn(&Block<S, T>) -> Block<S, T>,
     ) {
         self.anchor.q = q;
-        let (robot, Self { joints, damped, anchor: Anchor { q: [q_l, q_m], h }, .. }) = (&plant.robot, &*self);
+        let (robot, Self { joints, damped, anchor: Anchor { q: [q_l, q_m], h }, .. }) =
+            (&plant.robot, &*self);
         let (joints, q_l, h) = (*joints, *q_l, *h);
         let stiffness = plant.tangent_stiffness(&Motion { q_m: *q_m, ..Motion::at_rest(q_l) });
         let of_link = per_joint(joints, |k| times(&scheme.twice, stiffness[k].scale(h * h)));
