@@ -2,18 +2,19 @@
 
 use flexure_core::linalg::{Matrix, Vector};
 use flexure_core::model::{Fjr, Links, MassFactor, Motion, Power, RotorCoupling};
-use flexure_core::scalar::{Over, Piecewise};
+use flexure_core::scalar::{Over, Piecewise, Scalar};
 
 use crate::plant::friction::Friction;
 use crate::plant::spring::Hysteresis;
 
-/// A robot with what its model leaves out. The law is built on [`robot`](Self::robot) alone.
+/// A robot with what its model leaves out. The law is built on [`robot`](Self::robot) alone. Its constants are of type `C`: floats, or
+/// lanes where several robots are moved together. What makes a plant rough is floats always: rough plants are moved one by one.
 #[derive(Clone, Copy, Debug)]
-pub struct Plant<L, const N: usize> {
+pub struct Plant<L, const N: usize, C = f64> {
     /// The reduced model with linear springs.
-    pub robot: Fjr<f64, L, N>,
+    pub robot: Fjr<C, L, N>,
     /// k ≥ 0 in the spring torque K ε + k ε³ [N m/rad³].
-    pub spring_hardening: Vector<f64, N>,
+    pub spring_hardening: Vector<C, N>,
     /// Play ≥ 0 in the springs, all of it, in rad: ε = ζ − clamp(ζ, ±gap/2).
     pub spring_gap: Vector<f64, N>,
     /// Springs that slip inside, in parallel with the others.
@@ -23,20 +24,20 @@ pub struct Plant<L, const N: usize> {
     /// Dry friction of the motors, on the link side of the gear.
     pub motor_friction: Friction<N>,
     /// Inertial coupling of the rotors; without it they only spin about their own axes.
-    pub rotor_coupling: Option<RotorCoupling<f64, N>>,
+    pub rotor_coupling: Option<RotorCoupling<C, N>>,
     /// What the motors give of the torque that their drives believe to give > 0: torque constants that differ from the data
     /// sheet. Drives report what they believe.
-    pub torque_gain: Vector<f64, N>,
+    pub torque_gain: Vector<C, N>,
     /// Torque on the links from outside, constant while the plant is advanced [N m].
-    pub external: Vector<f64, N>,
+    pub external: Vector<C, N>,
 }
 
 /// One vector for the links and one for the motors.
 pub(crate) type Sides<const N: usize, T = f64> = [Vector<T, N>; 2];
 
-impl<L, const N: usize> From<Fjr<f64, L, N>> for Plant<L, N> {
+impl<C: Scalar, L, const N: usize> From<Fjr<C, L, N>> for Plant<L, N, C> {
     /// The plant that is as its model.
-    fn from(robot: Fjr<f64, L, N>) -> Self {
+    fn from(robot: Fjr<C, L, N>) -> Self {
         Self {
             robot,
             spring_hardening: Vector::ZERO,
@@ -45,13 +46,13 @@ impl<L, const N: usize> From<Fjr<f64, L, N>> for Plant<L, N> {
             link_friction: Friction::NONE,
             motor_friction: Friction::NONE,
             rotor_coupling: None,
-            torque_gain: Vector([1.0; N]),
+            torque_gain: Vector([C::ONE; N]),
             external: Vector::ZERO,
         }
     }
 }
 
-impl<L, const N: usize> Plant<L, N> {
+impl<C, L, const N: usize> Plant<L, N, C> {
     /// Whether torques are smooth functions of the motion: no dry friction, no play, no hysteresis.
     pub fn is_smooth(&self) -> bool {
         self.link_friction.is_none()
@@ -61,28 +62,28 @@ impl<L, const N: usize> Plant<L, N> {
     }
 }
 
-impl<L: Links<f64, N>, const N: usize> Plant<L, N> {
+impl<C: Piecewise + Over<C>, L: Links<C, N>, const N: usize> Plant<L, N, C> {
     /// Total energy in J, without what hysteresis keeps.
-    pub fn total_energy(&self, x: &Motion<f64, N>) -> f64 {
-        let coupling = self.rotor_coupling.map_or(0.0, |coupling| coupling.energy(&self.robot.links, x));
+    pub fn total_energy(&self, x: &Motion<C, N>) -> C {
+        let coupling = self.rotor_coupling.map_or(C::ZERO, |coupling| coupling.energy(&self.robot.links, x));
         self.robot.total_energy(x) + self.nonlinear_energy(x) + coupling
     }
 
     /// The power that flows in through the motors and from outside, and out through the dampers.
-    pub fn power(&self, x: &Motion<f64, N>, u_m: &Vector<f64, N>) -> Power<f64> {
+    pub fn power(&self, x: &Motion<C, N>, u_m: &Vector<C, N>) -> Power<C> {
         let Power { supplied, dissipated } = self.robot.power(x, u_m);
         Power { supplied: supplied + x.v_l.dot(&self.external), dissipated }
     }
 
     /// S(q_l) of the rotor coupling [kg m²], if there is any.
-    pub(crate) fn coupling_matrix<T: Over<f64>>(&self, q_l: &Vector<T, N>) -> Option<Matrix<T, N, N>> {
+    pub(crate) fn coupling_matrix<T: Over<C>>(&self, q_l: &Vector<T, N>) -> Option<Matrix<T, N, N>> {
         self.rotor_coupling.map(|coupling| coupling.matrix(&self.robot.links, q_l))
     }
 
     /// Torques on links and motors that the accelerations `a` leave unbalanced under the motor torque `u_m` [N m]; without
     /// friction and hysteresis.
     #[inline]
-    pub(crate) fn unbalanced<T: Over<f64> + Piecewise>(
+    pub(crate) fn unbalanced<T: Over<C> + Piecewise>(
         &self,
         x: &Motion<T, N>,
         u_m: &Vector<T, N>,
@@ -108,9 +109,9 @@ impl<L: Links<f64, N>, const N: usize> Plant<L, N> {
 
     /// Torques that the coupling needs on links and motors [N m]. Compiled once: it is much code in many places.
     #[inline(never)]
-    pub(crate) fn coupling_torques<T: Over<f64>>(
+    pub(crate) fn coupling_torques<T: Over<C>>(
         &self,
-        coupling: &RotorCoupling<f64, N>,
+        coupling: &RotorCoupling<C, N>,
         x: &Motion<T, N>,
         [a_l, a_m]: Sides<N, T>,
     ) -> Sides<N, T> {
@@ -119,7 +120,7 @@ impl<L: Links<f64, N>, const N: usize> Plant<L, N> {
     }
 
     /// Accelerations of links and motors [rad/s²] under the motor torque `u_m` [N m]; without friction and hysteresis.
-    pub fn accelerations<T: Over<f64> + Piecewise>(
+    pub fn accelerations<T: Over<C> + Piecewise>(
         &self,
         x: &Motion<T, N>,
         u_m: &Vector<T, N>,
@@ -137,20 +138,22 @@ impl<L: Links<f64, N>, const N: usize> Plant<L, N> {
         }
     }
 
-    /// Whether the mass matrix with the rotors coupled is positive definite at `q_l` in rad: it is not if the rotors
-    /// that the gear ratios imply are too heavy for the links that carry them.
-    pub fn carries_its_rotors(&self, q_l: &Vector<f64, N>) -> bool {
-        self.coupling_matrix(q_l)
-            .is_none_or(|S| self.felt_mass(q_l, &S).ldl().pivots().iter().all(|pivot| pivot > 0.0))
-    }
-
     /// Mass that the links feel with motors left to themselves: M_l − S M_m⁻¹ Sᵀ [kg m²].
-    fn felt_mass<T: Over<f64>>(&self, q_l: &Vector<T, N>, S: &Matrix<T, N, N>) -> Matrix<T, N, N> {
+    fn felt_mass<T: Over<C>>(&self, q_l: &Vector<T, N>, S: &Matrix<T, N, N>) -> Matrix<T, N, N> {
         let mass = self.robot.links.mass_matrix(q_l);
         let inertia = self.robot.motor_inertia.map(T::constant);
         Matrix::from_fn(|k, l| {
             let shared = (0..N).fold(T::ZERO, |sum, i| sum + S[(k, i)] * S[(l, i)] / inertia[i]);
             mass[(k, l)] - shared
         })
+    }
+}
+
+impl<L: Links<f64, N>, const N: usize> Plant<L, N> {
+    /// Whether the mass matrix with the rotors coupled is positive definite at `q_l` in rad: it is not if the rotors
+    /// that the gear ratios imply are too heavy for the links that carry them.
+    pub fn carries_its_rotors(&self, q_l: &Vector<f64, N>) -> bool {
+        self.coupling_matrix(q_l)
+            .is_none_or(|S| self.felt_mass(q_l, &S).ldl().pivots().iter().all(|pivot| pivot > 0.0))
     }
 }

@@ -60,16 +60,16 @@ impl<const N: usize> Hysteresis<N> {
 }
 
 /// The part of the springs that is a function of the deflection.
-impl<L: Links<f64, N>, const N: usize> Plant<L, N> {
+impl<C: Piecewise + Over<C>, L: Links<C, N>, const N: usize> Plant<L, N, C> {
     /// Torque K ε + k ε³ of the springs on the links [N m]; the motors feel its opposite. ε is the deflection beyond the
     /// play. Hysteresis is not in it: its torque depends on the past.
-    pub fn spring_torque(&self, x: &Motion<f64, N>) -> Vector<f64, N> {
+    pub fn spring_torque(&self, x: &Motion<C, N>) -> Vector<C, N> {
         self.robot.spring_torque(&x.q_l, &x.q_m) + self.nonlinear_torque(x)
     }
 
     /// What [`spring_torque`](Self::spring_torque) has beyond K ζ [N m].
     #[inline]
-    pub(crate) fn nonlinear_torque<T: Over<f64> + Piecewise>(&self, x: &Motion<T, N>) -> Vector<T, N> {
+    pub(crate) fn nonlinear_torque<T: Over<C> + Piecewise>(&self, x: &Motion<T, N>) -> Vector<T, N> {
         let slack = self.slack(x);
         let zeta = x.deflection();
         Vector::from_fn(|i| self.hardening(i, zeta[i] - slack[i]) - slack[i].scale(self.robot.stiffness[i]))
@@ -77,48 +77,53 @@ impl<L: Links<f64, N>, const N: usize> Plant<L, N> {
 
     /// Slope K + 3 k ε² of the spring torque [N m/rad], none inside the play.
     #[inline]
-    pub(crate) fn tangent_stiffness(&self, x: &Motion<f64, N>) -> Vector<f64, N> {
+    pub(crate) fn tangent_stiffness(&self, x: &Motion<C, N>) -> Vector<C, N> {
         let zeta = x.deflection();
         let slack = self.slack(x);
         Vector::from_fn(|i| {
             let wound = zeta[i] - slack[i];
-            let loose = zeta[i].abs() < 0.5 * self.spring_gap[i];
-            if loose { 0.0 } else { self.robot.stiffness[i] + 3.0 * self.spring_hardening[i] * wound * wound }
+            let slope = self.robot.stiffness[i] + C::from_f64(3.0) * self.spring_hardening[i] * wound * wound;
+            (zeta[i].abs() - C::from_f64(0.5 * self.spring_gap[i])).select(slope, C::ZERO)
         })
     }
 
     /// Energy in J that hardening adds to the springs less what play takes out of them.
-    pub(crate) fn nonlinear_energy(&self, x: &Motion<f64, N>) -> f64 {
+    pub(crate) fn nonlinear_energy(&self, x: &Motion<C, N>) -> C {
         let slack = self.slack(x);
         let zeta = x.deflection();
         let wound = zeta - slack;
         let hardening = Vector::from_fn(|i| self.hardening(i, wound[i])).dot(&wound);
         // ½ K (ζ² − ε²)
         let play = self.robot.stiffness.diag_mul(&slack).dot(&(zeta + wound));
-        0.25 * hardening - 0.5 * play
-    }
-
-    /// Deflection in rad at which the springs give `torque` [N m]; the middle of the play for none.
-    pub fn deflection_under(&self, torque: &Vector<f64, N>) -> Vector<f64, N> {
-        Vector::from_fn(|i| {
-            deflection(torque[i], self.robot.stiffness[i], self.spring_hardening[i], self.spring_gap[i])
-        })
+        C::from_f64(0.25) * hardening - C::from_f64(0.5) * play
     }
 
     /// k ε³ of joint `i` [N m].
     #[inline]
-    fn hardening<T: Over<f64>>(&self, i: usize, wound: T) -> T {
+    fn hardening<T: Over<C>>(&self, i: usize, wound: T) -> T {
         wound.scale(self.spring_hardening[i]) * wound * wound
     }
 
     /// The part of the deflections that winds no spring, in rad.
     #[inline]
-    fn slack<T: Over<f64> + Piecewise>(&self, x: &Motion<T, N>) -> Vector<T, N> {
+    fn slack<T: Over<C> + Piecewise>(&self, x: &Motion<T, N>) -> Vector<T, N> {
         let zeta = x.deflection();
         Vector::from_fn(|i| {
             let half = 0.5 * self.spring_gap[i];
+            if half == 0.0 {
+                return T::ZERO;
+            }
             // Where the deflection is on an edge it winds the spring: without play every deflection does.
-            Piecewise::min(T::constant(half), Piecewise::max(T::constant(-half), zeta[i]))
+            Piecewise::min(T::from_f64(half), Piecewise::max(T::from_f64(-half), zeta[i]))
+        })
+    }
+}
+
+impl<L: Links<f64, N>, const N: usize> Plant<L, N> {
+    /// Deflection in rad at which the springs give `torque` [N m]; the middle of the play for none.
+    pub fn deflection_under(&self, torque: &Vector<f64, N>) -> Vector<f64, N> {
+        Vector::from_fn(|i| {
+            deflection(torque[i], self.robot.stiffness[i], self.spring_hardening[i], self.spring_gap[i])
         })
     }
 }

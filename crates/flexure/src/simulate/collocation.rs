@@ -1,14 +1,15 @@
 //! One step of collocation.
 
 use flexure_core::linalg::Vector;
-use flexure_core::model::{Links, Motion, Power};
+use flexure_core::model::{Links, Motion};
 
 use crate::plant::{Plant, Sides};
-use crate::simulate::damped::{Damped, Reach, error_of_defect};
+use crate::simulate::damped::error_of_defect;
 use crate::simulate::ledger::Ledger;
-use crate::simulate::local_error::{Values, estimate, speeds};
+use crate::simulate::local_error::{Torques, Values, estimate};
 use crate::simulate::newton::{Anchor, StageSolver, StepSolution};
 use crate::simulate::scheme::{Scheme, Stages};
+use crate::simulate::span::{Span, ahead, damping_rate, half, sum};
 
 /// Corrections of this size relative to the speeds of a step are rounding.
 const ROUNDING: f64 = 1e-14;
@@ -23,7 +24,7 @@ const NOTHING: f64 = 0.001;
 const NOISE: f64 = 100.0;
 
 /// Steps that are longer than the last one by more than this factor are not begun with its polynomials.
-const FARTHEST: f64 = 4.0;
+pub(super) const FARTHEST: f64 = 4.0;
 
 const MAX_ITERATIONS: usize = 25;
 
@@ -48,13 +49,6 @@ pub(crate) struct Step<const S: usize, const N: usize> {
     pub(crate) torques: Torques<S, N>,
     /// Estimated local error, relative to the speeds of the joints.
     pub(crate) error: f64,
-}
-
-/// Motor torques at the stages and at the end of a step [N m].
-#[derive(Clone, Copy)]
-pub(crate) struct Torques<const S: usize, const N: usize> {
-    pub(super) stages: [Vector<f64, N>; S],
-    pub(super) end: Vector<f64, N>,
 }
 
 /// What a step leaves for the next: where its iteration matrix was made and how it converges, and its polynomials.
@@ -116,6 +110,7 @@ impl<const S: usize, const N: usize> Collocation<S, N> {
     ) -> Option<Step<S, N>> {
         let Task { plant, x, h, .. } = *task;
         let u = (task.torque)(task.t, x);
+        let rate = &damping_rate(plant);
         // Where a matrix from some way back does not lead on, one from here may.
         let here = Anchor { q: [x.q_l, x.q_m], h };
         let ratio = h / past.anchor.h;
@@ -130,20 +125,24 @@ impl<const S: usize, const N: usize> Collocation<S, N> {
                 self.solver = Some(Box::new(StageSolver::new(&self.scheme, plant, anchor)));
             }
             let Some(solver) = self.solver.as_deref() else { break };
+            let span = Span { scheme: &self.scheme, plant, x, h, solver, rate };
             let extrapolated = past.stages == S && ratio <= FARTHEST;
-            let start = self.start(task, &u, solver, extrapolated.then_some(&*past));
+            let start = self.start(&span, &u, extrapolated.then_some(&*past));
             let mut solution = if extrapolated {
                 self.extrapolated(past, ratio, &start)
             } else {
                 StepSolution { link: [start[0]; S], motor: [start[1]; S] }
             };
             past.stages = 0;
-            let solved = self.solve(task, solver, &start, &mut solution, &mut past.contraction, accuracy);
+            let solved = Self::solve(task, &span, &start, &mut solution, &mut past.contraction, accuracy);
             let Some(stages) = solved else { continue };
-            let end = self.end(x, h, solver, &solution);
-            let work = self.work(task, solver, &solution, &end, &stages);
+            let end = span.end(&solution);
+            let work = span.work(&solution, &end, &stages);
             let torques = Torques { stages, end: (task.torque)(task.t + h, &end) };
-            let error = self.error(task, solver, &start, &solution, &torques);
+            let at_start = [self.scheme.start, self.half];
+            let values = Values { start: &start, solution: &solution, torques: Some(&torques), at_start };
+            let damped = |k: usize| solver.damped[k].error_of_defect;
+            let error = estimate::<S, _, S, N, f64>(&span, &span.speeds(&start), &values, damped);
             if is_finite(&end) {
                 past.stages = S;
                 past.link[..S].copy_from_slice(&solution.link);
@@ -157,24 +156,18 @@ impl<const S: usize, const N: usize> Collocation<S, N> {
     /// What accelerates links and motors at the start under the torque `u`.
     fn start<L: Links<f64, N>>(
         &self,
-        task: &Task<'_, L, N>,
+        span: &Span<'_, L, S, N>,
         u: &Vector<f64, N>,
-        solver: &StageSolver<S, N>,
         past: Option<&Past<N>>,
     ) -> Sides<N> {
-        let Task { plant, x, .. } = *task;
-        let rate = damping_rate(plant);
-        let of_damper = rate.diag_mul(&x.v_m);
+        let Span { plant, x, rate, .. } = *span;
         let Some(past) = past.filter(|_| plant.rotor_coupling.is_none()) else {
             let [a_l, a_m] = plant.accelerations(x, u);
-            return [a_l, a_m + of_damper];
+            return [a_l, a_m + rate.diag_mul(&x.v_m)];
         };
         // One correction of what the last step leads to, by its own mass matrix.
         let weights = self.scheme.at(1.0);
-        let [a_l, f] = [&past.link, &past.motor].map(|values| sum(&weights, values));
-        let [link, motor] = plant.unbalanced(x, u, [a_l, f - of_damper]);
-        let inertia = &plant.robot.motor_inertia;
-        [a_l + solver.mass.solve(&link), Vector::from_fn(|k| f[k] + motor[k] / inertia[k])]
+        span.start(u, [&past.link, &past.motor].map(|values| sum(&weights, values)))
     }
 
     /// The polynomials of the last step, `ratio` times shorter than this one, led on and shifted to what they are at the start of this one.
@@ -189,37 +182,33 @@ impl<const S: usize, const N: usize> Collocation<S, N> {
 
     /// Solves the stage equations and gives the torques at the stages; none if they cannot be solved.
     fn solve<L: Links<f64, N>>(
-        &self,
         task: &Task<'_, L, N>,
-        solver: &StageSolver<S, N>,
+        span: &Span<'_, L, S, N>,
         start: &Sides<N>,
         solution: &mut StepSolution<S, N>,
         contraction: &mut f64,
         accuracy: f64,
     ) -> Option<[Vector<f64, N>; S]> {
-        let Task { plant, x, t, h, torque } = *task;
-        let rate = damping_rate(plant);
-        let speeds = speeds(x, h, solver, start);
+        let Task { t, h, torque, .. } = *task;
+        let speeds = span.speeds(start);
         // Corrections below this are rounding of velocities.
         let floor = (ROUNDING * (largest(&speeds[0]) + largest(&speeds[1])) + STILL) / h;
-        let felt = felt(x, &rate, solver, start);
+        let felt = span.felt(start);
         let mut torques = [Vector::ZERO; S];
         let (mut previous, mut previous_size) = (f64::INFINITY, f64::INFINITY);
         for iteration in 0..MAX_ITERATIONS {
             let (mut link, mut motor) = ([Stages::ZERO; N], [Stages::ZERO; N]);
             for i in 0..S {
-                let motion = self.stage(x, h, solver, solution, i);
-                let u = torque(t + h * self.scheme.nodes[i], &motion);
-                let motion = Motion { q_m: motion.q_m + felt[i], ..motion };
-                let a_m = solution.motor[i] - rate.diag_mul(&motion.v_m);
-                let [missing_l, missing_m] = plant.unbalanced(&motion, &u, [solution.link[i], a_m]);
+                let motion = span.stage(solution, i);
+                let u = torque(t + h * span.scheme.nodes[i], &motion);
+                let [missing_l, missing_m] = span.unbalanced(solution, i, &motion, &felt[i], &u);
                 for k in 0..N {
                     link[k][i] = missing_l[k];
                     motor[k][i] = missing_m[k];
                 }
                 torques[i] = u;
             }
-            let (link, motor) = solver.correction(&link, &motor);
+            let (link, motor) = span.solver.correction(&link, &motor);
             // The largest correction as it is, and relative to the speed of its joint.
             let (mut worst, mut size, mut total) = (0.0_f64, 0.0_f64, 0.0);
             for k in 0..N {
@@ -264,81 +253,6 @@ impl<const S: usize, const N: usize> Collocation<S, N> {
         None
     }
 
-    /// Position and velocity at stage `i`.
-    #[inline]
-    fn stage(
-        &self,
-        x: &Motion<f64, N>,
-        h: f64,
-        solver: &StageSolver<S, N>,
-        solution: &StepSolution<S, N>,
-        i: usize,
-    ) -> Motion<f64, N> {
-        let Scheme { nodes, once, twice, .. } = &self.scheme;
-        moved(x, h, nodes[i], &once.row(i), &twice.row(i), |k| &solver.damped[k].stages[i], solution)
-    }
-
-    fn end(
-        &self,
-        x: &Motion<f64, N>,
-        h: f64,
-        solver: &StageSolver<S, N>,
-        solution: &StepSolution<S, N>,
-    ) -> Motion<f64, N> {
-        let Scheme { weights, end_twice, .. } = &self.scheme;
-        moved(x, h, 1.0, weights, end_twice, |k| &solver.damped[k].end, solution)
-    }
-
-    /// The work of the step. What dampers of motors take is what their torques give and their kinetic energy does not keep: exactly
-    /// what it is for speeds that are exponentials.
-    fn work<L: Links<f64, N>>(
-        &self,
-        task: &Task<'_, L, N>,
-        solver: &StageSolver<S, N>,
-        solution: &StepSolution<S, N>,
-        end: &Motion<f64, N>,
-        torques: &[Vector<f64, N>; S],
-    ) -> Ledger {
-        let Task { plant, x, h, .. } = *task;
-        let robot = &plant.robot;
-        let mut work = Ledger::default();
-        let mut supplied = Stages::<S>::ZERO;
-        for (k, damped) in solver.damped.iter().enumerate().take(robot.links.joints()) {
-            let Damped { work: of_f, work_of_speed, .. } = damped;
-            let f = Vector::from_fn(|i| solution.motor[i][k]);
-            let turned = (work_of_speed.scaled(x.v_m[k]) + (*of_f * f).scaled(h)).scaled(h);
-            supplied += Vector::from_fn(|i| torques[i][k] * turned[i]);
-            if robot.motor_damping[k] > 0.0 {
-                let kept = 0.5 * (end.v_m[k] - x.v_m[k]) * (end.v_m[k] + x.v_m[k]);
-                work.dissipated += robot.motor_inertia[k] * (f.dot(&turned) - kept);
-            }
-        }
-        for i in 0..S {
-            let mut v_l = x.v_l;
-            for (a, weight) in solution.link.iter().zip(self.scheme.once.row(i).iter()) {
-                v_l += a.scaled(h * weight);
-            }
-            let seconds = h * self.scheme.weights[i];
-            let pushed = supplied[i] + seconds * v_l.dot(&plant.external);
-            let dissipated = seconds * v_l.dot(&robot.link_damping.diag_mul(&v_l));
-            work.book(1.0, &Power { supplied: pushed, dissipated });
-        }
-        work
-    }
-
-    /// The estimated local error, relative to the speeds of the joints.
-    fn error<L: Links<f64, N>>(
-        &self,
-        task: &Task<'_, L, N>,
-        solver: &StageSolver<S, N>,
-        start: &Sides<N>,
-        solution: &StepSolution<S, N>,
-        torques: &Torques<S, N>,
-    ) -> f64 {
-        let values = Values { start, solution, torques, at_start: [self.scheme.start, self.half] };
-        estimate::<S, S, L, N>(task, solver, &values, |k| solver.damped[k].error_of_defect)
-    }
-
     /// The error that a step of half as many stages, those of `coarser`, would have had where this one was.
     pub(crate) fn error_of_coarser<L: Links<f64, N>, const C: usize>(
         &self,
@@ -356,90 +270,12 @@ impl<const S: usize, const N: usize> Collocation<S, N> {
         let at_start = [through(&coarser.scheme.start), through(&coarser.half)];
         let Step { start, solution, torques, .. } = step;
         let rate = damping_rate(task.plant);
-        let values = Values { start, solution, torques, at_start };
-        estimate::<C, S, L, N>(task, solver, &values, |k| error_of_defect(&coarser.scheme, task.h * rate[k]))
+        let rate = &rate;
+        let span = Span { scheme: &self.scheme, plant: task.plant, x: task.x, h: task.h, solver, rate };
+        let values = Values { start, solution, torques: Some(torques), at_start };
+        let damped = |k: usize| error_of_defect(&coarser.scheme, task.h * rate[k]);
+        estimate::<C, _, S, N, f64>(&span, &span.speeds(start), &values, damped)
     }
-}
-
-/// What stage values are multiplied by to have the value at 0 of the polynomial through their polynomial at the points of half as many
-/// stages.
-fn half<const S: usize>(scheme: &Scheme<S>) -> Stages<S> {
-    if S < 4 {
-        return scheme.at(0.5);
-    }
-    let coarse = Scheme::<2>::gauss();
-    let nodes = coarse.nodes.iter().zip(coarse.start.iter());
-    nodes.fold(Stages::ZERO, |sum, (node, weight)| sum + scheme.at(node).scaled(weight))
-}
-
-/// What stage values are multiplied by to have their polynomial at the stages of the next step, `ratio` times longer, less its end.
-fn ahead<const S: usize>(scheme: &Scheme<S>, ratio: f64) -> [Stages<S>; S] {
-    std::array::from_fn(|i| scheme.at(1.0 + ratio * scheme.nodes[i]) - scheme.at(1.0))
-}
-
-/// λ = D_m / M_m per motor [1/s].
-#[inline]
-fn damping_rate<L, const N: usize>(plant: &Plant<L, N>) -> Vector<f64, N> {
-    Vector::from_fn(|k| plant.robot.motor_damping[k] / plant.robot.motor_inertia[k])
-}
-
-/// What springs feel of the motors at the stages beside their positions there: speeds that are damped within the step, in the mean.
-fn felt<const S: usize, const N: usize>(
-    x: &Motion<f64, N>,
-    rate: &Vector<f64, N>,
-    solver: &StageSolver<S, N>,
-    start: &Sides<N>,
-) -> [Vector<f64, N>; S] {
-    let mut felt = [Vector::ZERO; S];
-    for (k, Damped { excess, .. }) in solver.damped.iter().enumerate() {
-        if *excess != Stages::ZERO {
-            // Of q_m(t), −e^(−λ t) times this.
-            let faded = (x.v_m[k] - start[1][k] / rate[k]) / rate[k];
-            for (felt, excess) in felt.iter_mut().zip(excess.iter()) {
-                felt[k] = -faded * excess;
-            }
-        }
-    }
-    felt
-}
-
-#[inline]
-fn sum<const S: usize, const N: usize>(weights: &Stages<S>, values: &[Vector<f64, N>]) -> Vector<f64, N> {
-    let mut total = Vector::ZERO;
-    for (w, value) in weights.iter().zip(values) {
-        total += value.scaled(w);
-    }
-    total
-}
-
-/// `x` moved to the instant `at` of a step: links by quadrature weights for velocity and position, motors under their dampers.
-#[inline]
-fn moved<'a, const S: usize, const N: usize>(
-    x: &Motion<f64, N>,
-    h: f64,
-    at: f64,
-    once: &Stages<S>,
-    twice: &Stages<S>,
-    reach: impl Fn(usize) -> &'a Reach<S>,
-    StepSolution { link, motor }: &StepSolution<S, N>,
-) -> Motion<f64, N> {
-    let mut end = Motion {
-        q_l: x.q_l + (x.v_l.scaled(at) + sum(twice, link).scaled(h)).scaled(h),
-        q_m: x.q_m,
-        v_l: x.v_l + sum(once, link).scaled(h),
-        v_m: x.v_m,
-    };
-    for k in 0..N {
-        let Reach { decay, drift, once, twice } = reach(k);
-        let (mut speed, mut position) = (0.0, 0.0);
-        for (f, (once, twice)) in motor.iter().zip(once.iter().zip(twice.iter())) {
-            speed += once * f[k];
-            position += twice * f[k];
-        }
-        end.v_m[k] = decay * x.v_m[k] + h * speed;
-        end.q_m[k] = x.q_m[k] + h * (drift * x.v_m[k] + h * position);
-    }
-    end
 }
 
 fn largest<const N: usize>(v: &Vector<f64, N>) -> f64 {

@@ -17,42 +17,42 @@ const COUNT: usize = 9;
 
 /// A damping rate times the length of a step from which on speeds are damped within the step. Below it positions at the stages are those of
 /// a polynomial through the speeds there, as in Gauss' method: that is what makes it symplectic where nothing is damped.
-const WITHIN: f64 = 1.0;
+pub(crate) const WITHIN: f64 = 1.0;
 
 /// How a damped motor moves by the instant c h of a step of length h, from its speed at the start and f at the stages.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Reach<const S: usize> {
+pub(crate) struct Reach<const S: usize, T = f64> {
     /// What is left of the speed: e^(−λ h c).
-    pub decay: f64,
+    pub decay: T,
     /// How far the speed at the start carries, in h.
-    pub drift: f64,
+    pub drift: T,
     /// What f adds to the speed, in h.
-    pub once: Stages<S>,
+    pub once: Stages<S, T>,
     /// What f adds to the position, in h².
-    pub twice: Stages<S>,
+    pub twice: Stages<S, T>,
 }
 
 /// The coefficients of one damped motor for steps of one length.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Damped<const S: usize> {
+pub(crate) struct Damped<const S: usize, T = f64> {
     /// By the stages.
-    pub stages: [Reach<S>; S],
+    pub stages: [Reach<S, T>; S],
     /// By the end of the step.
-    pub end: Reach<S>,
+    pub end: Reach<S, T>,
     /// h² times this integrates f twice up to the stages.
-    pub twice: Block<S>,
+    pub twice: Block<S, T>,
     /// What the acceleration at the stages has of f at the stages: q̈_m = f − λ q̇_m.
-    pub acceleration: Block<S>,
+    pub acceleration: Block<S, T>,
     /// By how much means of e^(−λ t) over the weights of the stages exceed its values there, where that matters: a spring that feels the
     /// means gets the impulse of a speed that is damped within the step.
-    pub excess: Stages<S>,
+    pub excess: Stages<S, T>,
     /// ∫ ℓ_i q̇_m dt for the polynomials ℓ_i of the stages, from the speed at the start, in h: they sum to `end.drift`.
-    pub work_of_speed: Stages<S>,
+    pub work_of_speed: Stages<S, T>,
     /// The same from f, in h².
-    pub work: Block<S>,
+    pub work: Block<S, T>,
     /// By how much the end of the step, its speed counted by how far it carries, moves for a defect of 1 at the start that vanishes
     /// at the stages, in h.
-    pub error_of_defect: f64,
+    pub error_of_defect: T,
 }
 
 impl<const S: usize> Damped<S> {
@@ -90,6 +90,31 @@ impl<const S: usize> Damped<S> {
             work_of_speed,
             work: Matrix::from_fn(|i, j| (0..S).map(|k| p[(j, k)] * factorial(k) * over(i, k + 1)).sum()),
             error_of_defect: error_of_defect(scheme, rate),
+        }
+    }
+}
+
+impl<const S: usize, T: Scalar> Damped<S, T> {
+    /// The coefficients of several motors, each number put together by `of`, which is told how to find it in the coefficients of one.
+    pub(crate) fn together(of: impl Fn(&dyn Fn(&Damped<S>) -> f64) -> T) -> Self {
+        let stages = |find: &dyn Fn(&Damped<S>) -> Stages<S>| Vector::from_fn(|i| of(&|one| find(one)[i]));
+        let block =
+            |find: &dyn Fn(&Damped<S>) -> Block<S>| Matrix::from_fn(|i, j| of(&|one| find(one)[(i, j)]));
+        let reach = |find: &dyn Fn(&Damped<S>) -> Reach<S>| Reach {
+            decay: of(&|one| find(one).decay),
+            drift: of(&|one| find(one).drift),
+            once: stages(&|one| find(one).once),
+            twice: stages(&|one| find(one).twice),
+        };
+        Self {
+            stages: std::array::from_fn(|i| reach(&|one| one.stages[i])),
+            end: reach(&|one| one.end),
+            twice: block(&|one| one.twice),
+            acceleration: block(&|one| one.acceleration),
+            excess: stages(&|one| one.excess),
+            work_of_speed: stages(&|one| one.work_of_speed),
+            work: block(&|one| one.work),
+            error_of_defect: of(&|one| one.error_of_defect),
         }
     }
 }

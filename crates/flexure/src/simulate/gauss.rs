@@ -52,7 +52,7 @@ const SHORTEST: f64 = 1e-5;
 const MOST_STEPS: u32 = 200_000;
 
 /// Stage equations are solved to this part of the tolerance.
-const SOLVED: f64 = 0.001;
+pub(super) const SOLVED: f64 = 0.001;
 
 /// The lower order is taken where its error would be this part of the tolerance.
 const AMPLE: f64 = 0.5;

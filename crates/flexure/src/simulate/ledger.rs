@@ -1,23 +1,27 @@
 //! The two sides of the power balance, integrated.
 
 use flexure_core::model::Power;
+use flexure_core::scalar::{Over, Piecewise};
 
-/// Work done on the robot and by it: the two sides of the power balance, integrated.
+/// Work done on the robot and by it: the two sides of the power balance, integrated. Of several robots, if `T` is lanes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Ledger {
+pub struct Ledger<T = f64> {
     /// ∫ q̇_mᵀ u_m + q̇_lᵀ τ_external dt, in J.
-    pub supplied: f64,
+    pub supplied: T,
     /// ∫ q̇_lᵀ D_l q̇_l + q̇_mᵀ D_m q̇_m dt and the work of dry friction and hysteresis, in J.
-    pub dissipated: f64,
+    pub dissipated: T,
     /// ∫ |q̇_mᵀ u_m + q̇_lᵀ τ_external| dt, in J: what the residual is compared with.
-    pub throughput: f64,
+    pub throughput: T,
 }
 
-impl Ledger {
-    pub(crate) fn book(&mut self, seconds: f64, power: &Power<f64>) {
-        self.supplied += seconds * power.supplied;
-        self.dissipated += seconds * power.dissipated;
-        self.throughput += seconds * power.supplied.abs();
+impl<T: Piecewise + Over<f64>> Ledger<T> {
+    /// Nothing done.
+    pub(crate) const ZERO: Self = Self { supplied: T::ZERO, dissipated: T::ZERO, throughput: T::ZERO };
+
+    pub(crate) fn book(&mut self, seconds: f64, power: &Power<T>) {
+        self.supplied += power.supplied.scale(seconds);
+        self.dissipated += power.dissipated.scale(seconds);
+        self.throughput += power.supplied.abs().scale(seconds);
     }
 
     pub(crate) fn add(&mut self, work: &Self) {

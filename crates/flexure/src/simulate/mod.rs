@@ -31,9 +31,12 @@ mod scheme;
 mod signals;
 mod simulation;
 mod sink;
+mod span;
 mod stepper;
 mod stepping;
 mod stiction;
+#[allow(dead_code, reason = "for blocks of loops")]
+mod strides;
 mod summary;
 mod together;
 mod trace;

@@ -11,6 +11,7 @@
 
 use flexure_core::linalg::{Ldl, Matrix, Vector};
 use flexure_core::model::{Links, Motion};
+use flexure_core::scalar::{Over, Piecewise, Scalar};
 
 use crate::plant::{Plant, Sides};
 use crate::simulate::damped::Damped;
@@ -18,55 +19,98 @@ use crate::simulate::scheme::{Block, Scheme, Stages};
 
 /// Where an iteration matrix was made.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Anchor<const N: usize> {
+pub(crate) struct Anchor<const N: usize, T = f64> {
     /// Positions in rad: the mass matrix is that at q_l, the slopes of the springs are those between.
-    pub q: Sides<N>,
+    pub q: Sides<N, T>,
     /// Length of the step in s.
     pub h: f64,
 }
 
-/// The factorised iteration matrix of steps of one length.
+/// The factorised iteration matrix of steps of one length. Of several robots, if `T` is lanes.
 #[derive(Clone, Debug)]
-pub(crate) struct StageSolver<const S: usize, const N: usize> {
-    pub(crate) anchor: Anchor<N>,
+pub(crate) struct StageSolver<const S: usize, const N: usize, T = f64> {
+    pub(crate) anchor: Anchor<N, T>,
     /// Number of joints, at most N; nothing is kept of others.
     joints: usize,
     /// How each motor moves on its own.
-    pub(crate) damped: [Damped<S>; N],
+    pub(crate) damped: [Damped<S, T>; N],
     /// (M_m + h² K A_m²)⁻¹ per joint, A_m² the damped motor's.
-    motor: [Block<S>; N],
+    motor: [Block<S, T>; N],
     /// How an acceleration of a link loads its motor through the spring, h² K A², per joint.
-    of_link: [Block<S>; N],
+    of_link: [Block<S, T>; N],
     /// How what accelerates a motor loads its link through the spring, h² K A_m², per joint.
-    of_motor: [Block<S>; N],
+    of_motor: [Block<S, T>; N],
     /// How it loads the other through coupled rotors: a row per link, a column per motor [kg m²].
-    coupling: Option<Matrix<f64, N, N>>,
+    coupling: Option<Matrix<T, N, N>>,
     /// Block LU of the links' matrix: unit lower part below the diagonal, inverses of pivots on it.
-    link: [[Block<S>; N]; N],
+    link: [[Block<S, T>; N]; N],
     /// The mass matrix alone.
-    pub(crate) mass: Ldl<f64, N>,
+    pub(crate) mass: Ldl<T, N>,
     /// The fastest rate at which springs and dampers of links let a joint move by itself, in 1/h.
-    pub(crate) fastest: f64,
+    pub(crate) fastest: T,
 }
 
 /// The polynomials of one step: accelerations of the links and what accelerates the motors beside their dampers, at the stages.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct StepSolution<const S: usize, const N: usize> {
-    pub(crate) link: [Vector<f64, N>; S],
-    pub(crate) motor: [Vector<f64, N>; S],
+pub(crate) struct StepSolution<const S: usize, const N: usize, T = f64> {
+    pub(crate) link: [Vector<T, N>; S],
+    pub(crate) motor: [Vector<T, N>; S],
 }
 
 impl<const S: usize, const N: usize> StageSolver<S, N> {
     pub(crate) fn new<L: Links<f64, N>>(scheme: &Scheme<S>, plant: &Plant<L, N>, anchor: Anchor<N>) -> Self {
-        let (robot, Anchor { q: [q_l, q_m], h }) = (&plant.robot, anchor);
+        let robot = &plant.robot;
         let joints = robot.links.joints();
-        let stiffness = plant.tangent_stiffness(&Motion { q_m, ..Motion::at_rest(q_l) });
         let damped: [Damped<S>; N] = std::array::from_fn(|k| {
             let rate = if k < joints { robot.motor_damping[k] / robot.motor_inertia[k] } else { 0.0 };
-            Damped::new(scheme, h * rate)
+            Damped::new(scheme, anchor.h * rate)
         });
-        let of_link = per_joint(joints, |k| scheme.twice.scaled(h * h * stiffness[k]));
-        let of_motor = per_joint(joints, |k: usize| damped[k].twice.scaled(h * h * stiffness[k]));
+        Self::of(scheme, plant, anchor, damped, inverse)
+    }
+}
+
+impl<const S: usize, const N: usize, T: Piecewise + Over<T> + Over<f64>> StageSolver<S, N, T> {
+    /// With motors that are `damped` for steps of that length, and `inverse` for the blocks. What the inverse is worth shows in how
+    /// fast corrections shrink, and nowhere else.
+    pub(crate) fn of<L: Links<T, N>>(
+        scheme: &Scheme<S>,
+        plant: &Plant<L, N, T>,
+        anchor: Anchor<N, T>,
+        damped: [Damped<S, T>; N],
+        inverse: impl Fn(&Block<S, T>) -> Block<S, T>,
+    ) -> Self {
+        let none = [Block::ZERO; N];
+        let mut solver = Self {
+            anchor,
+            joints: plant.robot.links.joints(),
+            damped,
+            motor: none,
+            of_link: none,
+            of_motor: none,
+            coupling: None,
+            link: [none; N],
+            mass: Matrix::identity().ldl(),
+            fastest: T::ZERO,
+        };
+        solver.renew(scheme, plant, anchor.q, inverse);
+        solver
+    }
+
+    /// Makes the matrix anew at the positions `q` in rad of links and motors, for steps of the same length.
+    pub(crate) fn renew<L: Links<T, N>>(
+        &mut self,
+        scheme: &Scheme<S>,
+        plant: &Plant<L, N, T>,
+        q: Sides<N, T>,
+        inverse: impl Fn(&Block<S, T>) -> Block<S, T>,
+    ) {
+        self.anchor.q = q;
+        let (robot, Self { joints, damped, anchor: Anchor { q: [q_l, q_m], h }, .. }) =
+            (&plant.robot, &*self);
+        let (joints, q_l, h) = (*joints, *q_l, *h);
+        let stiffness = plant.tangent_stiffness(&Motion { q_m: *q_m, ..Motion::at_rest(q_l) });
+        let of_link = per_joint(joints, |k| times(&scheme.twice, stiffness[k].scale(h * h)));
+        let of_motor = per_joint(joints, |k: usize| damped[k].twice.scaled(stiffness[k].scale(h * h)));
         let motor = per_joint(joints, |k: usize| {
             inverse(&(Matrix::identity().scaled(robot.motor_inertia[k]) + of_motor[k]))
         });
@@ -78,7 +122,7 @@ impl<const S: usize, const N: usize> StageSolver<S, N> {
             for (l, block) in row[..joints].iter_mut().enumerate() {
                 *block = Matrix::identity().scaled(matrix[(k, l)]);
                 if k == l {
-                    let own = scheme.once.scaled(h * robot.link_damping[k]) + of_link[k];
+                    let own = times(&scheme.once, robot.link_damping[k].scale(h)) + of_link[k];
                     *block = *block + own - of_motor[k] * motor[k] * of_link[k];
                 }
                 if let Some(shared) = &coupling {
@@ -102,21 +146,22 @@ impl<const S: usize, const N: usize> StageSolver<S, N> {
                 }
             }
         }
-        let fastest = (0..joints).fold(0.0, |fastest: f64, k| {
-            let free = mass.solve(&Vector::from_fn(|i| f64::from(u8::from(i == k))))[k];
-            let spring = stiffness[k] * (free + 1.0 / robot.motor_inertia[k]);
-            fastest.max(h * spring.sqrt()).max(h * free * robot.link_damping[k])
+        let fastest = (0..joints).fold(T::ZERO, |fastest: T, k| {
+            let free = mass.solve(&Vector::from_fn(|i| if i == k { T::ONE } else { T::ZERO }))[k];
+            let spring = stiffness[k] * (free + T::ONE / robot.motor_inertia[k]);
+            fastest.max(spring.sqrt().scale(h)).max(free.scale(h) * robot.link_damping[k])
         });
-        Self { anchor, joints, damped, motor, of_link, of_motor, coupling, link, mass, fastest }
+        (self.motor, self.of_link, self.of_motor) = (motor, of_link, of_motor);
+        (self.coupling, self.link, self.mass, self.fastest) = (coupling, link, mass, fastest);
     }
 
     /// What improves a solution that leaves the torques `link` and `motor` unbalanced at the stages, a joint each [N m].
     #[inline]
     pub(crate) fn correction(
         &self,
-        link: &[Stages<S>; N],
-        motor: &[Stages<S>; N],
-    ) -> ([Stages<S>; N], [Stages<S>; N]) {
+        link: &[Stages<S, T>; N],
+        motor: &[Stages<S, T>; N],
+    ) -> ([Stages<S, T>; N], [Stages<S, T>; N]) {
         // Motors out, links solved, motors back.
         let mut free = [Stages::ZERO; N];
         let mut loaded = *link;
@@ -145,7 +190,7 @@ impl<const S: usize, const N: usize> StageSolver<S, N> {
         (link, free)
     }
 
-    fn solve_links(&self, mut b: [Stages<S>; N]) -> [Stages<S>; N] {
+    fn solve_links(&self, mut b: [Stages<S, T>; N]) -> [Stages<S, T>; N] {
         for i in 0..self.joints {
             for j in 0..i {
                 let known = self.link[i][j] * b[j];
@@ -164,11 +209,16 @@ impl<const S: usize, const N: usize> StageSolver<S, N> {
 }
 
 /// `entry(k)` for each of the first `joints` joints.
-fn per_joint<const S: usize, const N: usize>(
+fn per_joint<const S: usize, const N: usize, T: Scalar>(
     joints: usize,
-    entry: impl Fn(usize) -> Block<S>,
-) -> [Block<S>; N] {
+    entry: impl Fn(usize) -> Block<S, T>,
+) -> [Block<S, T>; N] {
     std::array::from_fn(|k| if k < joints { entry(k) } else { Block::ZERO })
+}
+
+/// Coefficients of the scheme times `factor`.
+fn times<const S: usize, T: Over<f64>>(block: &Block<S>, factor: T) -> Block<S, T> {
+    block.map(|x| factor.scale(x))
 }
 
 /// Inverse by Gauss–Jordan elimination with row pivoting.

@@ -3,10 +3,10 @@
 use flexure_core::linalg::{Matrix, Vector};
 
 /// One number per collocation point, or stage.
-pub(crate) type Stages<const S: usize> = Vector<f64, S>;
+pub(crate) type Stages<const S: usize, T = f64> = Vector<T, S>;
 
 /// One number per pair of stages.
-pub(crate) type Block<const S: usize> = Matrix<f64, S, S>;
+pub(crate) type Block<const S: usize, T = f64> = Matrix<T, S, S>;
 
 /// Collocation at the `S` points of Gauss on [0, 1], of order 2 S.
 #[derive(Clone, Copy, Debug)]
