@@ -80,6 +80,11 @@ impl<const N: usize> Integrator<N> {
         }
     }
 
+    /// What it is moved from next is not where it was moved to.
+    pub(crate) fn forget(&mut self) {
+        self.past.stages = 0;
+    }
+
     /// Steps taken so far.
     pub fn steps(&self) -> u64 {
         self.steps

@@ -1,8 +1,10 @@
 //! Loops that go in step, several to a SIMD register.
 //!
-//! What is most of the work of a loop, its law, is the code of one loop on [`Several`] numbers; sensors, estimator, guard and drive, which
-//! decide and draw, are each loop's own. A lane never looks at its neighbours: what a loop comes to does not depend on which others
+//! What is most of the work of a loop, its law and its robot in motion, is the code of one loop on [`Several`] numbers; sensors, estimator,
+//! guard and drive, which decide and draw, are each loop's own, and so are robots with dry friction, play, hysteresis or coupled rotors. A lane never looks at its neighbours: what a loop comes to does not depend on which others
 //! go beside it.
+
+mod plants;
 
 use std::array;
 
@@ -19,6 +21,7 @@ use crate::robot::sized::sized;
 use crate::scenario::{self, Scenario};
 use crate::simulate::controller::Sensed;
 use crate::simulate::held::Held;
+use crate::simulate::in_step::plants::{Gait, Plants, gait};
 use crate::simulate::interface::Loop;
 use crate::simulate::simulation::{Divergence, Kept, Simulation};
 
@@ -42,6 +45,8 @@ pub(crate) fn may_go_together(a: &Scenario, b: &Scenario) -> bool {
         && kind(a) == kind(b)
         && a.robot.links.what() == b.robot.links.what()
         && a.robot.joint_count() == b.robot.joint_count()
+        && a.control_period.to_bits() == b.control_period.to_bits()
+        && a.integration_tolerance.to_bits() == b.integration_tolerance.to_bits()
 }
 
 /// Whether loops of a scenario go in step with others at all: those in continuous time ask their law within steps.
@@ -79,21 +84,31 @@ pub(crate) fn opened<K>(scenarios: Vec<(K, &Scenario)>) -> Result<Opened<K>, Pro
     Ok(opened)
 }
 
-/// Puts loops into one group, or each into one of its own.
+/// Puts loops into groups: of one gait, and one structure, or each into one of its own.
 fn grouped<K, L, const N: usize>(keys: Vec<K>, loops: Vec<Held<L, N>>, opened: &mut Opened<K>)
 where
     L: FromFile<f64, N> + SideBySide<N> + Clone + Send + Sync + 'static,
 {
-    if loops.is_empty() {
-        return;
+    let mut parts: Vec<(Gait, Vec<K>, Vec<Held<L, N>>)> = Vec::new();
+    for (key, held) in keys.into_iter().zip(loops) {
+        let gait = gait(&held);
+        match parts.iter_mut().find(|(of, ..)| *of == gait) {
+            Some((_, keys, loops)) => {
+                keys.push(key);
+                loops.push(held);
+            }
+            None => parts.push((gait, vec![key], vec![held])),
+        }
     }
-    match Group::new(loops) {
-        Ok(group) => opened.groups.push((keys, Box::new(group))),
-        Err(loops) => {
-            for (key, held) in keys.into_iter().zip(loops) {
-                // One is like itself.
-                if let Ok(group) = Group::new(vec![held]) {
-                    opened.groups.push((vec![key], Box::new(group)));
+    for (gait, keys, loops) in parts {
+        match Group::new(loops, gait) {
+            Ok(group) => opened.groups.push((keys, Box::new(group))),
+            Err(loops) => {
+                for (key, held) in keys.into_iter().zip(loops) {
+                    // One is like itself.
+                    if let Ok(group) = Group::new(vec![held], gait) {
+                        opened.groups.push((vec![key], Box::new(group)));
+                    }
                 }
             }
         }
@@ -107,22 +122,28 @@ struct Group<L: SideBySide<N>, const N: usize> {
     /// The robots that the laws know.
     models: Fjr<Several, L::Several, N>,
     laws: AnyLaw<Several, N>,
+    /// Where strides are likely to move them.
+    plants: Option<Plants<L, N>>,
     /// Whether all follow the same reference.
     one_path: bool,
 }
 
 impl<L: FromFile<f64, N> + SideBySide<N> + Clone, const N: usize> Group<L, N> {
     /// The loops, if they are of one structure; else they are given back.
-    fn new(loops: Vec<Held<L, N>>) -> Result<Self, Vec<Held<L, N>>> {
+    fn new(loops: Vec<Held<L, N>>, gait: Gait) -> Result<Self, Vec<Held<L, N>>> {
         let lane = |lane: usize| loops.get(lane).unwrap_or(&loops[0]);
         let each: Each<&Held<L, N>> = array::from_fn(lane);
         let models = robots(&each.map(Held::robot));
         let laws = laws(&each.map(Held::scenario));
         let path = |held: &Held<L, N>| held.simulation.controller().reference.clone();
         let one_path = loops.iter().all(|held| path(held) == path(&loops[0]));
-        match models.zip(laws) {
-            Some((models, laws)) => Ok(Self { loops, models, laws, one_path }),
-            None => Err(loops),
+        let plants = match gait {
+            None => Some(None),
+            Some(gait) => Plants::new(&each, gait).map(Some),
+        };
+        match (models, laws, plants) {
+            (Some(models), Some(laws), Some(plants)) => Ok(Self { loops, models, laws, plants, one_path }),
+            _ => Err(loops),
         }
     }
 }
@@ -174,7 +195,10 @@ where
                 Some(sensed) => simulation.controller.act(&tick, sensed, Some(torques[lane])),
                 None => simulation.controller.silent(&tick),
             };
-            let energy = simulation.world.energy(&simulation.motion);
+            let energy = match &self.plants {
+                Some(plants) => plants.energy[lane],
+                None => simulation.world.energy(&simulation.motion),
+            };
             ended[lane] = simulation.arrive(tick, action, energy).err();
         }
         for (held, ended) in self.loops.iter_mut().zip(ended.iter().zip(kept)) {
@@ -191,6 +215,9 @@ where
 {
     /// Moves the robots over the control period after their last instant; the loops that diverged on the way.
     fn advanced(&mut self, going: Each<bool>) -> Each<Option<Divergence>> {
+        if let Some(plants) = &mut self.plants {
+            return plants.advance(&mut self.loops, going);
+        }
         let mut ended = [None; WIDTH];
         for (lane, held) in self.loops.iter_mut().enumerate().filter(|(lane, _)| going[*lane]) {
             ended[lane] = held.simulation.advance().err();

@@ -212,6 +212,26 @@ where
         Ok(())
     }
 
+    /// The motor torque until the next instant [N m], if it is one from beginning to end and no push begins or ends meanwhile; none before the
+    /// first instant.
+    pub(crate) fn held_torque(&self) -> Option<Vector<f64, N>> {
+        let Happened { tick, action, .. } = self.last.as_ref()?;
+        let mut edges = self.world.pushes.iter().flat_map(|push| [push.from, push.until()]);
+        let is_cut = edges.any(|edge| edge > tick.t && edge < tick.t + tick.period);
+        (!is_cut && action.applied.change.is_none()).then_some(action.applied.first)
+    }
+
+    /// Whether the motor torque changes before the next instant.
+    pub(crate) fn is_in_pieces(&self) -> bool {
+        self.last.as_ref().is_some_and(|last| last.action.applied.change.is_some())
+    }
+
+    /// Mean torque on the links from outside until the next instant [N m].
+    pub(crate) fn pushed(&self) -> Vector<f64, N> {
+        let Some(Happened { tick, .. }) = &self.last else { return Vector::ZERO };
+        self.world.pushes.iter().fold(Vector::ZERO, |sum, push| sum + push.mean(tick.t, tick.period))
+    }
+
     /// Over the control period after the last instant, if there was one.
     pub(crate) fn advance(&mut self) -> Result<(), Divergence> {
         let Self { controller, world, timing, motion, last: Some(Happened { tick, action, .. }), .. } = self

@@ -146,7 +146,7 @@ where
     }
 
     /// This lane has been moved over the last interval by `integrator`: what its last step leads on to, this leads on to.
-    fn resume(&mut self, lane: usize, integrator: &Integrator<N>) {
+    pub(crate) fn resume(&mut self, lane: usize, integrator: &Integrator<N>) {
         let past = &integrator.past;
         let ratio = self.last / past.anchor.h;
         let known = past.stages > 0 && ratio <= FARTHEST;
