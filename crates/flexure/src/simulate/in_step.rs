@@ -26,7 +26,10 @@ use crate::simulate::interface::Loop;
 use crate::simulate::simulation::{Divergence, Kept, Simulation};
 
 /// Loops that go in step, their joint count hidden.
-pub(crate) trait InStep {
+pub(crate) trait InStep: Send + Sync {
+    /// How many loops there are, at most [`WIDTH`].
+    fn lanes(&self) -> usize;
+
     /// The loop in a lane.
     fn lane(&self, lane: usize) -> &dyn Loop;
 
@@ -52,6 +55,21 @@ pub(crate) fn may_go_together(a: &Scenario, b: &Scenario) -> bool {
 /// Whether loops of a scenario go in step with others at all: those in continuous time ask their law within steps.
 pub(crate) fn goes_in_step(scenario: &Scenario) -> bool {
     scenario.hold == scenario::Hold::ZeroOrder
+}
+
+/// The places of scenarios whose loops may go together, at most [`WIDTH`] each, in the order of the first of them; those whose loops go with no
+/// others at all are in none.
+pub(crate) fn groups(scenarios: &[&Scenario]) -> Vec<Vec<usize>> {
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for (place, scenario) in scenarios.iter().enumerate().filter(|(_, scenario)| goes_in_step(scenario)) {
+        let fits =
+            |group: &&mut Vec<usize>| group.len() < WIDTH && may_go_together(scenarios[group[0]], scenario);
+        match groups.iter_mut().find(fits) {
+            Some(group) => group.push(place),
+            None => groups.push(vec![place]),
+        }
+    }
+    groups
 }
 
 /// Loops with the numbers of the scenarios that they are of, and scenarios that there is no loop of.
@@ -172,6 +190,10 @@ impl<L, const N: usize> InStep for Group<L, N>
 where
     L: FromFile<f64, N> + SideBySide<N> + Clone + Send + Sync,
 {
+    fn lanes(&self) -> usize {
+        self.loops.len()
+    }
+
     fn lane(&self, lane: usize) -> &dyn Loop {
         &self.loops[lane]
     }

@@ -1,6 +1,7 @@
 //! The closed loop in time: a sampled controller on a plant that is integrated between samples; runs with trace and summary.
 
 pub(crate) mod assembly;
+mod batch;
 mod collocation;
 mod controller;
 mod course;
@@ -44,6 +45,7 @@ mod trace_file;
 mod turns;
 
 pub use assembly::TOLERANCE;
+pub use batch::Batch;
 pub use controller::{Action, Compensation, Controller, Feedback, Said};
 pub use criteria::{Bound, Criteria, Measure};
 pub use driven::Driven;

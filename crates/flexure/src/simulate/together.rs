@@ -24,8 +24,10 @@ pub type Job<'a> = (&'a Scenario, &'a Criteria);
 /// For each scenario those of [`measure_watched`].
 pub fn measure_together(jobs: &[Job<'_>], progress: PartProgress<'_>) -> Vec<Result<Run, Problems>> {
     let mut done: Vec<Option<Result<Run, Problems>>> = jobs.iter().map(|_| None).collect();
+    let scenarios: Vec<&Scenario> = jobs.iter().map(|(scenario, _)| *scenario).collect();
+    let groups = in_step::groups(&scenarios);
     let found: Vec<_> =
-        groups(jobs).into_par_iter().flat_map_iter(|group| of_group(&group, jobs, progress)).collect();
+        groups.into_par_iter().flat_map_iter(|group| of_group(&group, jobs, progress)).collect();
     for (place, run) in found {
         done[place] = Some(run);
     }
@@ -56,22 +58,6 @@ fn of_group(
 
 /// How many runs go side by side at most: numbers to a register of the processor that this is compiled for.
 pub const SIDE_BY_SIDE: usize = WIDTH;
-
-/// The places of jobs that may go together, at most [`WIDTH`] each, in the order of the first of them; those that go with no others at
-/// all are in none.
-fn groups(jobs: &[Job<'_>]) -> Vec<Vec<usize>> {
-    let mut groups: Vec<Vec<usize>> = Vec::new();
-    for (place, (scenario, _)) in jobs.iter().enumerate().filter(|(_, job)| in_step::goes_in_step(job.0)) {
-        let fits = |group: &&mut Vec<usize>| {
-            group.len() < WIDTH && in_step::may_go_together(jobs[group[0]].0, scenario)
-        };
-        match groups.iter_mut().find(fits) {
-            Some(group) => group.push(place),
-            None => groups.push(vec![place]),
-        }
-    }
-    groups
-}
 
 /// Moves the loops of the jobs at `places` from beginning to end.
 fn moved(
