@@ -9,10 +9,10 @@ use flexure_core::model::{Links, Motion};
 use flexure_core::scalar::{Lane, Lanes};
 
 use self::robots::{Branches, Kind, OneLink, Panda, TwoLink, torques};
-use super::{Effort, Strides, likely, replace, taken};
+use super::{Effort, STILL, Strides, likely, replace, taken};
 use crate::plant::Plant;
 use crate::simulate::collocation::{Collocation, Past, Task};
-use crate::simulate::gauss::{Integrator, Order};
+use crate::simulate::gauss::{Integrator, Order, SOLVED};
 use crate::simulate::ledger::Ledger;
 
 const PERIOD: f64 = 1e-3;
@@ -113,15 +113,16 @@ fn distance<const N: usize>(a: &Motion<f64, N>, b: &Motion<f64, N>) -> f64 {
         .fold(0.0, |m: f64, x| m.max(x.abs()))
 }
 
-/// Over a second of torques at random. What the integrator is off at the same tolerance is what that promises.
-fn goes_along<K: Kind<N>, const S: usize, const N: usize, const W: usize>(share: f64)
+/// Over a second of torques at random, as far off as the integrator is at the same tolerance, or by the local errors of a few steps.
+fn goes_along<K: Kind<N>, const S: usize, const N: usize, const W: usize>(corrections: usize, share: f64)
 where
     f64: Lane<W>,
 {
+    let effort = Effort { corrections, kept: 10, ..EFFORT };
     let numbers: [usize; W] = array::from_fn(|lane| lane);
     let (plants, start) = (numbers.map(K::plant), numbers.map(K::start));
     let torques = torques::<K, N, W>(numbers, 1000);
-    let rode = ride::<_, _, S, N, W>((&plants, K::links(numbers)), start, &torques, (TOLERANCE, EFFORT));
+    let rode = ride::<_, _, S, N, W>((&plants, K::links(numbers)), start, &torques, (TOLERANCE, effort));
     for w in [0, W - 1] {
         let own = || torques.iter().map(|torques| torques[w]);
         let (exact, of_exact) = alone(&plants[w], start[w], own(), 1e-12);
@@ -130,7 +131,7 @@ where
         let off = [&rode.end[w], &scalar].map(|end| distance(end, &exact));
         let trusted = rode.trusted[w] as f64 / torques.len() as f64;
         println!("{what}: {off:?}, trusted {trusted}");
-        assert!(off[0] <= 2.0 * off[1] + 1e-8, "{what}: {off:?}");
+        assert!(off[0] <= 2.0 * off[1] + 5.0 * TOLERANCE, "{what}: {off:?}");
         assert!(trusted >= share, "{what}: {trusted}");
         let work = rode.work[w];
         let gaps = [work.supplied - of_exact.supplied, work.dissipated - of_exact.dissipated];
@@ -142,14 +143,59 @@ where
 
 #[test]
 fn strides_go_where_the_integrator_goes() {
-    goes_along::<TwoLink, 2, 2, 2>(0.5);
-    goes_along::<TwoLink, 4, 2, 4>(0.5);
-    goes_along::<TwoLink, 2, 2, 8>(0.5);
-    goes_along::<OneLink, 2, 1, 4>(0.5);
-    goes_along::<OneLink, 4, 1, 8>(0.5);
-    goes_along::<Panda, 2, 8, 2>(0.2);
-    goes_along::<Panda, 4, 8, 2>(0.5);
-    goes_along::<Branches, 2, 8, 4>(0.5);
+    goes_along::<TwoLink, 2, 2, 2>(2, 0.9);
+    goes_along::<TwoLink, 4, 2, 4>(2, 0.5);
+    goes_along::<TwoLink, 2, 2, 8>(2, 0.9);
+    goes_along::<OneLink, 2, 1, 4>(2, 0.9);
+    goes_along::<OneLink, 4, 1, 8>(2, 0.9);
+    // Fast springs that swing are too much for the lower order.
+    goes_along::<Panda, 2, 8, 2>(2, 0.0);
+    goes_along::<Panda, 4, 8, 2>(4, 0.9);
+    goes_along::<Branches, 2, 8, 4>(3, 0.2);
+}
+
+/// Each stride that is trusted is the scalar step that is accepted, its equations solved as far as was asked for.
+fn is_solved_as_asked<K: Kind<N>, const S: usize, const N: usize>(corrections: usize) {
+    let numbers = [0, 1];
+    let plants = numbers.map(K::plant);
+    let plant = Plant::together(K::links(numbers), plants.each_ref()).expect("smooth");
+    let mut strides = Strides::<S, N, 2>::new(TOLERANCE, Effort { corrections, kept: 10, ..EFFORT });
+    let mut x = together(numbers.map(K::start));
+    let what = format!("{} with S = {S}", std::any::type_name::<K>());
+    let (mut worst, mut count) = (0.0_f64, 0);
+    for torques in &torques::<K, N, 2>(numbers, 200) {
+        let strode = strides.advance(&plant, &x, &in_lanes(torques), PERIOD);
+        for w in (0..2).filter(|&w| strode.trusted[w]) {
+            let from = taken(&x, w);
+            let task =
+                Task { plant: &plants[w], x: &from, t: 0.0, h: PERIOD, torque: &|_, _: &_| torques[w] };
+            let step =
+                Collocation::<S, N>::new().step(&task, &mut Past::NONE.clone(), 1e-16).expect("solvable");
+            assert!(step.error <= 1.01 * TOLERANCE, "{what}: {:e}", step.error);
+            let got = taken(&strode.end, w);
+            for (start, end, solved) in [(from.v_l, got.v_l, step.end.v_l), (from.v_m, got.v_m, step.end.v_m)]
+            {
+                for k in 0..N {
+                    let speed = start[k].abs() + (solved[k] - start[k]).abs() + 1e-3;
+                    worst = worst.max(((end[k] - solved[k]).abs() - STILL) / speed);
+                }
+            }
+            count += 1;
+        }
+        x = strode.end;
+    }
+    println!("{what}: {worst:e} where {count} are trusted");
+    assert!(worst <= 2.0 * SOLVED * TOLERANCE, "{what}: {worst:e}");
+}
+
+#[test]
+fn what_is_trusted_is_solved_as_asked() {
+    is_solved_as_asked::<TwoLink, 2, 2>(2);
+    is_solved_as_asked::<TwoLink, 4, 2>(2);
+    is_solved_as_asked::<OneLink, 2, 1>(2);
+    is_solved_as_asked::<Panda, 2, 8>(2);
+    is_solved_as_asked::<Panda, 4, 8>(4);
+    is_solved_as_asked::<Branches, 2, 8>(3);
 }
 
 /// The bits of one robot over some periods among others, all moved by strides only.
