@@ -30,6 +30,7 @@ WORKS = {
     "plant2": (5, 25),
     "plant7": (2, 6),
     "loop2": (5, 25),
+    "batch2": (5, 25),
 }
 TITLES = {
     "law2": "v-CBC law, two joints",
@@ -40,6 +41,7 @@ TITLES = {
     "plant2": "a millisecond of the elastic two-link arm",
     "plant7": "a millisecond of the elastic seven-joint arm",
     "loop2": "a period of the whole loop, two-link arm",
+    "batch2": "a period of 16 such loops together",
 }
 
 
@@ -54,7 +56,7 @@ def program(build):
 def count(path, work, times):
     """Instructions of the program that does `work` so often."""
     command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", path, "repeat", work, str(times)]
-    done = subprocess.run(command, capture_output=True, text=True)
+    done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "RAYON_NUM_THREADS": "1"})
     found = re.search(r"Collected *: *(\d+)", done.stderr)
     if done.returncode or not found:
         raise SystemExit(f"{work}: {done.stderr}")

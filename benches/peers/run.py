@@ -43,6 +43,8 @@ PLANTS = {
 LOOPS = {
     "loop2": ("1 ms of law + plant, two-link", "plant2", "two_link"),
     "loop7": ("1 ms of law + plant, 7 joints", "plant7", "panda"),
+    "batch2": ("1 ms of law + plant, two-link, of 16 loops together", "plant2", "two_link"),
+    "batch7": ("1 ms of law + plant, 7 joints, of 16 loops together", "plant7", "panda"),
 }
 # Whole loops of built-in scenarios, which no peer has: sensors, estimator, law, guard, drive and plant.
 OWN = ["two-link-everything", "two-link-hardware", "two-link-tanh-smooth", "panda-tanh-smooth"]
@@ -71,7 +73,8 @@ class Side:
     def run(self, milliseconds):
         if self.failed:
             return
-        done = subprocess.run([*self.command, str(milliseconds)], cwd=FOLDER, capture_output=True, text=True)
+        command = [*self.command, str(milliseconds)]
+        done = subprocess.run(command, cwd=FOLDER, capture_output=True, text=True, env={**os.environ, "RAYON_NUM_THREADS": "1"})
         if done.returncode:
             self.failed = (done.stderr.strip().splitlines() or ["failed"])[-1]
         else:

@@ -48,7 +48,7 @@ fn time(name: &str, file: &str, out: &str, milliseconds: u64) -> Result<(), Box<
                 failure = motion.run(motions::PASS).map(drop);
             });
             failure?;
-            (ns / motions::PASS as f64, result)
+            (ns / (motions::PASS * motion.robots) as f64, result)
         }
     };
     fs::write(out, results.iter().flat_map(|x| x.to_ne_bytes()).collect::<Vec<_>>())?;

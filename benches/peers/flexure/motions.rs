@@ -4,7 +4,7 @@ use std::error::Error;
 
 use flexure::Scenario;
 use flexure::plant::Plant;
-use flexure::simulate::{Ledger, Loop, Stepper, Stepping, TOLERANCE};
+use flexure::simulate::{Batch, Ledger, Loop, Stepper, Stepping, TOLERANCE};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{self, Fjr, Links};
 
@@ -15,16 +15,24 @@ pub const PASS: usize = 20;
 /// Milliseconds after which motions are compared.
 pub const SECOND: usize = 1000;
 
-/// Goes on for so many milliseconds, always from the same start.
-pub struct Motion(Box<dyn FnMut(usize) -> Reached>);
+/// Goes on for so many milliseconds.
+pub struct Motion {
+    on: Box<dyn FnMut(usize) -> Reached>,
+    /// How many robots move.
+    pub robots: usize,
+}
 
 /// Where the motion is then.
 type Reached = Result<Vec<f64>, Box<dyn Error>>;
 
 impl Motion {
+    fn of_one(on: impl FnMut(usize) -> Reached + 'static) -> Self {
+        Self { on: Box::new(on), robots: 1 }
+    }
+
     /// Where the motion is after `periods` of a millisecond.
     pub fn run(&mut self, periods: usize) -> Reached {
-        (self.0)(periods)
+        (self.on)(periods)
     }
 }
 
@@ -37,6 +45,8 @@ pub fn motion(name: &str) -> Result<Option<Motion>, Box<dyn Error>> {
         "loop2" => closed("two-link-tanh-smooth")?,
         "loop7" => closed("panda-tanh-smooth")?,
         "loop" => closed(method)?,
+        "batch2" => batch("two-link-tanh-smooth")?,
+        "batch7" => batch("panda-tanh-smooth")?,
         _ => return Ok(None),
     }))
 }
@@ -69,7 +79,7 @@ where
         _ => Stepper::new(&plant, TOLERANCE, Stepping::<N>::STEP),
     };
     let pieces: u32 = if method == "tight" { 10 } else { 1 };
-    Motion(Box::new(move |periods| {
+    Motion::of_one(move |periods| {
         let (mut x, mut stepper, mut ledger) = (start, fresh.clone(), Ledger::default());
         for period in 0..periods {
             let t = 1e-3 * period as f64;
@@ -85,7 +95,7 @@ where
             }
         }
         Ok([x.q_l.0, x.q_m.0].concat())
-    }))
+    })
 }
 
 /// Periods before those that are timed: by then the arms have joined their references.
@@ -98,11 +108,29 @@ fn closed(scenario: &str) -> Result<Motion, Box<dyn Error>> {
         held.step()?;
     }
     let start = held.state();
-    Ok(Motion(Box::new(move |periods| {
+    Ok(Motion::of_one(move |periods| {
         held.restore(&start)?;
         for _ in 0..periods {
             held.step()?;
         }
         Ok(Vec::new())
-    })))
+    }))
+}
+
+/// Loops that are moved together in [`batch`].
+const LOOPS: usize = 16;
+
+/// Many loops of a scenario, side by side in the registers of one core; periods go on and on.
+fn batch(scenario: &str) -> Result<Motion, Box<dyn Error>> {
+    let scenario = Scenario::load(scenario)?;
+    let mut batch = Batch::open(&[&scenario; LOOPS])?;
+    batch.steps(JOINED);
+    let on = move |periods| {
+        batch.steps(periods);
+        match (0..LOOPS).find_map(|place| batch.divergence(place)) {
+            Some(divergence) => Err(divergence.into()),
+            None => Ok(Vec::new()),
+        }
+    };
+    Ok(Motion { on: Box::new(on), robots: LOOPS })
 }
