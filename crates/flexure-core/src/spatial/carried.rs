@@ -23,14 +23,14 @@ pub(crate) struct Carried<S> {
 
 impl<S: Scalar> Carried<S> {
     /// What does not turn, with the acceleration `linear` [m/s²].
-    #[inline(always)]
+    #[inline]
     pub fn straight(linear: Vec3<S>) -> Self {
         let zero = Vec3::ZERO;
         Self { spin: zero, spin_r: zero, spin_rate: zero, spread: [zero; 3], linear }
     }
 
     /// A of a body and a reference that turn like this.
-    #[inline(always)]
+    #[inline]
     pub fn spread(spin: Vec3<S>, spin_r: Vec3<S>, spin_rate: Vec3<S>) -> [Vec3<S>; 3] {
         let (w, r, rate) = (spin, spin_r, spin_rate);
         let (xx, yy, zz) = (w.x * r.x, w.y * r.y, w.z * r.z);
@@ -42,7 +42,7 @@ impl<S: Scalar> Carried<S> {
     }
 
     /// A of a body that turns like this: fewer products where the reference is the motion itself.
-    #[inline(always)]
+    #[inline]
     pub fn own_spread(spin: Vec3<S>, spin_rate: Vec3<S>) -> [Vec3<S>; 3] {
         let (w, rate) = (spin, spin_rate);
         let (xx, yy, zz) = (w.x.square(), w.y.square(), w.z.square());
@@ -55,7 +55,7 @@ impl<S: Scalar> Carried<S> {
     }
 
     /// Acceleration of the point of the body at `x` [m/s²]: a + A x.
-    #[inline(always)]
+    #[inline]
     pub fn at<C: Copy>(&self, x: &Vec3<C>) -> Vec3<S>
     where
         S: Over<C>,

@@ -73,7 +73,7 @@ impl<C: Scalar> RigidInertia<C> {
     }
 
     /// The body as one that joints move.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn lift<T: Over<C>>(&self) -> RigidInertia<C, T> {
         RigidInertia {
             mass: self.mass,
@@ -132,7 +132,7 @@ impl<C: Scalar> RigidInertia<C> {
 
 impl<C: Scalar, T: Over<C>> RigidInertia<C, T> {
     /// Sum of two inertias in the same frame.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn plus(&self, b: &Self) -> Self {
         Self {
             mass: self.mass + b.mass,
@@ -142,7 +142,7 @@ impl<C: Scalar, T: Over<C>> RigidInertia<C, T> {
     }
 
     /// The body pushed along z by `q`.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn slid(&self, q: T) -> Self {
         let (h, s) = (self.first_moment, &self.second_moment);
         let moved = h.z + q.scale(self.mass);
@@ -159,7 +159,7 @@ impl<C: Scalar, T: Over<C>> RigidInertia<C, T> {
     }
 
     /// The body turned about z.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn turned(&self, sin: T, cos: T) -> Self {
         Self {
             first_moment: self.first_moment.turned(sin, cos),
@@ -169,7 +169,7 @@ impl<C: Scalar, T: Over<C>> RigidInertia<C, T> {
     }
 
     /// The body's points taken through `x ↦ R x + p`, both constant.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn placed(&self, rotation: &Fixed<C>, p: &Vec3<C>) -> Self {
         let h = rotation.rotate(self.first_moment);
         let s = rotation.congruence(&self.second_moment);
@@ -187,7 +187,7 @@ impl<C: Scalar, T: Over<C>> RigidInertia<C, T> {
     }
 
     /// Spatial momentum for a unit velocity along the joint axis z: revolute or prismatic.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn axis_momentum(&self, prismatic: bool) -> Wrench<T> {
         let (h, s) = (self.first_moment, &self.second_moment);
         if prismatic {
@@ -208,7 +208,7 @@ pub(crate) struct AxisMass<C> {
 }
 
 /// The rows of the transpose.
-#[inline(always)]
+#[inline]
 fn transpose<C: Copy>([a, b, c]: [Vec3<C>; 3]) -> [Vec3<C>; 3] {
     [Vec3 { x: a.x, y: b.x, z: c.x }, Vec3 { x: a.y, y: b.y, z: c.y }, Vec3 { x: a.z, y: b.z, z: c.z }]
 }
@@ -229,7 +229,7 @@ impl<S: Scalar> ArticulatedInertia<S> {
     pub(crate) const ZERO: Self = Self { angular: Sym3::ZERO, coupling: [Vec3::ZERO; 3], linear: Sym3::ZERO };
 
     /// The articulated inertia of a single rigid body.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn of_body<C: Scalar>(body: &RigidInertia<C>) -> Self
     where
         S: Over<C>,
@@ -248,7 +248,7 @@ impl<S: Scalar> ArticulatedInertia<S> {
         }
     }
 
-    #[inline(always)]
+    #[inline]
     pub(crate) fn plus(&self, b: &Self) -> Self {
         let ([a0, a1, a2], [b0, b1, b2]) = (self.coupling, b.coupling);
         Self {
@@ -259,7 +259,7 @@ impl<S: Scalar> ArticulatedInertia<S> {
     }
 
     /// `I S` for the unit joint axis z: revolute or prismatic.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn along_axis(&self, prismatic: bool) -> Wrench<S> {
         let [b0, b1, b2] = self.coupling;
         if prismatic {
@@ -272,7 +272,7 @@ impl<S: Scalar> ArticulatedInertia<S> {
     }
 
     /// `I − U Uᵀ / d`: what the rest of the tree feels of a joint that is free to move.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn without_axis(&self, u: &Wrench<S>, reciprocal: S) -> Self {
         let (n, f) = (u.moment, u.linear);
         let (nd, fd) = (n.scaled(reciprocal), f.scaled(reciprocal));
@@ -293,7 +293,7 @@ impl<S: Scalar> ArticulatedInertia<S> {
     }
 
     /// [`without_axis`](Self::without_axis) of a revolute joint, without what vanishes.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn freed(&self, u: &Wrench<S>, reciprocal: S) -> Freed<S> {
         let (n, f) = (u.moment, u.linear);
         let (nd, fd) = (n.scaled(reciprocal), f.scaled(reciprocal));
@@ -315,13 +315,13 @@ impl<S: Scalar> ArticulatedInertia<S> {
     }
 
     /// The inertia of what has been pushed along z by `q`.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn slid(&self, q: S) -> Self {
         self.shifted(|v| Vec3 { x: -(q * v.y), y: q * v.x, z: S::ZERO })
     }
 
     /// The inertia of what has been turned about z.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn turned(&self, sin: S, cos: S) -> Self {
         let turn = |v: Vec3<S>| v.turned(sin, cos);
         Self {
@@ -332,7 +332,7 @@ impl<S: Scalar> ArticulatedInertia<S> {
     }
 
     /// The inertia of what has been taken through `x ↦ R x + p`, both constant.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn placed<C: Scalar>(&self, rotation: &Fixed<C>, p: &Vec3<C>) -> Self
     where
         S: Over<C>,
@@ -347,7 +347,7 @@ impl<S: Scalar> ArticulatedInertia<S> {
     }
 
     /// The inertia of what has been shifted by p, given `cross(v)` = p × v.
-    #[inline(always)]
+    #[inline]
     fn shifted(&self, cross: impl Fn(Vec3<S>) -> Vec3<S>) -> Self {
         let [b0, b1, b2] = self.coupling;
         // With P = [p]×: B' = B + P D,  A' = A + P Bᵀ + (P Bᵀ)ᵀ + P D Pᵀ = A + P Bᵀ + B' Pᵀ.
@@ -368,7 +368,7 @@ impl<S: Scalar> ArticulatedInertia<S> {
     }
 
     /// `I v`.
-    #[inline(always)]
+    #[inline]
     pub fn mul(&self, v: &Twist<S>) -> Wrench<S> {
         let [b0, b1, b2] = self.coupling;
         let [t0, t1, t2] = transpose(self.coupling);
@@ -392,7 +392,7 @@ pub(crate) struct Freed<S> {
 
 impl<S: Scalar> Freed<S> {
     /// The inertia of what has been turned about z.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn turned(&self, sin: S, cos: S) -> Self {
         let w = sin * (self.xx - self.yy) + cos * (self.xy + self.xy);
         let moved = sin * w;
@@ -407,7 +407,7 @@ impl<S: Scalar> Freed<S> {
     }
 
     /// The inertia of what has been taken through `x ↦ R x + p`, both constant.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn placed<C: Scalar>(&self, rotation: &Fixed<C>, p: &Vec3<C>) -> ArticulatedInertia<S>
     where
         S: Over<C>,

@@ -19,7 +19,7 @@ impl<S: Scalar> Sym3<S> {
     pub(crate) const ZERO: Self =
         Self { xx: S::ZERO, xy: S::ZERO, xz: S::ZERO, yy: S::ZERO, yz: S::ZERO, zz: S::ZERO };
 
-    #[inline(always)]
+    #[inline]
     pub(crate) fn map<T>(&self, f: impl Fn(S) -> T) -> Sym3<T> {
         Sym3 {
             xx: f(self.xx),
@@ -31,7 +31,7 @@ impl<S: Scalar> Sym3<S> {
         }
     }
 
-    #[inline(always)]
+    #[inline]
     pub(crate) fn zip(&self, b: &Self, f: impl Fn(S, S) -> S) -> Self {
         Self {
             xx: f(self.xx, b.xx),
@@ -43,19 +43,19 @@ impl<S: Scalar> Sym3<S> {
         }
     }
 
-    #[inline(always)]
+    #[inline]
     pub(crate) fn plus(&self, b: &Self) -> Self {
         self.zip(b, |x, y| x + y)
     }
 
-    #[inline(always)]
+    #[inline]
     pub(crate) fn mul(&self, v: Vec3<S>) -> Vec3<S> {
         let [x, y, z] = self.rows();
         Vec3 { x: x.dot(v), y: y.dot(v), z: z.dot(v) }
     }
 
     /// The rows as vectors.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn rows(&self) -> [Vec3<S>; 3] {
         [
             Vec3::new(self.xx, self.xy, self.xz),
@@ -65,7 +65,7 @@ impl<S: Scalar> Sym3<S> {
     }
 
     /// `R A Rᵀ` with the rotation R about z. With w = s (xx − yy) + 2 c xy the block of x and y becomes xx − s w, c w − xy, yy + s w.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn turned(&self, sin: S, cos: S) -> Self {
         let w = sin * (self.xx - self.yy) + cos * (self.xy + self.xy);
         let moved = sin * w;
@@ -80,7 +80,7 @@ impl<S: Scalar> Sym3<S> {
     }
 
     /// `R A Rᵀ` with a constant rotation R about x.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn tilted<C: Copy>(&self, sin: C, cos: C) -> Self
     where
         S: Over<C>,

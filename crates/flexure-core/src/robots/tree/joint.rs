@@ -1,5 +1,8 @@
 //! One joint of a tree and the coordinate changes across it.
-#![expect(clippy::inline_always, reason = "measured: inverse dynamics takes 0.88 of the time")]
+#![expect(
+    clippy::inline_always,
+    reason = "measured: inverse dynamics and articulated bodies take 0.9 of the time"
+)]
 
 use super::JointKind;
 use crate::linalg::Matrix;
@@ -46,7 +49,7 @@ impl<C: Scalar> Joint<C> {
     }
 
     /// The joint at position `q`.
-    #[inline(always)]
+    #[inline]
     pub(super) fn at<T: Over<C>>(&self, q: T) -> Pose<T> {
         let [sin_0, cos_0] = self.phase;
         match self.kind {
@@ -63,7 +66,7 @@ impl<C: Scalar> Joint<C> {
     }
 
     /// The joint along the series `q`, which starts where `pose` is: no sine is taken.
-    #[inline(always)]
+    #[inline]
     pub(super) fn along<T: Over<C>, const K: usize>(&self, pose: &Pose<T>, q: Jet<T, K>) -> Pose<Jet<T, K>> {
         match self.kind {
             JointKind::Revolute => {
@@ -74,7 +77,7 @@ impl<C: Scalar> Joint<C> {
         }
     }
 
-    #[inline(always)]
+    #[inline]
     pub(super) fn is_prismatic(&self) -> bool {
         self.kind == JointKind::Prismatic
     }
@@ -121,7 +124,7 @@ impl<C: Scalar> Joint<C> {
     }
 
     /// Origin of the child frame in the parent frame.
-    #[inline(always)]
+    #[inline]
     pub(super) fn origin<T: Over<C>>(&self, pose: &Pose<T>) -> Vec3<T> {
         let fixed = self.translation.map(T::constant);
         match self.kind {
@@ -131,7 +134,7 @@ impl<C: Scalar> Joint<C> {
     }
 
     /// A body of child coordinates in parent coordinates.
-    #[inline(always)]
+    #[inline]
     pub(super) fn body_to_parent<T: Over<C>>(
         &self,
         pose: &Pose<T>,
@@ -145,7 +148,7 @@ impl<C: Scalar> Joint<C> {
     }
 
     /// What the parent feels of an articulated body, in its coordinates, if the joint is free to move; `u` is I S, `reciprocal` 1 / (Sᵀ I S).
-    #[inline(always)]
+    #[inline]
     pub(super) fn felt<T: Over<C>>(
         &self,
         pose: &Pose<T>,
@@ -166,7 +169,7 @@ impl<C: Scalar> Joint<C> {
     }
 
     /// `S q̇`: the joint's own twist in child coordinates.
-    #[inline(always)]
+    #[inline]
     pub(super) fn along_axis<T: Scalar>(&self, rate: T) -> Twist<T> {
         let axis = Vec3::new(T::ZERO, T::ZERO, rate);
         match self.kind {
@@ -177,7 +180,7 @@ impl<C: Scalar> Joint<C> {
 
     /// The motion of the child in its own axes, from that of the parent and what the joint adds: velocity, velocity of the reference,
     /// acceleration of the reference. `OWN`: the reference is the motion itself.
-    #[inline(always)]
+    #[inline]
     pub(super) fn carried<T: Over<C>, const OWN: bool>(
         &self,
         pose: &Pose<T>,
@@ -212,7 +215,7 @@ impl<C: Scalar> Joint<C> {
     }
 
     /// What moves the body like this.
-    #[inline(always)]
+    #[inline]
     pub(super) fn wrench<T: Over<C>>(&self, body: &Carried<T>) -> Wrench<T> {
         match self.kind {
             JointKind::Revolute => self.inertia.about_axis(body),
@@ -221,7 +224,7 @@ impl<C: Scalar> Joint<C> {
     }
 
     /// `Sᵀ f`: the torque [N m] or force in N at the joint.
-    #[inline(always)]
+    #[inline]
     pub(super) fn project<T: Scalar>(&self, f: &Wrench<T>) -> T {
         match self.kind {
             JointKind::Revolute => f.moment.z,
@@ -240,7 +243,7 @@ pub(super) struct Pose<T> {
 
 impl<T: Scalar> Pose<T> {
     /// The pose as a series that stands still.
-    #[inline(always)]
+    #[inline]
     pub(super) fn still<const K: usize>(&self) -> Pose<Jet<T, K>> {
         Pose { sin: Jet::value(self.sin), cos: Jet::value(self.cos), slide: Jet::value(self.slide) }
     }
