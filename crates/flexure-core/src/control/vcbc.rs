@@ -93,9 +93,9 @@ impl<C: Scalar, Pl: Shaping<C, N>, Pm: Shaping<C, N>, const N: usize> Vcbc<C, Pl
         let factor = links.factor(&x.q_l);
         let motion = robot.link_motion(&factor, x);
         let (q, v) = (motion.map(|x| x.truncate::<3>()), motion.map(|x| x.differentiate::<3>()));
-        let link = self
-            .link
-            .torque(&robot.link_damping, &motion, q_ld, |v_r, a_r| links.inverse_dynamics(&q, &v, v_r, a_r));
+        let link = self.link.torque(&robot.link_damping, &motion, q_ld, |v_r, a_r| {
+            links.reference_torque(&factor, &q, &v, v_r, a_r)
+        });
         self.motor_side(robot, x, &q, link, omega)
     }
 

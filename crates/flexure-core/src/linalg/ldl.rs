@@ -23,18 +23,20 @@ impl<S: Scalar, const N: usize> Ldl<S, N> {
         let mut pivots = Vector::ZERO;
         let mut reciprocals = Vector::ZERO;
         for j in 0..N {
-            // Column j of L D, from the columns before it.
+            // Row j of L D and its pivot, from the rows before it.
+            let mut row = [S::ZERO; N];
             let mut pivot = a[(j, j)];
             for k in 0..j {
                 let l: S = lower[(j, k)];
                 pivot -= l.square() * pivots[k];
+                row[k] = l * pivots[k];
             }
             pivots[j] = pivot;
             reciprocals[j] = pivot.recip();
             for i in j + 1..N {
                 let mut sum = a[(i, j)];
                 for k in 0..j {
-                    sum -= lower[(i, k)] * lower[(j, k)] * pivots[k];
+                    sum -= lower[(i, k)] * row[k];
                 }
                 lower[(i, j)] = sum * reciprocals[j];
             }

@@ -12,14 +12,14 @@ impl<C: Scalar, L: Links<C, N>, const N: usize> Fjr<C, L, N> {
     #[inline]
     pub fn link_motion<T: Over<C>>(
         &self,
-        factor: &impl MassFactor<T, N>,
+        factor: &L::Factor<'_, T>,
         x: &Motion<T, N>,
     ) -> Vector<Jet<T, 4>, N> {
         let links = &self.links;
-        let bias = links.inverse_dynamics(&x.q_l, &x.v_l, &x.v_l, &Vector::ZERO);
+        let (q, v) = (x.q_l.map(Jet::<T, 1>::value), x.v_l.map(Jet::value));
+        let bias = links.motion_torque(factor, &q, &v, &Vector::ZERO).map(|x| x.coefficient(0));
         self.link_motion_with(factor, x, &bias, |a| {
-            let v = x.v_l.with_rate(a);
-            links.inverse_dynamics(&x.q_l.with_rate(&x.v_l), &v, &v, &a.map(Jet::value))
+            links.motion_torque(factor, &x.q_l.with_rate(&x.v_l), &x.v_l.with_rate(a), &a.map(Jet::value))
         })
     }
 

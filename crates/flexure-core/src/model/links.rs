@@ -140,6 +140,32 @@ pub trait Links<C: Scalar, const N: usize> {
         self.inverse_dynamics(&q.map(|x| x.truncate()), &v, &v, &q.map(|x| x.differentiate_twice()))
     }
 
+    /// [`inverse_dynamics`](Self::inverse_dynamics) of a motion itself, v_r = v, as Taylor series of `K` coefficients: M a + C v + g [N m] from the
+    /// position where `start` was factorised on. What a robot computed for `start`, such as sines, need not be computed again.
+    #[inline]
+    fn motion_torque<T: Over<C>, const K: usize>(
+        &self,
+        _start: &Self::Factor<'_, T>,
+        q: &Vector<Jet<T, K>, N>,
+        v: &Vector<Jet<T, K>, N>,
+        a: &Vector<Jet<T, K>, N>,
+    ) -> Vector<Jet<T, K>, N> {
+        self.inverse_dynamics(q, v, v, a)
+    }
+
+    /// [`motion_torque`](Self::motion_torque) with a reference beside the motion: M a_r + C v_r + g [N m].
+    #[inline]
+    fn reference_torque<T: Over<C>, const K: usize>(
+        &self,
+        _start: &Self::Factor<'_, T>,
+        q: &Vector<Jet<T, K>, N>,
+        v: &Vector<Jet<T, K>, N>,
+        v_r: &Vector<Jet<T, K>, N>,
+        a_r: &Vector<Jet<T, K>, N>,
+    ) -> Vector<Jet<T, K>, N> {
+        self.inverse_dynamics(q, v, v_r, a_r)
+    }
+
     /// Accelerations under the joint torque `torque` [N m]: M(q)⁻¹ (τ − C(q, v) v − g(q)) [rad/s²].
     #[inline]
     fn forward_dynamics<T: Over<C>>(
@@ -148,8 +174,9 @@ pub trait Links<C: Scalar, const N: usize> {
         v: &Vector<T, N>,
         torque: &Vector<T, N>,
     ) -> Vector<T, N> {
-        let bias = self.inverse_dynamics(q, v, v, &Vector::ZERO);
-        self.factor(q).solve(&(*torque - bias))
+        let factor = self.factor(q);
+        let bias = self.motion_torque(&factor, &q.map(Jet::<T, 1>::value), &v.map(Jet::value), &Vector::ZERO);
+        factor.solve(&(*torque - bias.map(|x| x.coefficient(0))))
     }
 
     /// M(q) a [N m].

@@ -6,4 +6,4 @@ mod tree;
 
 pub use pendulum::Pendulum;
 pub use planar_two_link::PlanarTwoLink;
-pub use tree::{Articulated, Body, JointKind, Tree, TreeFactor};
+pub use tree::{Articulated, Body, Dense, JointKind, Tree, TreeFactor};

@@ -132,6 +132,27 @@ impl<S: Scalar, const K: usize> Jet<S, K> {
         Self { coefficients: y }
     }
 
+    /// Sine and cosine of the series plus a constant, from those of order 0.
+    #[inline]
+    pub(crate) fn sin_cos_from(&self, sin: S, cos: S) -> (Self, Self) {
+        let a = &self.coefficients;
+        let (mut s, mut c) = ([S::ZERO; K], [S::ZERO; K]);
+        for k in 0..K {
+            if k == 0 {
+                (s[0], c[0]) = (sin, cos);
+            } else {
+                let (mut ds, mut dc) = (S::ZERO, S::ZERO);
+                for j in 1..=k {
+                    let da = a[j] * S::from_ratio(narrow(j), narrow(k));
+                    ds += da * c[k - j];
+                    dc += da * s[k - j];
+                }
+                (s[k], c[k]) = (ds, -dc);
+            }
+        }
+        (Self { coefficients: s }, Self { coefficients: c })
+    }
+
     #[inline]
     fn head(&self) -> S {
         self.coefficient(0)
@@ -276,22 +297,8 @@ impl<S: Scalar, const K: usize> Scalar for Jet<S, K> {
     }
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
-        let a = &self.coefficients;
-        let (mut s, mut c) = ([S::ZERO; K], [S::ZERO; K]);
-        for k in 0..K {
-            if k == 0 {
-                (s[0], c[0]) = a[0].sin_cos();
-            } else {
-                let (mut ds, mut dc) = (S::ZERO, S::ZERO);
-                for j in 1..=k {
-                    let da = a[j] * S::from_ratio(narrow(j), narrow(k));
-                    ds += da * c[k - j];
-                    dc += da * s[k - j];
-                }
-                (s[k], c[k]) = (ds, -dc);
-            }
-        }
-        (Self { coefficients: s }, Self { coefficients: c })
+        let (sin, cos) = self.head().sin_cos();
+        self.sin_cos_from(sin, cos)
     }
     #[inline]
     fn tanh(self) -> Self {

@@ -14,17 +14,53 @@ pub(crate) struct Carried<S> {
     pub spin_r: Vec3<S>,
     /// α: rate of `spin_r` [rad/s²].
     pub spin_rate: Vec3<S>,
+    /// Rows of A, by which the acceleration of a point x differs from that of the origin [1/s²]: A x = α × x + ω_r × (ω × x), so that
+    /// A = [α]× + ω ω_rᵀ − (ω·ω_r) 1.
+    pub spread: [Vec3<S>; 3],
     /// a: acceleration of the frame's origin [m/s²].
     pub linear: Vec3<S>,
 }
 
 impl<S: Scalar> Carried<S> {
-    /// Acceleration of the point of the body at `x` [m/s²]: a + α × x + ω_r × (ω × x).
+    /// What does not turn, with the acceleration `linear` [m/s²].
+    #[inline]
+    pub fn straight(linear: Vec3<S>) -> Self {
+        let zero = Vec3::ZERO;
+        Self { spin: zero, spin_r: zero, spin_rate: zero, spread: [zero; 3], linear }
+    }
+
+    /// A of a body and a reference that turn like this.
+    #[inline]
+    pub fn spread(spin: Vec3<S>, spin_r: Vec3<S>, spin_rate: Vec3<S>) -> [Vec3<S>; 3] {
+        let (w, r, rate) = (spin, spin_r, spin_rate);
+        let (xx, yy, zz) = (w.x * r.x, w.y * r.y, w.z * r.z);
+        [
+            Vec3::new(-yy - zz, w.x * r.y - rate.z, w.x * r.z + rate.y),
+            Vec3::new(w.y * r.x + rate.z, -xx - zz, w.y * r.z - rate.x),
+            Vec3::new(w.z * r.x - rate.y, w.z * r.y + rate.x, -xx - yy),
+        ]
+    }
+
+    /// A of a body that turns like this: fewer products where the reference is the motion itself.
+    #[inline]
+    pub fn own_spread(spin: Vec3<S>, spin_rate: Vec3<S>) -> [Vec3<S>; 3] {
+        let (w, rate) = (spin, spin_rate);
+        let (xx, yy, zz) = (w.x.square(), w.y.square(), w.z.square());
+        let (xy, xz, yz) = (w.x * w.y, w.x * w.z, w.y * w.z);
+        [
+            Vec3::new(-yy - zz, xy - rate.z, xz + rate.y),
+            Vec3::new(xy + rate.z, -xx - zz, yz - rate.x),
+            Vec3::new(xz - rate.y, yz + rate.x, -xx - yy),
+        ]
+    }
+
+    /// Acceleration of the point of the body at `x` [m/s²]: a + A x.
     #[inline]
     pub fn at<C: Copy>(&self, x: &Vec3<C>) -> Vec3<S>
     where
         S: Over<C>,
     {
-        self.linear + self.spin_rate.cross_constant(x) + self.spin_r.cross(self.spin.cross_constant(x))
+        let [rx, ry, rz] = self.spread;
+        self.linear + Vec3 { x: rx.dot_constant(x), y: ry.dot_constant(x), z: rz.dot_constant(x) }
     }
 }

@@ -1,8 +1,7 @@
-//! Vectors of three-space, and rotations by a constant matrix.
+//! Vectors of three-space.
 
 use core::ops::{Add, AddAssign, Neg, Sub};
 
-use crate::linalg::Matrix;
 use crate::scalar::{Over, Scalar};
 
 /// A vector of three-space.
@@ -21,31 +20,31 @@ impl<S: Scalar> Vec3<S> {
     pub const ZERO: Self = Self { x: S::ZERO, y: S::ZERO, z: S::ZERO };
 
     /// The vector `(x, y, z)`.
-    #[inline]
+    #[inline(always)]
     pub const fn new(x: S, y: S, z: S) -> Self {
         Self { x, y, z }
     }
 
     /// The vector of an array.
-    #[inline]
+    #[inline(always)]
     pub fn from_array([x, y, z]: [S; 3]) -> Self {
         Self { x, y, z }
     }
 
     /// Every component through `f`.
-    #[inline]
+    #[inline(always)]
     pub fn map<T>(self, f: impl Fn(S) -> T) -> Vec3<T> {
         Vec3 { x: f(self.x), y: f(self.y), z: f(self.z) }
     }
 
     /// Inner product.
-    #[inline]
+    #[inline(always)]
     pub fn dot(self, b: Self) -> S {
         self.x * b.x + self.y * b.y + self.z * b.z
     }
 
     /// `self × b`.
-    #[inline]
+    #[inline(always)]
     pub fn cross(self, b: Self) -> Self {
         Self {
             x: self.y * b.z - self.z * b.y,
@@ -55,13 +54,13 @@ impl<S: Scalar> Vec3<S> {
     }
 
     /// `self · s`.
-    #[inline]
+    #[inline(always)]
     pub fn scaled(self, s: S) -> Self {
         self.map(|x| x * s)
     }
 
     /// `self × b` for a constant `b`.
-    #[inline]
+    #[inline(always)]
     pub fn cross_constant<C: Copy>(self, b: &Vec3<C>) -> Self
     where
         S: Over<C>,
@@ -73,8 +72,33 @@ impl<S: Scalar> Vec3<S> {
         }
     }
 
+    /// `b × self` for a constant `b`.
+    #[inline(always)]
+    pub(crate) fn crossed_by_constant<C: Copy>(self, b: &Vec3<C>) -> Self
+    where
+        S: Over<C>,
+    {
+        Self {
+            x: self.z.scale(b.y) - self.y.scale(b.z),
+            y: self.x.scale(b.z) - self.z.scale(b.x),
+            z: self.y.scale(b.x) - self.x.scale(b.y),
+        }
+    }
+
+    /// The vector turned about z.
+    #[inline(always)]
+    pub(crate) fn turned(self, sin: S, cos: S) -> Self {
+        Self { x: cos * self.x - sin * self.y, y: sin * self.x + cos * self.y, z: self.z }
+    }
+
+    /// The vector turned about z, backwards.
+    #[inline(always)]
+    pub(crate) fn unturned(self, sin: S, cos: S) -> Self {
+        Self { x: cos * self.x + sin * self.y, y: cos * self.y - sin * self.x, z: self.z }
+    }
+
     /// Inner product with a constant vector.
-    #[inline]
+    #[inline(always)]
     pub fn dot_constant<C: Copy>(self, b: &Vec3<C>) -> S
     where
         S: Over<C>,
@@ -85,7 +109,7 @@ impl<S: Scalar> Vec3<S> {
 
 impl<S: Scalar> Add for Vec3<S> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, b: Self) -> Self {
         Self { x: self.x + b.x, y: self.y + b.y, z: self.z + b.z }
     }
@@ -93,7 +117,7 @@ impl<S: Scalar> Add for Vec3<S> {
 
 impl<S: Scalar> Sub for Vec3<S> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(self, b: Self) -> Self {
         Self { x: self.x - b.x, y: self.y - b.y, z: self.z - b.z }
     }
@@ -101,53 +125,15 @@ impl<S: Scalar> Sub for Vec3<S> {
 
 impl<S: Scalar> Neg for Vec3<S> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn neg(self) -> Self {
         Self { x: -self.x, y: -self.y, z: -self.z }
     }
 }
 
 impl<S: Scalar> AddAssign for Vec3<S> {
-    #[inline]
+    #[inline(always)]
     fn add_assign(&mut self, b: Self) {
         *self = *self + b;
-    }
-}
-
-/// A constant rotation matrix, by columns: `R = [x y z]`.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Rotation<C> {
-    x: Vec3<C>,
-    y: Vec3<C>,
-    z: Vec3<C>,
-}
-
-impl<C: Scalar> Rotation<C> {
-    pub(crate) fn from_matrix(m: &Matrix<C, 3, 3>) -> Self {
-        Self {
-            x: Vec3::from_array(m.column(0).0),
-            y: Vec3::from_array(m.column(1).0),
-            z: Vec3::from_array(m.column(2).0),
-        }
-    }
-
-    pub(crate) fn map<D: Scalar>(&self, f: impl Fn(C) -> D) -> Rotation<D> {
-        Rotation { x: self.x.map(&f), y: self.y.map(&f), z: self.z.map(&f) }
-    }
-
-    /// `R v`.
-    #[inline]
-    pub(crate) fn rotate<T: Over<C>>(&self, v: Vec3<T>) -> Vec3<T> {
-        Vec3 {
-            x: v.x.scale(self.x.x) + v.y.scale(self.y.x) + v.z.scale(self.z.x),
-            y: v.x.scale(self.x.y) + v.y.scale(self.y.y) + v.z.scale(self.z.y),
-            z: v.x.scale(self.x.z) + v.y.scale(self.y.z) + v.z.scale(self.z.z),
-        }
-    }
-
-    /// `Rᵀ v`.
-    #[inline]
-    pub(crate) fn unrotate<T: Over<C>>(&self, v: Vec3<T>) -> Vec3<T> {
-        Vec3 { x: v.dot_constant(&self.x), y: v.dot_constant(&self.y), z: v.dot_constant(&self.z) }
     }
 }

@@ -15,6 +15,7 @@ mod filtered_difference;
 mod guard;
 mod guard_phases;
 mod inverse_dynamics;
+mod kernels;
 #[cfg(all(feature = "interval", feature = "lanes"))]
 mod law_bounds_and_batches;
 mod law_equilibrium;

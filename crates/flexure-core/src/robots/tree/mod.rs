@@ -8,9 +8,9 @@ mod recursions;
 
 use crate::linalg::{Matrix, Vector};
 use crate::scalar::Scalar;
-use crate::spatial::{RigidInertia, Rotation, Vec3};
+use crate::spatial::{Fixed, RigidInertia, Rotation, Vec3};
 
-pub use factor::{Articulated, TreeFactor};
+pub use factor::{Articulated, Dense, TreeFactor};
 use joint::{Joint, Pose};
 
 /// How a joint moves along or about its axis.
@@ -71,7 +71,8 @@ impl<C: Copy> Body<C> {
 /// coupled tanh, bandwidths and limits are positive, for instance 1; any other gain or damping may be 0. Recursions run over the
 /// real joints only.
 ///
-/// Link frames are turned so that every joint axis is z: joint transforms then cost four products instead of nine.
+/// Link frames are turned so that every joint axis is z, and x perpendicular to the axis of the first joint that a body carries, after
+/// Denavit and Hartenberg: joint transforms then cost four products, and four with constants, instead of nine and nine.
 ///
 /// ```
 /// use flexure_core::linalg::Vector;
@@ -107,6 +108,8 @@ pub struct Tree<C, const N: usize> {
     /// Joints that are no phantoms, at most `N`.
     count: usize,
     gravity: Vec3<C>,
+    /// First moment of mass [kg m] that no joint moves, in the base frame.
+    grounded: Vec3<C>,
 }
 
 impl<const N: usize> Tree<f64, N> {
@@ -125,37 +128,67 @@ impl<C: Scalar, const N: usize> Tree<C, N> {
     /// numbers they contain. Joints that no body is given for are phantoms.
     ///
     /// `approximate` gives a float near a constant. It only says which coordinate axis, of those far from the joint axis,
-    /// the turned frame of a joint starts from: the tree is the same robot with any of them. Axes that are coordinate axes
-    /// turn frames by permutations, which round nothing.
+    /// the turned frame of a joint starts from, and whether two axes are far enough from parallel to have a common normal: the tree is the same
+    /// robot with any answer. Axes that are coordinate axes turn frames by permutations, which round nothing.
     ///
     /// None if there are more than `N` bodies or some body's parent does not come before it.
-    pub fn from_bodies(bodies: &[Body<C>], gravity: [C; 3], approximate: impl Fn(C) -> f64) -> Option<Self> {
+    pub fn from_bodies(bodies: &[Body<C>], gravity: [C; 3], approximate: impl Fn(C) -> f64) -> Option<Self>
+    where
+        C: PartialEq,
+    {
         let ordered = bodies.iter().enumerate().all(|(i, body)| body.parent.is_none_or(|parent| parent < i));
-        let turn = |body: &Body<C>| axis_frame(body.axis, &approximate);
-        let joint = |body: &Body<C>| {
-            let own = turn(body);
+        let frame = |i: usize, body: &Body<C>| link_frame(bodies, i, body, &approximate);
+        let joint = |i: usize, body: &Body<C>| {
+            let own = frame(i, body).turn;
             // Everything that was said in the parent's link frame, in the parent's turned frame.
-            let carrier =
-                body.parent.and_then(|parent| bodies.get(parent)).map_or_else(Matrix::identity, turn);
+            let carrier = body.parent.and_then(|parent| Some((parent, bodies.get(parent)?)));
+            let carrier = carrier.map(|(parent, body)| frame(parent, body));
+            let about_x = carrier.as_ref().is_some_and(|carrier| carrier.across == Some(i));
+            let carrier = carrier.map_or_else(Matrix::identity, |carrier| carrier.turn);
             let rotation = carrier.transpose() * Matrix(body.rotation) * own;
             let translation = carrier.transpose() * Vector(body.translation);
             let com = own.transpose() * Vector(body.com);
             let inertia = own.transpose() * Matrix(body.inertia) * own;
             let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = inertia.0;
+            let (rotation, phase) = if about_x {
+                // A turn about z and then one about x has the first row (cos, −sin, 0) of the former and the third column
+                // (0, −sin, cos) of the latter.
+                let [[cos_0, minus_sin_0, _], [.., minus_sin], [.., cos]] = rotation.0;
+                (Fixed::AboutX { sin: -minus_sin, cos }, [-minus_sin_0, cos_0])
+            } else {
+                (Fixed::General(Rotation::from_matrix(&rotation)), [C::ZERO, C::ONE])
+            };
             Joint {
                 parent: body.parent.unwrap_or(usize::MAX),
                 kind: body.kind,
-                rotation: Rotation::from_matrix(&rotation),
+                rotation,
+                phase,
                 translation: Vec3::from_array(translation.0),
                 inertia: RigidInertia::new(body.mass, com.0, [xx, xy, xz, yy, yz, zz]),
             }
         };
-        let joints = core::array::from_fn(|i| bodies.get(i).map_or_else(Joint::phantom, joint));
-        (ordered && bodies.len() <= N).then_some(Self {
-            joints,
-            count: bodies.len(),
-            gravity: Vec3::from_array(gravity),
+        let joints =
+            core::array::from_fn(|i| bodies.get(i).map_or_else(Joint::phantom, |body| joint(i, body)));
+        let mut tree =
+            Self { joints, count: bodies.len(), gravity: Vec3::from_array(gravity), grounded: Vec3::ZERO };
+        (ordered && bodies.len() <= N).then(|| {
+            tree.regroup();
+            tree
         })
+    }
+
+    /// Gives the mass on the axis of each revolute joint to its parent, which moves all points of that axis as the body does: fewer numbers
+    /// say the same. On the base it only has potential energy.
+    fn regroup(&mut self) {
+        for i in (0..self.count).rev() {
+            let Some(joint) = self.joints.get_mut(i).filter(|joint| !joint.is_prismatic()) else { continue };
+            let (axis, p, e) = (joint.inertia.split_axis(), joint.translation, joint.rotation.axis());
+            match self.joints.get(i).map(|joint| joint.parent).and_then(|parent| self.joints.get_mut(parent))
+            {
+                Some(parent) => parent.inertia.add_axis(&axis, p, e),
+                None => self.grounded += p.scaled(axis.mass) + e.scaled(axis.first_moment),
+            }
+        }
     }
 
     /// How many joints the robot has, at most the capacity `N`; those beyond are phantoms.
@@ -186,9 +219,46 @@ impl<C: Scalar, const N: usize> Tree<C, N> {
             joints: self.joints.each_ref().map(|joint| joint.map(&f)),
             count: self.count,
             gravity: self.gravity.map(&f),
+            grounded: self.grounded.map(&f),
         }
     }
 }
+
+/// The frame of a link, in which its joint moves about or along z.
+struct Frame<C> {
+    /// Its axes as columns, in the link frame that the body was given in.
+    turn: Matrix<C, 3, 3>,
+    /// The body whose joint axis x is perpendicular to.
+    across: Option<usize>,
+}
+
+/// The frame of body `i`: z along its joint axis and, after Denavit and Hartenberg, x along the common normal of that axis and the axis of the
+/// first joint that it carries. Parallel axes decide nothing; of axes that are nearly parallel the normal would be known badly.
+fn link_frame<C: Scalar + PartialEq>(
+    bodies: &[Body<C>],
+    i: usize,
+    body: &Body<C>,
+    approximate: impl Fn(C) -> f64,
+) -> Frame<C> {
+    let turn = axis_frame(body.axis, &approximate);
+    let carried = bodies.iter().enumerate().find(|(_, other)| other.parent == Some(i));
+    let Some((child, other)) = carried else { return Frame { turn, across: None } };
+    let Vector([u, v, _]) = turn.transpose() * (Matrix(other.rotation) * Vector(other.axis));
+    let square = u.square() + v.square();
+    if u == C::ZERO {
+        return Frame { turn, across: Some(child) };
+    }
+    if approximate(square) < NEARLY_PARALLEL {
+        return Frame { turn, across: None };
+    }
+    let reciprocal = square.sqrt().recip();
+    let (x, y) = (-(v * reciprocal), u * reciprocal);
+    let zero = C::ZERO;
+    Frame { turn: turn * Matrix([[x, -y, zero], [y, x, zero], [zero, zero, C::ONE]]), across: Some(child) }
+}
+
+/// Squared sine of the angle of two axes, about 6°, below which their normal would lose more than a digit.
+const NEARLY_PARALLEL: f64 = 0.01;
 
 /// A rotation whose third column is the unit vector `axis`; a permutation of axes where `axis` is one of them, so
 /// that nothing is rounded.

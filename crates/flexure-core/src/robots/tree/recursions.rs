@@ -4,7 +4,7 @@ use super::joint::Pose;
 use super::{Tree, TreeFactor};
 use crate::linalg::{Matrix, Vector};
 use crate::model::Links;
-use crate::scalar::{Over, Scalar};
+use crate::scalar::{Jet, Over, Scalar};
 use crate::spatial::{Carried, Vec3, Wrench};
 
 impl<C: Scalar, const N: usize> Tree<C, N> {
@@ -15,37 +15,52 @@ impl<C: Scalar, const N: usize> Tree<C, N> {
         self.joints.each_ref().map(|joint| joint.at(positions.next().unwrap_or(T::ZERO)))
     }
 
+    /// Where the joints are along a motion that starts at `poses`.
+    #[inline]
+    fn poses_along<T: Over<C>, const K: usize>(
+        &self,
+        poses: &[Pose<T>; N],
+        q: &Vector<Jet<T, K>, N>,
+    ) -> [Pose<Jet<T, K>>; N] {
+        let mut along = poses.each_ref().map(Pose::still);
+        for (i, (joint, pose)) in self.chain(poses) {
+            if let Some(slot) = along.get_mut(i) {
+                *slot = joint.along(pose, q[i]);
+            }
+        }
+        along
+    }
+
     /// The modified Newton–Euler pass: M(q) a_r + C(q, v) v_r plus the torque that holds the tree against a base
-    /// accelerating with `base` [m/s²].
+    /// accelerating with `base` [m/s²]. `OWN`: v_r is v, the ordinary pass, with fewer products.
     ///
     /// C is the Christoffel matrix. It is that of point masses, Jᵀ m J̇ with the derivative J̇ along v (Γ_kij = Σ m ∂_k x · ∂_ij x), so
     /// nothing has to be made symmetric: a body carries two angular velocities, ω of v and ω_r of v_r, the rate α of ω_r, and the acceleration a of
-    /// its origin. A point x of it has the acceleration a + α × x + ω_r × (ω × x), and with the mass m, the first moment h, the
-    /// rotational inertia I and the second moment Σ = ½ tr(I) 1 − I of the body that sums up to
+    /// its origin. A point x of it has the acceleration a + A x, A = [α]× + ω ω_rᵀ − (ω·ω_r) 1, and with the mass m and the first and second
+    /// moments h = ∫ x dm and Σ = ∫ x xᵀ dm of the body that sums up to
     ///
-    /// f = m a + α × h + ω_r × (ω × h),  n = I α + (Σ ω_r) × ω + h × a.
+    /// f = m a + A h,  n = h × a + ∫ x × A x dm, where the integral is twice the axial vector of A Σ.
     #[inline]
-    fn newton_euler<T: Over<C>>(
+    fn newton_euler<T: Over<C>, const OWN: bool>(
         &self,
-        q: &Vector<T, N>,
+        poses: &[Pose<T>; N],
         v: &Vector<T, N>,
         v_r: &Vector<T, N>,
         a_r: &Vector<T, N>,
         base: Vec3<T>,
     ) -> Vector<T, N> {
-        let poses = self.poses(q);
-        let ground = Carried { spin: Vec3::ZERO, spin_r: Vec3::ZERO, spin_rate: Vec3::ZERO, linear: base };
+        let ground = Carried::straight(base);
         let mut bodies = Vector([ground; N]);
         let mut force = Vector([Wrench::ZERO; N]);
-        for (i, (joint, pose)) in self.chain(&poses) {
+        for (i, (joint, pose)) in self.chain(poses) {
             let carrier = bodies.0.get(joint.parent).unwrap_or(&ground);
-            let body = joint.carried(pose, carrier, [v[i], v_r[i], a_r[i]]);
-            force[i] = joint.inertia.wrench(&body);
+            let body = joint.carried::<T, OWN>(pose, carrier, [v[i], v_r[i], a_r[i]]);
+            force[i] = joint.wrench(&body);
             bodies[i] = body;
         }
         // Phantoms: unit inertia.
         let mut torque = *a_r;
-        for (i, (joint, pose)) in self.chain(&poses).rev() {
+        for (i, (joint, pose)) in self.chain(poses).rev() {
             torque[i] = joint.project(&force[i]);
             let passed = force[i];
             if let Some(parent) = force.0.get_mut(joint.parent) {
@@ -54,29 +69,22 @@ impl<C: Scalar, const N: usize> Tree<C, N> {
         }
         torque
     }
-}
 
-impl<C: Scalar, const N: usize> Links<C, N> for Tree<C, N> {
-    type Factor<'a, T: Over<C>>
-        = TreeFactor<'a, C, T, N>
-    where
-        C: 'a;
-
+    /// The acceleration of the base that stands for gravity [m/s²].
     #[inline]
-    fn joints(&self) -> usize {
-        self.count
+    fn upwards<T: Over<C>>(&self) -> Vec3<T> {
+        -self.gravity.map(T::constant)
     }
 
-    /// Composite rigid bodies.
+    /// The mass matrix, by composite rigid bodies.
     #[inline]
-    fn mass_matrix<T: Over<C>>(&self, q: &Vector<T, N>) -> Matrix<T, N, N> {
-        let poses = self.poses(q);
-        let mut composite = Vector(self.joints.each_ref().map(|joint| joint.inertia.map(T::constant)));
+    pub(super) fn composite<T: Over<C>>(&self, poses: &[Pose<T>; N]) -> Matrix<T, N, N> {
+        let mut composite = Vector(self.joints.each_ref().map(|joint| joint.inertia.lift::<T>()));
         let mut mass = Matrix::identity();
-        for (i, (joint, pose)) in self.chain(&poses).rev() {
+        for (i, (joint, pose)) in self.chain(poses).rev() {
             let body = composite[i];
             if let Some(parent) = composite.0.get_mut(joint.parent) {
-                *parent = parent.plus(&body.moved(|v| joint.rotate(pose, v), joint.origin(pose)));
+                *parent = parent.plus(&joint.body_to_parent(pose, &body));
             }
             // Force that moves the composite body along its joint, felt at every joint towards the base.
             let mut force = body.axis_momentum(joint.is_prismatic());
@@ -93,6 +101,23 @@ impl<C: Scalar, const N: usize> Links<C, N> for Tree<C, N> {
         }
         mass
     }
+}
+
+impl<C: Scalar, const N: usize> Links<C, N> for Tree<C, N> {
+    type Factor<'a, T: Over<C>>
+        = TreeFactor<'a, C, T, N>
+    where
+        C: 'a;
+
+    #[inline]
+    fn joints(&self) -> usize {
+        self.count
+    }
+
+    #[inline]
+    fn mass_matrix<T: Over<C>>(&self, q: &Vector<T, N>) -> Matrix<T, N, N> {
+        self.composite(&self.poses(q))
+    }
 
     /// Minus weight times height, from composite first moments of mass.
     #[inline]
@@ -101,7 +126,7 @@ impl<C: Scalar, const N: usize> Links<C, N> for Tree<C, N> {
         let mut mass = Vector(self.joints.each_ref().map(|joint| joint.inertia.mass));
         let mut moment =
             Vector(self.joints.each_ref().map(|joint| joint.inertia.first_moment.map(T::constant)));
-        let mut total = Vec3::ZERO;
+        let mut total = self.grounded.map(T::constant);
         for (i, (joint, pose)) in self.chain(&poses).rev() {
             let h = joint.rotate(pose, moment[i]) + joint.origin(pose).map(|x| x.scale(mass[i]));
             let m = mass[i];
@@ -138,7 +163,7 @@ impl<C: Scalar, const N: usize> Links<C, N> for Tree<C, N> {
     #[inline]
     fn gravity_torque<T: Over<C>>(&self, q: &Vector<T, N>) -> Vector<T, N> {
         let rest = Vector::ZERO;
-        self.inverse_dynamics(q, &rest, &rest, &rest)
+        self.newton_euler::<T, true>(&self.poses(q), &rest, &rest, &rest, self.upwards())
     }
 
     #[inline]
@@ -149,7 +174,7 @@ impl<C: Scalar, const N: usize> Links<C, N> for Tree<C, N> {
         v_r: &Vector<T, N>,
         a_r: &Vector<T, N>,
     ) -> Vector<T, N> {
-        self.newton_euler(q, v, v_r, a_r, Vec3::ZERO)
+        self.newton_euler::<T, false>(&self.poses(q), v, v_r, a_r, Vec3::ZERO)
     }
 
     #[inline]
@@ -160,12 +185,46 @@ impl<C: Scalar, const N: usize> Links<C, N> for Tree<C, N> {
         v_r: &Vector<T, N>,
         a_r: &Vector<T, N>,
     ) -> Vector<T, N> {
-        self.newton_euler(q, v, v_r, a_r, -self.gravity.map(T::constant))
+        self.newton_euler::<T, false>(&self.poses(q), v, v_r, a_r, self.upwards())
     }
 
     #[inline]
     fn mass_mul<T: Over<C>>(&self, q: &Vector<T, N>, a: &Vector<T, N>) -> Vector<T, N> {
         let rest = Vector::ZERO;
-        self.inertial_torque(q, &rest, &rest, a)
+        self.newton_euler::<T, true>(&self.poses(q), &rest, &rest, a, Vec3::ZERO)
+    }
+
+    #[inline]
+    fn motion_torque<T: Over<C>, const K: usize>(
+        &self,
+        start: &TreeFactor<'_, C, T, N>,
+        q: &Vector<Jet<T, K>, N>,
+        v: &Vector<Jet<T, K>, N>,
+        a: &Vector<Jet<T, K>, N>,
+    ) -> Vector<Jet<T, K>, N> {
+        self.newton_euler::<_, true>(&self.poses_along(start.poses(), q), v, v, a, self.upwards())
+    }
+
+    #[inline]
+    fn reference_torque<T: Over<C>, const K: usize>(
+        &self,
+        start: &TreeFactor<'_, C, T, N>,
+        q: &Vector<Jet<T, K>, N>,
+        v: &Vector<Jet<T, K>, N>,
+        v_r: &Vector<Jet<T, K>, N>,
+        a_r: &Vector<Jet<T, K>, N>,
+    ) -> Vector<Jet<T, K>, N> {
+        self.newton_euler::<_, false>(&self.poses_along(start.poses(), q), v, v_r, a_r, self.upwards())
+    }
+
+    #[inline]
+    fn torque_along<T: Over<C>, const U: usize, const U2: usize>(
+        &self,
+        q: &Vector<Jet<T, U2>, N>,
+    ) -> Vector<Jet<T, U>, N> {
+        let poses = self.poses(&q.map(|x| x.coefficient(0)));
+        let (v, a) = (q.map(|x| x.differentiate()), q.map(|x| x.differentiate_twice()));
+        let poses = self.poses_along(&poses, &q.map(|x| x.truncate()));
+        self.newton_euler::<_, true>(&poses, &v, &v, &a, self.upwards())
     }
 }

@@ -8,7 +8,7 @@ use super::{Constants, Random, fit, fit_motion, random, robot, same, same_joints
 use crate::common::{Numbers, flexible};
 
 /// Every recursion, with phantoms that move.
-fn recursions<C: Scalar, T: Over<C>, const K: usize, const N: usize>(
+fn recursions<C: Scalar + PartialEq, T: Over<C>, const K: usize, const N: usize>(
     constants: Constants<C>,
     number: Random<T>,
 ) {
@@ -52,7 +52,10 @@ fn recursions<C: Scalar, T: Over<C>, const K: usize, const N: usize>(
 }
 
 /// The flexible-joint robot, with phantoms at rest.
-fn model<C: Scalar, T: Over<C>, const K: usize, const N: usize>(constants: Constants<C>, number: Random<T>) {
+fn model<C: Scalar + PartialEq, T: Over<C>, const K: usize, const N: usize>(
+    constants: Constants<C>,
+    number: Random<T>,
+) {
     let r = &mut Numbers(5);
     let data = flexible(tree::<f64, K, K>(2, crate::capacity::FLOAT), r);
     let (exact, roomy) = (robot::<C, K, K>(2, &data, constants), robot::<C, K, N>(2, &data, constants));

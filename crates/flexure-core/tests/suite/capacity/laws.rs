@@ -104,7 +104,7 @@ impl<P: Padded, const K: usize> Padded for Virtual<P, K> {
 }
 
 /// The torque of a law on a robot in motion; phantoms get 0.
-fn torque<C: Scalar, T: Over<C>, A: Padded, const K: usize, const N: usize>(
+fn torque<C: Scalar + PartialEq, T: Over<C>, A: Padded, const K: usize, const N: usize>(
     law: &A,
     constants: Constants<C>,
     number: Random<T>,
@@ -131,7 +131,10 @@ fn torque<C: Scalar, T: Over<C>, A: Padded, const K: usize, const N: usize>(
 }
 
 /// Every law.
-fn all<C: Scalar, T: Over<C>, const K: usize, const N: usize>(constants: Constants<C>, number: Random<T>) {
+fn all<C: Scalar + PartialEq, T: Over<C>, const K: usize, const N: usize>(
+    constants: Constants<C>,
+    number: Random<T>,
+) {
     macro_rules! each {
         ($($law:expr),+ $(,)?) => {$( torque::<C, T, _, K, N>(&$law, constants, number); )+};
     }
@@ -155,7 +158,10 @@ fn all<C: Scalar, T: Over<C>, const K: usize, const N: usize>(constants: Constan
 }
 
 /// v-CBC with every shaping function.
-fn v_cbc<C: Scalar, T: Over<C>, const K: usize, const N: usize>(constants: Constants<C>, number: Random<T>) {
+fn v_cbc<C: Scalar + PartialEq, T: Over<C>, const K: usize, const N: usize>(
+    constants: Constants<C>,
+    number: Random<T>,
+) {
     let r = &mut Numbers(29);
     let gains: [Vector<f64, K>; 5] = core::array::from_fn(|_| r.between(2.0, 20.0));
     let linear: [Linear<f64, K>; 2] = core::array::from_fn(|_| linear(r));

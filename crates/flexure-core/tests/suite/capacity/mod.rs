@@ -99,13 +99,16 @@ fn same_joints<T: Scalar, const K: usize, const N: usize>(
 }
 
 /// A branched tree with revolute and prismatic joints, of `K` joints, where `N` fit.
-fn tree<C: Scalar, const K: usize, const N: usize>(seed: u64, (number, float): Constants<C>) -> Tree<C, N> {
+fn tree<C: Scalar + PartialEq, const K: usize, const N: usize>(
+    seed: u64,
+    (number, float): Constants<C>,
+) -> Tree<C, N> {
     let bodies = branched_bodies::<K>(seed).map(|body| body.map(number));
     Tree::from_bodies(&bodies, GRAVITY.map(number), float).expect("they fit")
 }
 
 /// Springs, motors and dampers of `data` around that tree, padded by 1.
-fn robot<C: Scalar, const K: usize, const N: usize>(
+fn robot<C: Scalar + PartialEq, const K: usize, const N: usize>(
     seed: u64,
     data: &Fjr<f64, Tree<f64, K>, K>,
     constants: Constants<C>,

@@ -43,7 +43,7 @@ pub(crate) trait FromFile<C: Scalar, const N: usize>: model::Links<C, N> + Sized
     fn from_file(links: &Links<C>, gravity: [C; 3], approximate: &dyn Fn(C) -> f64) -> Option<Self>;
 }
 
-impl<C: Scalar, const N: usize> FromFile<C, N> for Tree<C, N> {
+impl<C: Scalar + PartialEq, const N: usize> FromFile<C, N> for Tree<C, N> {
     fn from_file(links: &Links<C>, gravity: [C; 3], approximate: &dyn Fn(C) -> f64) -> Option<Self> {
         match links {
             Links::Tree(bodies) => Self::from_bodies(bodies, gravity, approximate),
