@@ -6,6 +6,8 @@ mod factor;
 mod joint;
 mod recursions;
 
+use core::mem::discriminant;
+
 use crate::linalg::{Matrix, Vector};
 use crate::scalar::Scalar;
 use crate::spatial::{Fixed, RigidInertia, Rotation, Vec3};
@@ -206,9 +208,10 @@ impl<C: Scalar, const N: usize> Tree<C, N> {
         (0..self.count).filter_map(|i| Some((i, (self.joints.get(i)?, poses.get(i)?))))
     }
 
-    /// Whether it has the structure of `other`, whatever the numbers: as many joints, of the same kinds, on the same bodies.
+    /// Whether it has the structure of `other`, whatever the numbers: as many joints, of the same kinds, on the same bodies, in frames that were
+    /// chosen alike.
     pub fn is_like(&self, other: &Self) -> bool {
-        let structure = |joint: &Joint<C>| (joint.parent, joint.kind);
+        let structure = |joint: &Joint<C>| (joint.parent, joint.kind, discriminant(&joint.rotation));
         let mut joints = self.joints.iter().zip(&other.joints);
         self.count == other.count && joints.all(|(a, b)| structure(a) == structure(b))
     }
