@@ -1,12 +1,14 @@
 //! Strides against the integrator, which is their oracle.
 
+mod again;
 mod robots;
 
 use std::array;
 
 use flexure_core::linalg::Vector;
-use flexure_core::model::{Links, Motion};
-use flexure_core::scalar::{Lane, Lanes};
+use flexure_core::model::{Fjr, Links, Motion};
+use flexure_core::robots::Pendulum;
+use flexure_core::scalar::{Lane, Lanes, Piecewise as _};
 
 use self::robots::{Branches, Kind, OneLink, Panda, TwoLink, torques};
 use super::{Effort, STILL, Strides, likely, replace, taken};
@@ -194,6 +196,7 @@ fn what_is_trusted_is_solved_as_asked() {
     is_solved_as_asked::<TwoLink, 4, 2>(2);
     is_solved_as_asked::<OneLink, 2, 1>(2);
     is_solved_as_asked::<Panda, 2, 8>(2);
+    is_solved_as_asked::<Panda, 4, 8>(2);
     is_solved_as_asked::<Panda, 4, 8>(4);
     is_solved_as_asked::<Branches, 2, 8>(3);
 }
@@ -320,34 +323,53 @@ fn what_fixed_work_does_not_solve_is_not_trusted() {
     assert_eq!(trusted(hard, |x, _| x.q_m[0] += 0.1), not_the_second);
 }
 
-/// Where a lane was moved by the integrator the next stride leads on from there.
 #[test]
-fn a_lane_that_was_done_again_leads_on() {
-    for corrections in [2, 3] {
+fn an_interval_in_parts_is_as_many_intervals() {
+    let plants = [0, 1].map(TwoLink::plant);
+    let plant = Plant::together(TwoLink::links([0, 1]), plants.each_ref()).expect("smooth");
+    let x = together([0, 1].map(TwoLink::start));
+    let u = Vector([0.3, 2.0]).map(Lanes::splat);
+    let whole =
+        Strides::<2, 2, 2>::new(TOLERANCE, Effort { parts: 2, ..EFFORT }).advance(&plant, &x, &u, PERIOD);
+    let mut strides = Strides::<2, 2, 2>::new(TOLERANCE, EFFORT);
+    let first = strides.advance(&plant, &x, &u, 0.5 * PERIOD);
+    let second = strides.advance(&plant, &first.end, &u, 0.5 * PERIOD);
+    let mut work = booked(&first.work, 0);
+    work.add(&booked(&second.work, 0));
+    assert_eq!((whole.end, booked(&whole.work, 0)), (second.end, work));
+    assert_eq!(whole.error.to_array(), first.error.max(second.error).to_array());
+    assert_eq!(whole.trusted, array::from_fn(|w| first.trusted[w] && second.trusted[w]));
+}
+
+/// The iteration matrix of a linear joint is all there is to its equations: one correction solves them, whatever the spring.
+fn is_solved_at_once<const S: usize>() {
+    let joint = |weight_moment: f64, stiffness: f64| {
+        let links = Pendulum { inertia: 0.1, weight_moment };
+        let (motor_inertia, stiffness) = (Vector([0.02]), Vector([stiffness]));
+        let (link_damping, motor_damping) = (Vector([0.3]), Vector([4.0]));
+        Plant::from(Fjr { links, motor_inertia, stiffness, link_damping, motor_damping })
+    };
+    let plants = [joint(0.0, 1e2), joint(0.0, 1e5)];
+    let links = Pendulum { inertia: Lanes::splat(0.1), weight_moment: Lanes::splat(0.0) };
+    let plant = Plant::together(links, plants.each_ref()).expect("smooth");
+    let x = together([Motion { v_l: Vector([1.0]), ..Motion::at_rest(Vector([0.2])) }; 2]);
+    let [one, more] = [1, 3].map(|corrections| {
         let effort = Effort { corrections, ..EFFORT };
-        let plants = [0, 2].map(OneLink::plant);
-        let plant = Plant::together(OneLink::links([0, 2]), plants.each_ref()).expect("smooth");
-        let follow = |resume: bool| {
-            let mut strides = Strides::<2, 1, 2>::new(TOLERANCE, effort);
-            let mut integrator = Integrator::new(TOLERANCE);
-            let mut x = together([0, 2].map(OneLink::start));
-            let mut trusted = 0;
-            for _ in 0..20 {
-                let mut strode = strides.advance(&plant, &x, &Vector::ZERO, PERIOD);
-                trusted += usize::from(strode.trusted[0]);
-                let from = taken(&x, 0);
-                let again = strides.redo(0, &mut integrator, &plants[0], from, Vector::ZERO, PERIOD);
-                replace(&mut strode.end, 0, &again.expect("bounded").0);
-                if !resume {
-                    strides.forget(0);
-                }
-                x = strode.end;
-            }
-            trusted
-        };
-        println!("{corrections}: {} {}", follow(true), follow(false));
-        assert_eq!(follow(true), 20, "{corrections}");
+        let mut strides = Strides::<S, 1, 2>::new(TOLERANCE, effort);
+        // What comes after the first is not corrected more often than was asked for.
+        let x = strides.advance(&plant, &x, &Vector([Lanes::splat(1.0)]), PERIOD).end;
+        strides.advance(&plant, &x, &Vector([Lanes::splat(5.0)]), PERIOD).end
+    });
+    for w in 0..2 {
+        let gap = distance(&taken(&one, w), &taken(&more, w));
+        assert!(gap < 1e-12, "lane {w}, S = {S}: {gap:e}");
     }
+}
+
+#[test]
+fn linear_joints_are_solved_by_one_correction() {
+    is_solved_at_once::<2>();
+    is_solved_at_once::<4>();
 }
 
 #[test]
