@@ -216,7 +216,7 @@ fn rows_of_other_laws_leave_out_what_only_v_cbc_has() {
 
 /// Three joints under gravity: the bodies of a built-in arm with numbers through `number`. One joint count only: every
 /// registered law on every number is much code.
-fn arm<C: Scalar>(
+fn arm<C: Scalar + PartialEq>(
     robot: &Robot,
     number: impl Fn(f64) -> C,
     near: impl Fn(C) -> f64,

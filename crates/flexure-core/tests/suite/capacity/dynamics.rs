@@ -7,7 +7,8 @@ use flexure_core::scalar::{Jet, Over, Scalar};
 use super::{Constants, Random, fit, fit_motion, random, robot, same, same_joints, tree};
 use crate::common::{Numbers, flexible};
 
-/// Every recursion, with phantoms that move.
+/// Every recursion, with phantoms that move. Out of line: all sizes in one function are more than the compiler survives.
+#[inline(never)]
 fn recursions<C: Scalar + PartialEq, T: Over<C>, const K: usize, const N: usize>(
     constants: Constants<C>,
     number: Random<T>,
@@ -52,6 +53,7 @@ fn recursions<C: Scalar + PartialEq, T: Over<C>, const K: usize, const N: usize>
 }
 
 /// The flexible-joint robot, with phantoms at rest.
+#[inline(never)]
 fn model<C: Scalar + PartialEq, T: Over<C>, const K: usize, const N: usize>(
     constants: Constants<C>,
     number: Random<T>,

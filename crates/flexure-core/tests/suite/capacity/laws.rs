@@ -103,7 +103,8 @@ impl<P: Padded, const K: usize> Padded for Virtual<P, K> {
     }
 }
 
-/// The torque of a law on a robot in motion; phantoms get 0.
+/// The torque of a law on a robot in motion; phantoms get 0. Out of line: all laws in one function are more than the compiler survives.
+#[inline(never)]
 fn torque<C: Scalar + PartialEq, T: Over<C>, A: Padded, const K: usize, const N: usize>(
     law: &A,
     constants: Constants<C>,
@@ -158,6 +159,7 @@ fn all<C: Scalar + PartialEq, T: Over<C>, const K: usize, const N: usize>(
 }
 
 /// v-CBC with every shaping function.
+#[inline(never)]
 fn v_cbc<C: Scalar + PartialEq, T: Over<C>, const K: usize, const N: usize>(
     constants: Constants<C>,
     number: Random<T>,
