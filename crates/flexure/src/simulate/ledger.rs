@@ -3,6 +3,8 @@
 use flexure_core::model::Power;
 use flexure_core::scalar::{Over, Piecewise};
 
+use crate::lanes::Several;
+
 /// Work done on the robot and by it: the two sides of the power balance, integrated. Of several robots, if `T` is lanes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ledger<T = f64> {
@@ -12,6 +14,16 @@ pub struct Ledger<T = f64> {
     pub dissipated: T,
     /// ∫ |q̇_mᵀ u_m + q̇_lᵀ τ_external| dt, in J: what the residual is compared with.
     pub throughput: T,
+}
+
+impl Ledger<Several> {
+    /// That of the robot in a lane.
+    pub(crate) fn of(&self, lane: usize) -> Ledger {
+        let Self { supplied, dissipated, throughput } = self;
+        let [supplied, dissipated, throughput] =
+            [supplied, dissipated, throughput].map(|work| work.to_array()[lane]);
+        Ledger { supplied, dissipated, throughput }
+    }
 }
 
 impl<T: Piecewise + Over<f64>> Ledger<T> {

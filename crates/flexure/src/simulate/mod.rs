@@ -36,7 +36,6 @@ mod span;
 mod stepper;
 mod stepping;
 mod stiction;
-#[allow(dead_code, reason = "for blocks of loops")]
 mod strides;
 mod summary;
 mod together;

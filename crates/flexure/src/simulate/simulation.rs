@@ -212,6 +212,11 @@ where
         Ok(())
     }
 
+    /// The number of the last control instant; none before the first.
+    pub(crate) fn last_tick(&self) -> Option<u64> {
+        self.last.as_ref().map(|last| last.tick.k)
+    }
+
     /// The motor torque until the next instant [N m], if it is one from beginning to end and no push begins or ends meanwhile; none before the
     /// first instant.
     pub(crate) fn held_torque(&self) -> Option<Vector<f64, N>> {

@@ -14,12 +14,11 @@ use flexure_core::model::{Links, Motion};
 use flexure_core::scalar::{Lane, Lanes, Piecewise, Scalar};
 
 pub(crate) use self::effort::Effort;
-#[allow(unused_imports, reason = "for blocks of loops")]
 pub(crate) use self::effort::likely;
 use crate::plant::Plant;
 use crate::simulate::collocation::FARTHEST;
 use crate::simulate::damped::Damped;
-use crate::simulate::gauss::{Integrator, SOLVED, StepFailure};
+use crate::simulate::gauss::{Integrator, SOLVED};
 use crate::simulate::ledger::Ledger;
 use crate::simulate::local_error::{Values, estimate};
 use crate::simulate::newton::{Anchor, StageSolver, StepSolution};
@@ -116,26 +115,9 @@ where
         strode
     }
 
-    /// Moves a lane over the last interval once more by `integrator`, which is that lane's: `x` under the constant torque `u_m` [N m] over
-    /// `interval` s. Gives the end and the work, and the next stride of the lane leads on from there.
-    ///
-    /// # Errors
-    /// As [`Integrator::advance`].
-    pub(crate) fn redo<One: Links<f64, N>>(
-        &mut self,
-        lane: usize,
-        integrator: &mut Integrator<N>,
-        plant: &Plant<One, N>,
-        x: Motion<f64, N>,
-        u_m: Vector<f64, N>,
-        interval: f64,
-    ) -> Result<(Motion<f64, N>, Ledger), StepFailure> {
-        // Where it was last is not where this one starts.
-        integrator.past.stages = 0;
-        let mut work = Ledger::ZERO;
-        let end = integrator.advance(plant, x, 0.0, interval, &|_, _: &_| u_m, &mut work)?;
-        self.resume(lane, integrator);
-        Ok((end, work))
+    /// The next step has a new iteration matrix: when is a matter of the instant, not of who has been moved before.
+    pub(crate) fn renew(&mut self) {
+        self.served = self.effort.kept;
     }
 
     /// Polynomials of this lane lead on to nothing: it has been moved by other means.
@@ -247,10 +229,10 @@ where
         let each = [before, size, error, sum].map(Lanes::to_array);
         strode.trusted = array::from_fn(|w| {
             let [before, size, error, sum] = each.map(|lanes| lanes[w]);
-            // What is left of a correction that shrinks is a part of it; what was solved before it is solved.
-            let shrunk = size < 0.5 * before && size * size <= accuracy * before;
-            let solved = size <= accuracy || shrunk;
-            strode.trusted[w] && solved && error <= self.tolerance && sum.is_finite()
+            strode.trusted[w]
+                && is_solved(before, size, accuracy)
+                && error <= self.tolerance
+                && sum.is_finite()
         });
         (strode.end, strode.error) = (end, strode.error.max(error));
         (self.past, self.last) = (solution, h);
@@ -288,6 +270,12 @@ where
         }
         self.served += 1;
     }
+}
+
+/// Whether equations are solved whose last two corrections were `before` and `size`: what is left of a correction that shrinks is a part of it,
+/// and what was solved before it is solved.
+fn is_solved(before: f64, size: f64, accuracy: f64) -> bool {
+    size <= accuracy || (size < 0.5 * before && size * size <= accuracy * before)
 }
 
 /// Inverse by Gauss–Jordan elimination without pivoting.

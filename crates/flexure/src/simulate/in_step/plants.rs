@@ -5,12 +5,15 @@ use std::array;
 use flexure_core::linalg::Vector;
 use flexure_core::model::Motion;
 
+use crate::estimators::AnyEstimator;
 use crate::lanes::{self, Each, Several, WIDTH};
 use crate::plant::Plant;
+use crate::references::AnyReference;
 use crate::robot::links::SideBySide;
 use crate::simulate::gauss::{Integrator, Order};
 use crate::simulate::held::Held;
-use crate::simulate::simulation::Divergence;
+use crate::simulate::own_law::HeldLaw;
+use crate::simulate::simulation::{Divergence, Simulation};
 use crate::simulate::stepper::Stepper;
 use crate::simulate::strides::{Effort, Strides, Strode, likely, replace, taken};
 
@@ -29,13 +32,32 @@ pub(super) struct Plants<L: SideBySide<N>, const N: usize> {
     plants: Plant<L::Several, N, Several>,
     strides: Gauss<N>,
     parts: u32,
-    /// Lanes that strides took over the last period: their integrators were elsewhere then.
-    strode: Each<bool>,
-    /// Lanes whose periods are not of one piece, as where a drive is late by a part of one: strides do not move them.
-    pieced: Each<bool>,
+    lanes: Each<Rider>,
     /// Total energy in J at the last instant.
     pub(super) energy: Each<f64>,
 }
+
+/// How strides do with the plant in a lane.
+#[derive(Clone, Copy, Debug, Default)]
+struct Rider {
+    /// They took it over the last period: its integrator was elsewhere then.
+    strode: bool,
+    /// Its periods are not of one piece, as where a drive is late by a part of one.
+    pieced: bool,
+    /// Periods that they did not resolve, less those that they did, from 0 to [`MANY`].
+    failed: u32,
+    /// The instant until which they are not tried.
+    rests: u64,
+}
+
+/// Periods in a row that are not resolved, after which a plant is left to its integrator for a while: as under noise, where every torque jumps.
+const MANY: u32 = 5;
+
+/// How many periods that is, at least.
+const REST: u64 = 50;
+
+/// Strides have a new iteration matrix whenever the number of the instant is a multiple of this, and rests end there.
+const RENEWED: u64 = 10;
 
 /// Strides of either order.
 enum Gauss<const N: usize> {
@@ -56,8 +78,7 @@ impl<L: SideBySide<N>, const N: usize> Plants<L, N> {
                 Order::Eight => Gauss::Eight(Box::new(Strides::new(tolerance, effort))),
             },
             parts: effort.parts,
-            strode: [false; WIDTH],
-            pieced: [false; WIDTH],
+            lanes: [Rider::default(); WIDTH],
             energy: [0.0; WIDTH],
         })
     }
@@ -69,18 +90,26 @@ impl<L: SideBySide<N>, const N: usize> Plants<L, N> {
         going: Each<bool>,
     ) -> Each<Option<Divergence>> {
         let mut ended = [None; WIDTH];
-        let torques: Each<Option<Vector<f64, N>>> = array::from_fn(|lane| {
-            let held = loops.get(lane).filter(|_| going[lane])?;
-            held.simulation.held_torque()
-        });
+        // All loops are at the same instant.
+        let Some(k) =
+            loops.iter().zip(going).find_map(|(held, going)| held.simulation.last_tick().filter(|_| going))
+        else {
+            self.energy = self.plants.total_energy(&motions(loops)).to_array();
+            return ended;
+        };
+        let mut torques: Each<Option<Vector<f64, N>>> = [None; WIDTH];
         for (lane, held) in loops.iter().enumerate().filter(|(lane, _)| going[*lane]) {
-            self.pieced[lane] |= held.simulation.is_in_pieces();
+            let rider = &mut self.lanes[lane];
+            rider.pieced |= held.simulation.is_in_pieces();
+            torques[lane] = held.simulation.held_torque().filter(|_| !rider.pieced && k >= rider.rests);
         }
-        let each = |lane: usize| &loops.get(lane).unwrap_or(&loops[0]).simulation;
-        let motions: Each<&Motion<f64, N>> = array::from_fn(|lane| &each(lane).motion);
-        let mut end = lanes::motion(&motions);
-        let strode = (0..loops.len()).any(|lane| torques[lane].is_some() && !self.pieced[lane]).then(|| {
-            let pushed: Each<Vector<f64, N>> = array::from_fn(|lane| each(lane).pushed());
+        let mut end = motions(loops);
+        // What leads on begins with the first period, whoever needs it.
+        let strode = (k == 0 || torques.iter().any(Option::is_some)).then(|| {
+            if k.is_multiple_of(RENEWED) {
+                self.strides.renew();
+            }
+            let pushed: Each<Vector<f64, N>> = array::from_fn(|lane| one(loops, lane).pushed());
             self.plants.external = lanes::vector(&pushed.each_ref());
             let u_m = torques.map(|torque| torque.unwrap_or(Vector::ZERO));
             let u_m = lanes::vector(&u_m.each_ref());
@@ -90,43 +119,58 @@ impl<L: SideBySide<N>, const N: usize> Plants<L, N> {
             end = strode.end;
         }
         for lane in (0..loops.len()).filter(|&lane| going[lane]) {
-            let simulation = &mut loops[lane].simulation;
-            match strode.as_ref().filter(|strode| strode.trusted[lane] && torques[lane].is_some()) {
-                Some(strode) if !self.pieced[lane] => {
-                    simulation.motion = taken(&strode.end, lane);
-                    let work = [strode.work.supplied, strode.work.dissipated, strode.work.throughput];
-                    let [supplied, dissipated, throughput] = work.map(|work| work.to_array()[lane]);
-                    let ledger = &mut simulation.world.ledger;
-                    ledger.supplied += supplied;
-                    ledger.dissipated += dissipated;
-                    ledger.throughput += throughput;
-                    self.strode[lane] = true;
-                    if let Stepper::Smooth(integrator) = &mut simulation.world.stepper {
-                        integrator.steps += u64::from(self.parts);
-                    }
+            let (simulation, rider) = (&mut loops[lane].simulation, &mut self.lanes[lane]);
+            let strode = strode.as_ref().filter(|_| torques[lane].is_some());
+            if let Some(strode) = strode.filter(|strode| strode.trusted[lane]) {
+                simulation.motion = taken(&strode.end, lane);
+                simulation.world.ledger.add(&strode.work.of(lane));
+                if let Stepper::Smooth(integrator) = &mut simulation.world.stepper {
+                    integrator.steps += u64::from(self.parts);
                 }
-                _ => {
-                    let was_elsewhere = std::mem::replace(&mut self.strode[lane], false);
-                    if let (Stepper::Smooth(integrator), true) =
-                        (&mut simulation.world.stepper, was_elsewhere)
-                    {
-                        integrator.forget();
-                    }
-                    ended[lane] = simulation.advance().err();
-                    if let (Stepper::Smooth(integrator), true) = (&simulation.world.stepper, strode.is_some())
-                    {
-                        self.strides.resume(lane, integrator);
-                    }
-                    replace(&mut end, lane, &simulation.motion);
-                }
+                (rider.strode, rider.failed) = (true, rider.failed.saturating_sub(1));
+                continue;
             }
+            rider.failed += u32::from(strode.is_some());
+            if rider.failed >= MANY {
+                (rider.failed, rider.rests) = (MANY - 1, (k + REST).next_multiple_of(RENEWED));
+            }
+            let was_elsewhere = std::mem::take(&mut rider.strode);
+            if let (Stepper::Smooth(integrator), true) = (&mut simulation.world.stepper, was_elsewhere) {
+                integrator.forget();
+            }
+            ended[lane] = simulation.advance().err();
+            if let Stepper::Smooth(integrator) = &simulation.world.stepper {
+                self.strides.resume(lane, integrator);
+            }
+            replace(&mut end, lane, &simulation.motion);
         }
         self.energy = self.plants.total_energy(&end).to_array();
         ended
     }
 }
 
+/// The loop in a lane; the first in those beyond.
+fn one<L: SideBySide<N>, const N: usize>(
+    loops: &[Held<L, N>],
+    lane: usize,
+) -> &Simulation<L, AnyReference<f64, N>, HeldLaw<N>, AnyEstimator<f64, N>, N> {
+    &loops.get(lane).unwrap_or(&loops[0]).simulation
+}
+
+/// How they move.
+fn motions<L: SideBySide<N>, const N: usize>(loops: &[Held<L, N>]) -> Motion<Several, N> {
+    let each: Each<&Motion<f64, N>> = array::from_fn(|lane| &one(loops, lane).motion);
+    lanes::motion(&each)
+}
+
 impl<const N: usize> Gauss<N> {
+    fn renew(&mut self) {
+        match self {
+            Self::Four(strides) => strides.renew(),
+            Self::Eight(strides) => strides.renew(),
+        }
+    }
+
     fn advance<L: flexure_core::model::Links<Several, N>>(
         &mut self,
         plants: &Plant<L, N, Several>,

@@ -4,7 +4,7 @@ use flexure_core::linalg::Vector;
 use flexure_core::scalar::Lanes;
 
 use super::robots::{Kind, OneLink};
-use super::{EFFORT, PERIOD, TOLERANCE, together};
+use super::{EFFORT, PERIOD, TOLERANCE, redone, together};
 use crate::plant::Plant;
 use crate::simulate::gauss::Integrator;
 use crate::simulate::strides::{Strides, taken};
@@ -21,7 +21,7 @@ fn leads_on<const S: usize>(step: f64, close: f64) {
         let strode = strides.advance(&plant, &x, &u.map(Lanes::splat), PERIOD);
         let own = strides.past;
         integrator.step = step;
-        strides.redo(0, &mut integrator, &plants[0], taken(&x, 0), u, PERIOD).expect("bounded");
+        redone(&mut strides, 0, &mut integrator, &plants[0], taken(&x, 0), u);
         for (own, found) in [(own.link, strides.past.link), (own.motor, strides.past.motor)] {
             for (own, found) in own.iter().zip(&found) {
                 let [[own, other], [found, untouched]] = [own, found].map(|v| v[0].to_array());
@@ -48,6 +48,6 @@ fn a_lane_that_was_done_again_leads_on() {
     let x = together([0, 2].map(OneLink::start));
     strides.advance(&plant, &x, &Vector::ZERO, PERIOD);
     let mut integrator = Integrator { step: 1e-4, ..Integrator::new(1e-16) };
-    strides.redo(0, &mut integrator, &plants[0], taken(&x, 0), Vector::ZERO, PERIOD).expect("bounded");
+    redone(&mut strides, 0, &mut integrator, &plants[0], taken(&x, 0), Vector::ZERO);
     assert!(strides.past.link[0][0].to_array()[0] == 0.0);
 }
