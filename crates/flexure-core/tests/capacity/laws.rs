@@ -114,7 +114,7 @@ fn torque<C: Scalar + PartialEq, T: Over<C>, A: Padded, const K: usize, const N:
     A::At<C, N>: ControlLaw<C, N>,
 {
     let r = &mut Numbers(11);
-    let data = flexible(tree::<f64, K, K>(4, crate::capacity::FLOAT), r);
+    let data = flexible(tree::<f64, K, K>(4, crate::FLOAT), r);
     let (exact, roomy) = (robot::<C, K, K>(4, &data, constants), robot::<C, K, N>(4, &data, constants));
     for _ in 0..3 {
         let x = Motion {
@@ -177,14 +177,14 @@ fn v_cbc<C: Scalar + PartialEq, T: Over<C>, const K: usize, const N: usize>(
 
 #[test]
 fn every_law() {
-    all::<f64, f64, 3, 4>(crate::capacity::FLOAT, crate::capacity::number_f64);
-    all::<f64, f64, 7, 16>(crate::capacity::FLOAT, crate::capacity::number_f64);
+    all::<f64, f64, 3, 4>(crate::FLOAT, crate::number_f64);
+    all::<f64, f64, 7, 16>(crate::FLOAT, crate::number_f64);
 }
 
 #[test]
 fn the_virtual_law_on_every_number() {
     on_numbers!(v_cbc::<3, 4>);
-    v_cbc::<f64, f64, 6, 8>(crate::capacity::FLOAT, crate::capacity::number_f64);
+    v_cbc::<f64, f64, 6, 8>(crate::FLOAT, crate::number_f64);
 }
 
 /// Without [`CoupledTanh::of_joints`] real errors would move phantoms, and n would be the capacity.

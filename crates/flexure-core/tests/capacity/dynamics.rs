@@ -59,7 +59,7 @@ fn model<C: Scalar + PartialEq, T: Over<C>, const K: usize, const N: usize>(
     number: Random<T>,
 ) {
     let r = &mut Numbers(5);
-    let data = flexible(tree::<f64, K, K>(2, crate::capacity::FLOAT), r);
+    let data = flexible(tree::<f64, K, K>(2, crate::FLOAT), r);
     let (exact, roomy) = (robot::<C, K, K>(2, &data, constants), robot::<C, K, N>(2, &data, constants));
     let x = flexure_core::model::Motion {
         q_l: random::<T, K>(r, number, 1.0),
@@ -121,7 +121,7 @@ fn recursions_on_every_number() {
 #[test]
 fn recursions_at_many_sizes() {
     fn at<const K: usize, const N: usize>() {
-        recursions::<f64, f64, K, N>(crate::capacity::FLOAT, crate::capacity::number_f64);
+        recursions::<f64, f64, K, N>(crate::FLOAT, crate::number_f64);
     }
     at::<1, 1>();
     at::<2, 4>();
@@ -137,6 +137,6 @@ fn recursions_at_many_sizes() {
 #[test]
 fn models() {
     on_numbers!(model::<3, 4>);
-    model::<f64, f64, 5, 8>(crate::capacity::FLOAT, crate::capacity::number_f64);
-    model::<f64, f64, 7, 16>(crate::capacity::FLOAT, crate::capacity::number_f64);
+    model::<f64, f64, 5, 8>(crate::FLOAT, crate::number_f64);
+    model::<f64, f64, 7, 16>(crate::FLOAT, crate::number_f64);
 }

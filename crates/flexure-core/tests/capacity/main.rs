@@ -1,4 +1,8 @@
 //! A tree with room for more joints than it has is the tree of exact size, to the last bit, next to phantom joints.
+//!
+//! A program of its own: every recursion and law on every number in many sizes is, with the other tests, more than LLVM 22 compiles.
+
+#![cfg(feature = "interval")]
 
 use std::fmt::Debug;
 
@@ -10,28 +14,24 @@ use flexure_core::scalar::{Dual, Interval, Jet, Scalar};
 /// `check::<constants, numbers, joints, capacity>(constant, float, number)` on five kinds of numbers.
 macro_rules! on_numbers {
     ($check:ident::<$joints:literal, $capacity:literal>) => {{
-        $check::<f64, f64, $joints, $capacity>($crate::capacity::FLOAT, $crate::capacity::number_f64);
-        $check::<f32, f32, $joints, $capacity>($crate::capacity::NARROW, $crate::capacity::number_f32);
-        $check::<f64, $crate::capacity::Jet<f64, 3>, $joints, $capacity>(
-            $crate::capacity::FLOAT,
-            $crate::capacity::number_jet,
-        );
-        $check::<f64, $crate::capacity::Dual<f64, 2>, $joints, $capacity>(
-            $crate::capacity::FLOAT,
-            $crate::capacity::number_dual,
-        );
-        $check::<$crate::capacity::Interval, $crate::capacity::Interval, $joints, $capacity>(
-            $crate::capacity::ENCLOSED,
-            $crate::capacity::number_interval,
+        $check::<f64, f64, $joints, $capacity>($crate::FLOAT, $crate::number_f64);
+        $check::<f32, f32, $joints, $capacity>($crate::NARROW, $crate::number_f32);
+        $check::<f64, $crate::Jet<f64, 3>, $joints, $capacity>($crate::FLOAT, $crate::number_jet);
+        $check::<f64, $crate::Dual<f64, 2>, $joints, $capacity>($crate::FLOAT, $crate::number_dual);
+        $check::<$crate::Interval, $crate::Interval, $joints, $capacity>(
+            $crate::ENCLOSED,
+            $crate::number_interval,
         );
     }};
 }
 
+#[path = "../suite/common/mod.rs"]
+#[allow(dead_code, unused_macros, unused_imports, reason = "shared with the suite, which uses all of it")]
+mod common;
 mod dynamics;
-
 mod laws;
-
 mod loops;
+
 use crate::common::{GRAVITY, IDENTITY, Numbers, branched_bodies};
 
 /// The constant of a float, and a float near a constant.

@@ -22,8 +22,8 @@ fn course<E: Estimator<f64, N>, const N: usize>(
     make: impl Fn(&Vector<f64, N>) -> E,
 ) -> (Vec<String>, Motion<f64, N>, Vector<f64, N>) {
     let r = &mut Numbers(31);
-    let data = flexible(tree::<f64, JOINTS, JOINTS>(6, crate::capacity::FLOAT), r);
-    let robot = robot::<f64, JOINTS, N>(6, &data, crate::capacity::FLOAT);
+    let data = flexible(tree::<f64, JOINTS, JOINTS>(6, crate::FLOAT), r);
+    let robot = robot::<f64, JOINTS, N>(6, &data, crate::FLOAT);
     let three = |r: &mut Numbers, fill: f64| fit::<f64, JOINTS, N>(&r.between(5.0, 20.0), fill);
     let law = flexure_core::control::RigidVcbc {
         link: flexure_core::control::LinkGains {
