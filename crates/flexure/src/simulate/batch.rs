@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use crate::files::Problems;
 use crate::lanes::Each;
 use crate::scenario::Scenario;
+use crate::simulate::held::opened_together;
 use crate::simulate::in_step::{self, InStep};
 use crate::simulate::interface::Loop;
 use crate::simulate::simulation::Divergence;
@@ -46,7 +47,7 @@ impl Batch {
         }
         let mut batch = Self { registers: Vec::new(), places: vec![(0, 0); scenarios.len()] };
         for group in in_step::groups(scenarios) {
-            let opened = in_step::opened(group.iter().map(|&place| (place, scenarios[place])).collect())?;
+            let opened = opened_together(group.iter().map(|&place| (place, scenarios[place])).collect())?;
             if let Some((_, problems)) = opened.refused.into_iter().next() {
                 return Err(problems);
             }

@@ -20,6 +20,7 @@ use crate::scenario::Scenario;
 use crate::simulate::assembly;
 use crate::simulate::controller::Feedback as _;
 use crate::simulate::fault_log::FaultLog;
+use crate::simulate::in_step::{Opened, grouped};
 use crate::simulate::interface::{Commanded, Errors, Loop, Observed, Signal};
 use crate::simulate::lanes;
 use crate::simulate::names::Names;
@@ -58,6 +59,29 @@ impl Scenario {
 enum Own {
     Law(OwnLaw),
     Shaping(Box<VcbcGains>, OwnShaping),
+}
+
+/// The loops of at most [`WIDTH`](crate::lanes::WIDTH) scenarios that may go together: in one group, if their structures allow it.
+///
+/// # Errors
+/// If their robots have more joints than this program was built for.
+pub(super) fn opened_together<K>(scenarios: Vec<(K, &Scenario)>) -> Result<Opened<K>, Problems> {
+    let mut opened = Opened { groups: Vec::new(), refused: Vec::new() };
+    let Some((_, first)) = scenarios.first() else { return Ok(opened) };
+    sized!(&first.robot, L, N => {
+        let (mut keys, mut loops) = (Vec::new(), Vec::new());
+        for (key, scenario) in scenarios {
+            match Held::<L<f64>, N>::of(scenario) {
+                Ok(held) => {
+                    keys.push(key);
+                    loops.push(held);
+                }
+                Err(problems) => opened.refused.push((key, problems)),
+            }
+        }
+        grouped(keys, loops, &mut opened);
+    });
+    Ok(opened)
 }
 
 /// The loop of `scenario` with its own law, or with that of the caller.

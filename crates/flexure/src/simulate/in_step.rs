@@ -17,7 +17,6 @@ use crate::files::Problems;
 use crate::lanes::{self, Each, Several, WIDTH};
 use crate::laws::{AnyLaw, any_law};
 use crate::robot::links::{FromFile, SideBySide};
-use crate::robot::sized::sized;
 use crate::scenario::{self, Scenario};
 use crate::simulate::controller::Sensed;
 use crate::simulate::held::Held;
@@ -79,31 +78,8 @@ pub(crate) struct Opened<K> {
     pub(crate) refused: Vec<(K, Problems)>,
 }
 
-/// The loops of at most [`WIDTH`] scenarios that may go together: in one group, if their structures allow it.
-///
-/// # Errors
-/// If their robots have more joints than this program was built for.
-pub(crate) fn opened<K>(scenarios: Vec<(K, &Scenario)>) -> Result<Opened<K>, Problems> {
-    let mut opened = Opened { groups: Vec::new(), refused: Vec::new() };
-    let Some((_, first)) = scenarios.first() else { return Ok(opened) };
-    sized!(&first.robot, L, N => {
-        let (mut keys, mut loops) = (Vec::new(), Vec::new());
-        for (key, scenario) in scenarios {
-            match Held::<L<f64>, N>::of(scenario) {
-                Ok(held) => {
-                    keys.push(key);
-                    loops.push(held);
-                }
-                Err(problems) => opened.refused.push((key, problems)),
-            }
-        }
-        grouped(keys, loops, &mut opened);
-    });
-    Ok(opened)
-}
-
 /// Puts loops into groups: of one gait, and one structure, or each into one of its own.
-fn grouped<K, L, const N: usize>(keys: Vec<K>, loops: Vec<Held<L, N>>, opened: &mut Opened<K>)
+pub(super) fn grouped<K, L, const N: usize>(keys: Vec<K>, loops: Vec<Held<L, N>>, opened: &mut Opened<K>)
 where
     L: FromFile<f64, N> + SideBySide<N> + Clone + Send + Sync + 'static,
 {

@@ -8,6 +8,7 @@ use crate::progress::PartProgress;
 use crate::scenario::Scenario;
 use crate::simulate::course::Course;
 use crate::simulate::criteria::Criteria;
+use crate::simulate::held::opened_together;
 use crate::simulate::in_step::{self, InStep};
 use crate::simulate::run::{Run, measure_watched};
 
@@ -44,7 +45,7 @@ fn of_group(
     jobs: &[Job<'_>],
     progress: PartProgress<'_>,
 ) -> Vec<(usize, Result<Run, Problems>)> {
-    let opened = match in_step::opened(group.iter().map(|&place| (place, jobs[place].0)).collect()) {
+    let opened = match opened_together(group.iter().map(|&place| (place, jobs[place].0)).collect()) {
         Ok(opened) => opened,
         Err(problems) => return group.iter().map(|&place| (place, Err(problems.clone()))).collect(),
     };

@@ -125,8 +125,10 @@ fn the_file_is_the_loop_that_was_tuned() {
     read.duration = 0.5;
     let summary = read.simulate().expect("a run").summary;
     let evidence = &found.evidence.runs[0];
-    assert_eq!(summary.rms_e_l.to_bits(), evidence.rms_e_l.to_bits());
-    assert_eq!(summary.max_abs_u_m.to_bits(), evidence.max_abs_u_m.to_bits());
+    // The evidence is of loops side by side: sines and tanh in lanes have other last digits.
+    let same = |alone: f64, together: f64| (alone - together).abs() <= 1e-9 * together;
+    assert!(same(summary.rms_e_l, evidence.rms_e_l), "{} {}", summary.rms_e_l, evidence.rms_e_l);
+    assert!(same(summary.max_abs_u_m, evidence.max_abs_u_m));
 }
 
 /// Parts of the SPEC stand in the place of those of the scenario; what it does not name stays.

@@ -105,7 +105,9 @@ fn every_file_is_a_module() {
         let beside = fs::read_dir(suite.parent().expect("tests")).expect("readable");
         for path in beside.map(|entry| entry.expect("readable").path()) {
             let another = path.extension().is_some_and(|end| end == "rs") || path.join("main.rs").is_file();
-            assert!(!another || path == suite, "{} is not in the suite", path.display());
+            // More than the compiler survives beside the others.
+            let apart = path.ends_with("flexure-core/tests/capacity");
+            assert!(!another || path == suite || apart, "{} is not in the suite", path.display());
         }
         for file in files(&suite) {
             let module = module(&suite, &file);

@@ -401,30 +401,6 @@ fn linear_joints_are_solved_by_one_correction() {
     is_solved_at_once::<4>();
 }
 
-/// A matrix from another posture does not solve the equations of this one, and that is said where the error of the step is small.
-#[test]
-fn what_an_old_matrix_does_not_solve_is_not_trusted() {
-    let plants = [0, 1].map(TwoLink::plant);
-    let plant = Plant::together(TwoLink::links([0, 1]), plants.each_ref()).expect("smooth");
-    let mut strides = Strides::<4, 2, 2>::new(TOLERANCE, Effort { kept: 1000, ..EFFORT });
-    let mut x = together([0, 1].map(TwoLink::start));
-    let turned = |one: Motion<f64, 2>, angle: f64| {
-        let angle = Vector([0.0, angle]);
-        Motion { q_l: one.q_l + angle, q_m: one.q_m + angle, ..one }
-    };
-    let mut trusted = Vec::new();
-    for _ in 0..100 {
-        // Slowly enough that polynomials lead on.
-        let one = turned(taken(&x, 0), 0.03);
-        replace(&mut x, 0, &one);
-        let strode = strides.advance(&plant, &x, &Vector::ZERO, PERIOD);
-        x = strode.end;
-        trusted.push((strode.error.to_array()[0] <= TOLERANCE, strode.trusted));
-    }
-    assert!(trusted[60..].iter().any(|&(accurate, trusted)| accurate && !trusted[0]));
-    assert!(trusted[60..].iter().all(|&(_, trusted)| trusted[1]));
-}
-
 #[test]
 fn rough_plants_stay_with_the_stepper() {
     let plant = TwoLink::plant(0);
