@@ -16,7 +16,7 @@ use crate::simulate::run::{Run, measure_watched};
 pub type Job<'a> = (&'a Scenario, &'a Criteria);
 
 /// Simulates scenarios for their figures alone, as [`measure_watched`] each, those that are alike several to a SIMD register
-/// ([`lanes_of`]). What comes of one does not depend on the others. `progress` is told the fraction done of each by its place.
+/// ([`SIDE_BY_SIDE`]). What comes of one does not depend on the others. `progress` is told the fraction done of each by its place.
 ///
 /// Beside [`measure_watched`] numbers differ by what sines and tanh in lanes differ by, some units in the last place
 /// ([`Lanes`](flexure_core::scalar::Lanes)), and by what a loop makes of that: where it is stable, by less than the integrator's tolerance.

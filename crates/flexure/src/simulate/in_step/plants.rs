@@ -29,7 +29,7 @@ pub(super) fn gait<L: SideBySide<N>, const N: usize>(held: &Held<L, N>) -> Gait 
 
 /// Plants side by side, moved by strides; what these do not resolve, each by its own integrator.
 pub(super) struct Plants<L: SideBySide<N>, const N: usize> {
-    plants: Plant<L::Several, N, Several>,
+    robots: Plant<L::Several, N, Several>,
     strides: Gauss<N>,
     parts: u32,
     lanes: Each<Rider>,
@@ -72,7 +72,7 @@ impl<L: SideBySide<N>, const N: usize> Plants<L, N> {
         let links = L::side_by_side(&plants.map(|plant| &plant.robot.links))?;
         let tolerance = loops[0].simulation.timing.tolerance;
         Some(Self {
-            plants: Plant::together(links, plants)?,
+            robots: Plant::together(links, plants)?,
             strides: match order {
                 Order::Four => Gauss::Four(Box::new(Strides::new(tolerance, effort))),
                 Order::Eight => Gauss::Eight(Box::new(Strides::new(tolerance, effort))),
@@ -94,7 +94,7 @@ impl<L: SideBySide<N>, const N: usize> Plants<L, N> {
         let Some(k) =
             loops.iter().zip(going).find_map(|(held, going)| held.simulation.last_tick().filter(|_| going))
         else {
-            self.energy = self.plants.total_energy(&motions(loops)).to_array();
+            self.energy = self.robots.total_energy(&motions(loops)).to_array();
             return ended;
         };
         let mut torques: Each<Option<Vector<f64, N>>> = [None; WIDTH];
@@ -110,10 +110,10 @@ impl<L: SideBySide<N>, const N: usize> Plants<L, N> {
                 self.strides.renew();
             }
             let pushed: Each<Vector<f64, N>> = array::from_fn(|lane| one(loops, lane).pushed());
-            self.plants.external = lanes::vector(&pushed.each_ref());
+            self.robots.external = lanes::vector(&pushed.each_ref());
             let u_m = torques.map(|torque| torque.unwrap_or(Vector::ZERO));
             let u_m = lanes::vector(&u_m.each_ref());
-            self.strides.advance(&self.plants, &end, &u_m, loops[0].simulation.timing.period)
+            self.strides.advance(&self.robots, &end, &u_m, loops[0].simulation.timing.period)
         });
         if let Some(strode) = &strode {
             end = strode.end;
@@ -144,7 +144,7 @@ impl<L: SideBySide<N>, const N: usize> Plants<L, N> {
             }
             replace(&mut end, lane, &simulation.motion);
         }
-        self.energy = self.plants.total_energy(&end).to_array();
+        self.energy = self.robots.total_energy(&end).to_array();
         ended
     }
 }
