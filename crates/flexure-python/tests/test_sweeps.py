@@ -82,7 +82,9 @@ class TestRows:
         assert columns["row"].tolist() == list(range(24))
         assert np.isnan(columns["diverged_at"]).all()
         run = rows.replay(13)
-        assert run.summary["rms_e_l"] == columns["rms_e_l"][13] == rows.sweep.row(13)["rms_e_l"]
+        # Rows run side by side: sines and tanh in lanes have other last digits than those of a loop alone.
+        assert run.summary["rms_e_l"] == pytest.approx(columns["rms_e_l"][13], rel=1e-8)
+        assert columns["rms_e_l"][13] == rows.sweep.row(13)["rms_e_l"]
         assert run.scenario.robot.stiffness == columns["robot.joints.stiffness"][13] * flexure.Robot("pendulum-1dof").stiffness
         assert rows.to_pandas()["status"].isin(["follows", "strays"]).all()
 
@@ -149,7 +151,7 @@ class TestRows:
         scenario = flexure.follow("pendulum-tanh", lambda t: [0.2 * np.sin(3 * t)])
         sweep = flexure.Sweep.of(scenario, {"robot.joints.stiffness": {"values": [0.5, 2.0], "relative": True}}, name="soft")
         rows = flexure.sweep(sweep, tmp_path / "a")
-        assert rows.replay(0).summary["rms_e_l"] == rows.columns("rms_e_l")["rms_e_l"][0]
+        assert rows.replay(0).summary["rms_e_l"] == pytest.approx(rows.columns("rms_e_l")["rms_e_l"][0], rel=1e-8)
         assert (tmp_path / "a" / "sweep.json").read_text().count("Python.csv") >= 1
 
     def test_what_is_wrong_in_arguments(self) -> None:
