@@ -58,7 +58,9 @@ impl<S: Asking> State<S> {
     /// Has `search` ask for its next run.
     fn put(&mut self, place: usize, mut search: S) {
         if let Some(scenario) = search.ask() {
-            self.waiting.push((place, search, scenario));
+            // The first goes first: who begins with the longest is not left with it alone.
+            let at = self.waiting.partition_point(|(other, ..)| *other < place);
+            self.waiting.insert(at, (place, search, scenario));
         } else {
             self.done[place] = Some(search);
             self.left -= 1;
