@@ -6,7 +6,6 @@ mod friction;
 mod plant;
 mod push;
 mod spring;
-#[allow(dead_code, reason = "for blocks of loops")]
 mod together;
 
 pub(crate) use departures::Departures;
