@@ -43,12 +43,12 @@ fn time(name: &str, file: &str, out: &str, milliseconds: u64) -> Result<(), Box<
         }
         Work::Motion(mut motion) => {
             let result = motion.run(motions::SECOND)?;
-            let mut failure = Ok(());
+            let (mut failure, pass) = (Ok(()), motion.pass);
             let ns = clock::least(milliseconds, &mut || {
-                failure = motion.run(motions::PASS).map(drop);
+                failure = motion.run(pass).map(drop);
             });
             failure?;
-            (ns / (motions::PASS * motion.robots) as f64, result)
+            (ns / (pass * motion.robots) as f64, result)
         }
     };
     fs::write(out, results.iter().flat_map(|x| x.to_ne_bytes()).collect::<Vec<_>>())?;

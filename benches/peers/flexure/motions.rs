@@ -10,9 +10,9 @@ use flexure_core::model::{self, Fjr, Links};
 
 use crate::model::{panda, two_link};
 
-/// Milliseconds that are timed at once.
-pub const PASS: usize = 20;
-/// Milliseconds after which motions are compared.
+/// Milliseconds of a loop that are timed at once.
+const PASS: usize = 20;
+/// Milliseconds after which motions are compared; those of a plant that are timed at once, because its first ones from rest take twice the time.
 pub const SECOND: usize = 1000;
 
 /// Goes on for so many milliseconds.
@@ -20,14 +20,16 @@ pub struct Motion {
     on: Box<dyn FnMut(usize) -> Reached>,
     /// How many robots move.
     pub robots: usize,
+    /// Periods that are timed at once.
+    pub pass: usize,
 }
 
 /// Where the motion is then.
 type Reached = Result<Vec<f64>, Box<dyn Error>>;
 
 impl Motion {
-    fn of_one(on: impl FnMut(usize) -> Reached + 'static) -> Self {
-        Self { on: Box::new(on), robots: 1 }
+    fn of_one(pass: usize, on: impl FnMut(usize) -> Reached + 'static) -> Self {
+        Self { on: Box::new(on), robots: 1, pass }
     }
 
     /// Where the motion is after `periods` of a millisecond.
@@ -79,7 +81,7 @@ where
         _ => Stepper::new(&plant, TOLERANCE, Stepping::<N>::STEP),
     };
     let pieces: u32 = if method == "tight" { 10 } else { 1 };
-    Motion::of_one(move |periods| {
+    Motion::of_one(SECOND, move |periods| {
         let (mut x, mut stepper, mut ledger) = (start, fresh.clone(), Ledger::default());
         for period in 0..periods {
             let t = 1e-3 * period as f64;
@@ -108,7 +110,7 @@ fn closed(scenario: &str) -> Result<Motion, Box<dyn Error>> {
         held.step()?;
     }
     let start = held.state();
-    Ok(Motion::of_one(move |periods| {
+    Ok(Motion::of_one(PASS, move |periods| {
         held.restore(&start)?;
         for _ in 0..periods {
             held.step()?;
@@ -132,5 +134,5 @@ fn batch(scenario: &str) -> Result<Motion, Box<dyn Error>> {
             None => Ok(Vec::new()),
         }
     };
-    Ok(Motion { on: Box::new(on), robots: LOOPS })
+    Ok(Motion { on: Box::new(on), robots: LOOPS, pass: PASS })
 }

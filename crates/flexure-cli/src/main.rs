@@ -11,12 +11,26 @@ mod progress;
 use std::process::ExitCode;
 
 use flexure::files::{Outside, Reading};
+use flexure::processor;
 
 use args::{Cli, Command};
 use commands::print;
 use failure::Failure;
 
 fn main() -> ExitCode {
+    if let Some(lacking) = processor::lacking() {
+        eprintln!(
+            "flexure: this processor has no {lacking}, which the program was built for; build it where it is to run, with \
+             RUSTFLAGS=\"-C target-cpu=native\""
+        );
+        return ExitCode::from(2);
+    }
+    answered()
+}
+
+/// Everything else: not a part of [`main`], so that nothing of it comes before the question there.
+#[inline(never)]
+fn answered() -> ExitCode {
     failure::install();
     let cli = match grammar::parsed() {
         Ok(cli) => cli,

@@ -26,6 +26,10 @@ use pyo3::prelude::*;
 /// The compiled half of the package.
 #[pymodule]
 mod _flexure {
+    use flexure::processor;
+    use pyo3::exceptions::PyImportError;
+    use pyo3::prelude::*;
+
     #[pymodule_export]
     use super::controller::Controller;
     #[pymodule_export]
@@ -52,6 +56,17 @@ mod _flexure {
     use super::sweep::Sweep;
     #[pymodule_export]
     use super::watched::panic;
+
+    /// Refuses a processor that lacks what the module was built for.
+    #[pymodule_init]
+    fn init(_: &Bound<'_, PyModule>) -> PyResult<()> {
+        match processor::lacking() {
+            None => Ok(()),
+            Some(lacking) => Err(PyImportError::new_err(format!(
+                "this processor has no {lacking}, which flexure was built for; build the wheel with RUSTFLAGS=\"-C target-cpu=x86-64\""
+            ))),
+        }
+    }
 
     /// The version of the package.
     #[pymodule_export]

@@ -18,6 +18,7 @@ pub mod linalg;
 pub mod logs;
 pub mod margins;
 pub mod plant;
+pub mod processor;
 pub mod progress;
 pub mod prove;
 pub mod references;

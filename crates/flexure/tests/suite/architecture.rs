@@ -5,11 +5,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms of `src`, from the bottom up: each may use those above it in this list, and none below.
-const ROOMS: [&str; 30] = [
+const ROOMS: [&str; 31] = [
     "units",         // how numbers are measured and how that is written
     "files",         // text with places, problems that point at it, files that appear whole
     "linalg",        // matrices of run-time sizes
     "lanes",         // numbers side by side in a register
+    "processor",     // does it have what the program was built for
     "verify",        // the checker of certificates
     "progress",      // how far long jobs are
     "robot",         // robot files, URDFs, Arm
