@@ -47,12 +47,15 @@ pub enum Command {
     /// Run the paper's experiments: table, figures, traces and report.html.
     Reproduce(Output),
     #[command(
-        after_help = "Examples:\n  flexure run two-link-tanh-smooth --out out\n  flexure run two-link-hardware --columns 'q_l*,u_m?' --every 10"
+        after_help = "Examples:\n  flexure run two-link-tanh-smooth --out out\n  flexure run two-link-hardware --columns 'q_l*,u_m?' --every 10\n  flexure run --view two-link-linear-smooth two-link-tanh-smooth"
     )]
     /// Simulate one closed loop: summary, trace and figure.
     Run {
         /// Scenario file, or the name of a built-in scenario.
         scenario: String,
+        /// With --view: another one, for the same page.
+        #[arg(value_name = "BESIDE", requires = "view")]
+        beside: Option<String>,
         #[command(flatten)]
         traced: Traced,
     },
@@ -174,6 +177,9 @@ pub struct Traced {
     /// Write every Nth row of the trace, from the first on: one in N control periods. Summary and figure see them all.
     #[arg(long, value_name = "N", default_value = "1", value_parser = every, allow_negative_numbers = true)]
     pub every: NonZeroU32,
+    /// Write a page with the robot in motion, too: one file for any browser, which needs no network.
+    #[arg(long)]
+    pub view: bool,
 }
 
 #[derive(Debug, Args)]
@@ -326,6 +332,9 @@ pub struct Margins {
     /// With --controllers: seed of the search.
     #[arg(long, default_value_t = 0, requires = "controllers")]
     pub seed: u64,
+    /// Write a page and a figure into this folder, too; created if missing.
+    #[arg(long, value_name = "FOLDER")]
+    pub out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

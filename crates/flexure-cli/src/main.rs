@@ -66,7 +66,9 @@ fn dispatch(command: Command, reading: Reading<'_>, json: bool) -> Result<(), Fa
     }
     match command {
         Command::Reproduce(output) => commands::reproduce(&output.out, json),
-        Command::Run { scenario, traced } => commands::run(&scenario, reading, &traced, json),
+        Command::Run { scenario, beside, traced } => {
+            commands::run(&scenario, beside.as_deref(), reading, &traced, json)
+        }
         Command::Compare(options) => commands::compare(&options, reading, json),
         Command::Eval { scenario, states } => commands::eval(&scenario, reading, &states, json),
         Command::Model { robot, states } => commands::model(&robot, reading.outside, &states, json),

@@ -59,7 +59,7 @@ mod _flexure {
 
     /// Refuses a processor that lacks what the module was built for.
     #[pymodule_init]
-    fn init(_: &Bound<'_, PyModule>) -> PyResult<()> {
+    fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {
         match processor::lacking() {
             None => Ok(()),
             Some(lacking) => Err(PyImportError::new_err(format!(

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use flexure::check::Findings;
-use flexure::files::prepare;
+use flexure::files::{Unfinished, prepare};
 use flexure::progress::Parts;
 use flexure::prove::summary::ProofSummary;
 use flexure::reproduce::{
@@ -112,13 +112,13 @@ pub fn reproduce<'py>(
         return Err(PyKeyboardInterrupt::new_err(()));
     }
     let certified = py.detach(certificates).map_err(|problems| raised(py, &problems))?;
-    let write = || {
+    let write = || -> Result<PathBuf, Unfinished> {
         let mut written = runs.iter().zip(traces);
         written.try_for_each(|(experiment, trace)| write_experiment(experiment, trace).map(drop))?;
         write_certificates(&out, &certified)?;
         write_report(&out, &runs, &certified)
     };
-    let report = py.detach(write).map_err(unwritten)?;
+    let report = py.detach(write).map_err(|reason| unfinished(py, reason))?;
     let summaries: Vec<&Summary> = runs.iter().map(|experiment| &experiment.run.summary).collect();
     let certificates: Vec<ProofSummary> = certified.iter().map(Certified::summary).collect();
     let found = PyDict::new(py);

@@ -1,11 +1,13 @@
 //! `flexure margins`: how much a loop bears.
 
+use std::path::PathBuf;
+
 use flexure::compare::{Entrant, check_budget, entrants};
 use flexure::files::number::significant;
-use flexure::files::{Problems, Reading};
+use flexure::files::{Problems, Reading, prepare};
 use flexure::margins::{Margins as Found, margins as margins_of};
 use flexure::progress::{PartProgress, Progress as Progressing};
-use flexure::report::margins_table;
+use flexure::report::{margins_table, write_margins};
 use flexure::scenario::{Scenario, load_scenario_with};
 use flexure::tune::tune;
 use serde::Serialize;
@@ -22,6 +24,7 @@ const RUNS: f64 = 60.0;
 #[derive(Serialize)]
 struct Outcome {
     loops: Vec<Found>,
+    files: Vec<PathBuf>,
 }
 
 pub fn margins(options: &Margins, reading: Reading<'_>, json: bool) -> Result<(), Failure> {
@@ -29,21 +32,27 @@ pub fn margins(options: &Margins, reading: Reading<'_>, json: bool) -> Result<()
     let chosen = if options.controllers.is_empty() { Vec::new() } else { entrants(&options.controllers)? };
     let scenario = load_scenario_with(&options.scenario, reading)?;
     say(&scenario.warnings);
+    options.out.as_deref().map_or(Ok(()), prepare)?;
     let (loops, is_whole) = {
         let each = [options.budget as f64, RUNS];
         let weights = if chosen.is_empty() { vec![RUNS] } else { each.repeat(chosen.len()) };
         let progress = Progress::new(&scenario.name, weights);
         measured(&scenario, &chosen, options, &|part, fraction| progress.set(part, fraction))?
     };
+    let files = match &options.out {
+        Some(folder) => write_margins(folder, &scenario, &loops)?,
+        None => Vec::new(),
+    };
     let words = "broken off: as far as ≥ and ≤ say the loop was seen to hold";
     if json {
-        print::json(&Outcome { loops: loops.clone() })?;
+        print::json(&Outcome { loops: loops.clone(), files })?;
     } else {
         if !is_whole {
             print::line(words)?;
         }
         print::line(&margins_table(&loops, print::columns()))?;
         loops.iter().try_for_each(show)?;
+        files.iter().try_for_each(|file| print::line(&format!("wrote {}", file.display())))?;
     }
     if !is_whole {
         return Err(Failure::interrupted(words.to_owned(), "what is not there was not measured"));

@@ -1,13 +1,13 @@
 //! `flexure run`: one closed loop.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use flexure::feasible;
 use flexure::files::number::short;
 use flexure::files::{Problem, Reading, prepare};
 use flexure::imperfections::Imperfection;
 use flexure::prove::standing::outside_of_proofs;
-use flexure::report::summary_table;
+use flexure::report::{summary_table, write_view};
 use flexure::reproduce::{Experiment, trace_file, write_experiment};
 use flexure::sampled::{Sampled, not_looked_at};
 use flexure::scenario::{Scenario, load_scenario_with};
@@ -34,6 +34,13 @@ pub struct Outcome<'a> {
     pub files: Vec<PathBuf>,
 }
 
+/// Two runs, and the page that shows both.
+#[derive(Serialize)]
+struct Beside<'a> {
+    runs: Vec<Outcome<'a>>,
+    files: Vec<PathBuf>,
+}
+
 impl<'a> Outcome<'a> {
     pub fn new(experiment: &'a Experiment, files: Vec<PathBuf>) -> Self {
         let diverged_at = experiment.run.divergence.map(|divergence| divergence.time);
@@ -48,15 +55,86 @@ impl<'a> Outcome<'a> {
     }
 }
 
-pub fn run(scenario: &str, reading: Reading<'_>, traced: &Traced, json: bool) -> Result<(), Failure> {
-    told(load_scenario_with(scenario, reading)?, None, traced, json)
+pub fn run(
+    scenario: &str,
+    beside: Option<&str>,
+    reading: Reading<'_>,
+    traced: &Traced,
+    json: bool,
+) -> Result<(), Failure> {
+    let mut scenarios = Vec::new();
+    for name in [Some(scenario), beside].into_iter().flatten() {
+        scenarios.push(load_scenario_with(name, reading)?);
+    }
+    if let [one, other] = scenarios.as_slice()
+        && one.name == other.name
+    {
+        let message = format!("both scenarios are called {}, and so would be their files", one.name);
+        return Err(Failure::input(
+            "usage",
+            message,
+            "a scenario is called as its file: copy one under another name",
+        ));
+    }
+    told(scenarios, None, traced, json)
 }
 
-/// Runs `scenario`, writes its files as `traced` says, and tells what came of it, after `first`: who prints before the end has no word left
-/// for what Ctrl-C breaks off.
-pub fn told(scenario: Scenario, first: Option<&str>, traced: &Traced, json: bool) -> Result<(), Failure> {
-    let Traced { output, columns, every } = traced;
-    let excerpt = Excerpt::new(&scenario.signals()?, columns, *every)?;
+/// A run with what it left, and what it was asked.
+struct Finished {
+    experiment: Experiment,
+    /// The answers that are no, the first first; nothing for a run that was broken off, of which that is not known.
+    answers: Vec<Problem>,
+    files: Vec<PathBuf>,
+}
+
+/// Runs scenarios, writes their files as `traced` says, and tells what came of them, after `first`: who prints before the end has no word
+/// left for what Ctrl-C breaks off. What comes after a run that is broken off is not begun.
+pub fn told(
+    scenarios: Vec<Scenario>,
+    first: Option<&str>,
+    traced: &Traced,
+    json: bool,
+) -> Result<(), Failure> {
+    let mut finished: Vec<Finished> = Vec::new();
+    for scenario in scenarios {
+        finished.push(run_of(scenario, traced)?);
+        if finished.iter().any(|run| run.experiment.run.broken_off.is_some()) {
+            break;
+        }
+    }
+    let page = if traced.view { Some(page(&finished, &traced.output.out)?) } else { None };
+    let mut broken_off = None;
+    if json {
+        document(&finished, page)?;
+    } else {
+        first.map_or(Ok(()), print::line)?;
+        for run in &finished {
+            in_words(run)?;
+        }
+        if let Some(page) = page {
+            print::line(&format!("wrote {}", page.display()))?;
+        }
+    }
+    let mut answers = Vec::new();
+    for Finished { experiment, answers: own, .. } in finished {
+        broken_off =
+            broken_off.or(experiment.run.broken_off.map(|time| words_of_end(&experiment.scenario, time)));
+        answers.extend(own.into_iter().map(Into::into));
+    }
+    if let Some(words) = broken_off {
+        return Err(Failure::interrupted(
+            words,
+            "summary, trace and figure end there; whether it follows is not known",
+        ));
+    }
+    if answers.is_empty() { Ok(()) } else { Err(Failure::No(answers)) }
+}
+
+/// Runs a scenario and writes its trace and its figure.
+fn run_of(scenario: Scenario, traced: &Traced) -> Result<Finished, Failure> {
+    let Traced { output, columns, every, view: _ } = traced;
+    let signals = scenario.signals()?;
+    let excerpt = Excerpt::new(&signals, columns, *every)?;
     say(&scenario.warnings);
     say(&preload(&scenario)?);
     say(&feasible::slowed(&scenario)?);
@@ -68,52 +146,88 @@ pub fn told(scenario: Scenario, first: Option<&str>, traced: &Traced, json: bool
         Experiment::new(scenario, &mut [&mut trace], &|fraction| progress.set(0, fraction))?
     };
     let files = write_experiment(&experiment, trace)?;
-    let broken_off = experiment.run.broken_off.map(|time| broken_off(&experiment.scenario, time));
     if experiment.run.divergence.is_none() {
         say(&experiment.exceeded);
     }
     say(unbalanced(&experiment).as_slice());
-    if json {
-        print::json(&Outcome::new(&experiment, files))?;
-    } else {
-        for words in first.into_iter().chain(broken_off.as_deref()) {
-            print::line(words)?;
-        }
-        print::line(&summary_table(std::slice::from_ref(&experiment.run.summary), print::columns()))?;
-        if let Some(line) = summary_line(&experiment.run.summary) {
-            print::line(&line)?;
-        }
-        let conditions =
-            experiment.scenario.vcbc().map_or_else(|_| Vec::new(), |_| experiment.scenario.beyond_ideal());
-        if let Some(line) = outside_of_proofs(&conditions) {
-            print::line(&line)?;
-        }
-        let sampled = experiment.sampled.as_ref().map(Sampled::line);
-        if let Some(line) = sampled.or_else(|| not_looked_at(&experiment.scenario)) {
-            print::line(&line)?;
-        }
-        if broken_off.is_none() {
-            print::line(&verdict(&experiment.run.summary.following))?;
-        }
-        for file in &files {
-            print::line(&format!("wrote {}", file.display()))?;
+    let answers = match experiment.run.broken_off {
+        Some(_) => Vec::new(),
+        None => objections(&experiment).into_iter().chain(beyond).collect(),
+    };
+    Ok(Finished { experiment, answers, files })
+}
+
+/// The runs in motion, as a page.
+fn page(finished: &[Finished], folder: &Path) -> Result<PathBuf, Failure> {
+    let words: Vec<String> = finished.iter().map(Finished::verdict).collect();
+    let viewed = finished.iter().zip(&words).map(|(finished, words)| {
+        let good = finished.answers.is_empty() && finished.experiment.run.broken_off.is_none();
+        finished.experiment.viewed(good, words)
+    });
+    Ok(write_view(folder, &viewed.collect::<Vec<_>>())?)
+}
+
+impl Finished {
+    /// Its summary and its files, `page` among them.
+    fn outcome(&self, page: Option<PathBuf>) -> Outcome<'_> {
+        Outcome::new(&self.experiment, self.files.iter().cloned().chain(page).collect())
+    }
+
+    /// What came of it in a sentence.
+    fn verdict(&self) -> String {
+        let Experiment { scenario, run, .. } = &self.experiment;
+        match (run.broken_off, self.answers.first()) {
+            (Some(time), _) => words_of_end(scenario, time),
+            (None, Some(answer)) => {
+                let words = answer.to_string();
+                words.strip_prefix(&format!("{}: ", scenario.name)).unwrap_or(&words).to_owned()
+            }
+            (None, None) => run.summary.in_words(),
         }
     }
-    if let Some(words) = broken_off {
-        return Err(Failure::interrupted(
-            words,
-            "summary, trace and figure end there; whether it follows is not known",
-        ));
+}
+
+/// Prints what came of runs as JSON: of one as it is, of two as a list.
+fn document(finished: &[Finished], page: Option<PathBuf>) -> Result<(), Failure> {
+    match finished {
+        [one] => print::json(&one.outcome(page)),
+        runs => print::json(&Beside {
+            runs: runs.iter().map(|run| run.outcome(None)).collect(),
+            files: page.into_iter().collect(),
+        }),
     }
-    let answers: Vec<Problem> = objections(&experiment).into_iter().chain(beyond).collect();
-    if answers.is_empty() {
-        return Ok(());
+}
+
+/// Prints what came of a run.
+fn in_words(Finished { experiment, files, .. }: &Finished) -> Result<(), Failure> {
+    let broken_off = experiment.run.broken_off.map(|time| words_of_end(&experiment.scenario, time));
+    if let Some(words) = &broken_off {
+        print::line(words)?;
     }
-    Err(Failure::No(answers.into_iter().map(Into::into).collect()))
+    print::line(&summary_table(std::slice::from_ref(&experiment.run.summary), print::columns()))?;
+    if let Some(line) = summary_line(&experiment.run.summary) {
+        print::line(&line)?;
+    }
+    let conditions =
+        experiment.scenario.vcbc().map_or_else(|_| Vec::new(), |_| experiment.scenario.beyond_ideal());
+    if let Some(line) = outside_of_proofs(&conditions) {
+        print::line(&line)?;
+    }
+    let sampled = experiment.sampled.as_ref().map(Sampled::line);
+    if let Some(line) = sampled.or_else(|| not_looked_at(&experiment.scenario)) {
+        print::line(&line)?;
+    }
+    if broken_off.is_none() {
+        print::line(&verdict(&experiment.run.summary.following))?;
+    }
+    for file in files {
+        print::line(&format!("wrote {}", file.display()))?;
+    }
+    Ok(())
 }
 
 /// That a run was broken off, and when.
-fn broken_off(scenario: &Scenario, time: f64) -> String {
+fn words_of_end(scenario: &Scenario, time: f64) -> String {
     let [time, end] = [time, scenario.duration].map(|seconds| short(seconds, 4));
     format!("{}: broken off at t = {time} s of {end} s", scenario.name)
 }

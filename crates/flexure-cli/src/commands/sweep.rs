@@ -158,5 +158,5 @@ fn replay(folder: &Path, row: u64, traced: &Traced, json: bool) -> Result<(), Fa
     });
     let said: Vec<String> = said.collect();
     let first = format!("row {row}: {}; seed {}", said.join(", "), sweep.seed(row));
-    run::told(scenario, Some(&first), traced, json)
+    run::told(vec![scenario], Some(&first), traced, json)
 }

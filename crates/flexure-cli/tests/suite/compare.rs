@@ -19,10 +19,10 @@ fn a_comparison_leaves_a_table_a_page_and_figures() {
     }
     assert!(outcome.stdout.lines().all(|line| line.chars().count() <= 100), "{}", outcome.stdout);
     let names = [
-        "compare-chatter.png",
-        "compare-chatter.svg",
-        "compare-effort.png",
-        "compare-effort.svg",
+        "compare-cost.png",
+        "compare-cost.svg",
+        "compare-map.png",
+        "compare-map.svg",
         "compare.csv",
         "compare.html",
     ];

@@ -92,6 +92,11 @@ macro_rules! laws {
                 }
             }
 
+            /// What the law is called in words.
+            pub fn in_words(&self) -> String {
+                self.phi().map_or_else(|| self.kind().to_owned(), |phi| format!("v-CBC with φ = {phi}"))
+            }
+
             /// Every gain with its path below `[controller]`, one number per joint: `link.metric`, `stiffness`.
             pub fn gains(&self) -> Vec<(String, &[f64])> {
                 match self {

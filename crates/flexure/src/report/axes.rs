@@ -37,6 +37,8 @@ const TICK: f64 = 5.0;
 const NARROWEST: f64 = 26.0;
 /// Room between the frame and the numbers on its left [px].
 const GAP: f64 = 8.0;
+/// Room between numbers of an axis, at least [px].
+const APART: f64 = 6.0;
 /// From the middle of a number to its base line: half the height of digits [px].
 const HALF_DIGIT: f64 = 4.74;
 
@@ -54,20 +56,34 @@ impl Axes<'_> {
         for (y, _) in rows.clone().filter(|(y, _)| bottom - y >= 1.0) {
             scene.line([left, y], [right, y], GRID_LINE);
         }
+        // A number that would touch the one before it is left out: its tick is there.
+        let mut free = f64::NEG_INFINITY;
         for (x, name) in columns {
             scene.line([x, bottom - TICK], [x, bottom], EDGE);
-            scene.text([x, bottom + 17.07], name, NUMBERS, Anchor::Middle);
+            let half = 0.5 * text::width(name, NUMBERS);
+            if !name.is_empty() && x - half >= free {
+                scene.text([x, bottom + 17.07], name, NUMBERS, Anchor::Middle);
+                free = x + half + APART;
+            }
         }
+        let mut free = f64::INFINITY;
         for (y, name) in rows {
             scene.line([left, y], [left + TICK, y], EDGE);
-            scene.text([left - GAP, y + HALF_DIGIT], name, NUMBERS, Anchor::End);
+            if y + HALF_DIGIT <= free {
+                scene.text([left - GAP, y + HALF_DIGIT], name, NUMBERS, Anchor::End);
+                free = y - HALF_DIGIT - 0.5 * APART;
+            }
         }
         scene.line([left, bottom], [right, bottom], EDGE);
         scene.line([left, top], [left, bottom], EDGE);
         scene.line([left, top], [right, top], EDGE);
         scene.line([right, top], [right, bottom], EDGE);
-        scene.text([left + 0.5 * width, bottom + 41.0], self.x.label, LABELS, Anchor::Middle);
-        scene.upwards([self.label_left(), top + 0.5 * height], self.y.label, LABELS);
+        if !self.x.label.is_empty() {
+            scene.text([left + 0.5 * width, bottom + 41.0], self.x.label, LABELS, Anchor::Middle);
+        }
+        if !self.y.label.is_empty() {
+            scene.upwards([self.label_left(), top + 0.5 * height], self.y.label, LABELS);
+        }
     }
 
     /// Draws a curve, cut at the frame.
@@ -83,6 +99,13 @@ impl Axes<'_> {
         let [_, top, _, height] = self.frame;
         let x = self.across(value);
         scene.line([x, top], [x, top + height], stroke);
+    }
+
+    /// Draws a line from left to right at a value of y.
+    pub(super) fn level(&self, scene: &mut Scene, value: f64, stroke: Stroke) {
+        let [left, _, width, _] = self.frame;
+        let y = self.down(value);
+        scene.line([left, y], [left + width, y], stroke);
     }
 
     /// Where a point in the units of the axes lies.

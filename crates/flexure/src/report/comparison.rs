@@ -37,8 +37,7 @@ pub fn comparison(runs: &[(&str, &Sketch)]) -> Scene {
     let y = decades(&curves);
 
     let subtitle = if x == whole { String::new() } else { left_out(&errors, x, whole) };
-    let mut scene = page(WIDTH, TITLE, &subtitle);
-    let top = if subtitle.is_empty() { 62.0 } else { 82.0 };
+    let (mut scene, top) = page(WIDTH, TITLE, &subtitle);
     let top = top + line_legend(&mut scene, top, &legend) - 6.0;
     scene.height = top + HEIGHT + 6.0;
     let y = Axis { range: y, ticks: ticks::decades(y), label: "max |eₗ| [rad]" };

@@ -5,11 +5,14 @@
 //! Errors and momentum errors are absolute values on a logarithmic axis: an exponential decay is a straight line.
 
 use super::curve::Curve;
+use super::joint_panels::joint_panels;
+use super::marks::{self, Happening, JointMarks, What};
 use super::panel::{self, HEIGHT, Panel, Scale, View};
+use super::range::Range;
 use super::scene::Scene;
 use super::sheet::{MARGIN, line_legend, page};
 use super::sketch::Sketch;
-use super::style::{INK, Stroke};
+use super::style::{INK, LIMIT, Stroke, hue};
 use crate::units;
 
 /// What is written above the panels.
@@ -19,8 +22,41 @@ pub struct FigureOptions {
     pub title: String,
     /// Second line; may be empty.
     pub subtitle: String,
-    /// Names of the joints; those that are missing are numbered.
-    pub joints: Vec<String>,
+    /// The joints; those that are missing are numbered and have no limits.
+    pub joints: Vec<JointMarks>,
+    /// What happens to the robot when, beside what the run itself tells.
+    pub happenings: Vec<Happening>,
+    /// Time after which the links stay within 1 mrad of the reference \[s\], if they do.
+    pub settled: Option<f64>,
+}
+
+impl FigureOptions {
+    /// The joint with this index, from 0.
+    pub(super) fn joint(&self, index: usize) -> JointMarks {
+        self.joints.get(index).cloned().unwrap_or_else(|| JointMarks::named(format!("joint {}", index + 1)))
+    }
+
+    /// Limits of the joints, each in its colour.
+    fn limits(&self, of: impl Fn(&JointMarks) -> [f64; 2]) -> Vec<(f64, Stroke)> {
+        let each = |(i, joint): (usize, &JointMarks)| {
+            of(joint).map(|limit| (limit, Stroke { color: hue(i), ..LIMIT }))
+        };
+        self.joints.iter().enumerate().flat_map(each).collect()
+    }
+
+    /// All that happens, in the order of kinds.
+    pub(super) fn happenings(&self, run: &Sketch) -> Vec<Happening> {
+        let stops = run.stops().map(|Range { low: from, high: to }| Happening { from, to, what: What::Stop });
+        self.happenings.iter().copied().chain(stops).collect()
+    }
+}
+
+/// Joints up to which all are drawn in the same panels.
+const FEW: usize = 3;
+
+/// The figure of a run: [`four_panel`] of three joints or fewer, [`joint_panels`] of more.
+pub fn run_figure(run: &Sketch, options: &FigureOptions) -> Scene {
+    if run.joints("q_l") > FEW { joint_panels(run, options) } else { four_panel(run, options) }
 }
 
 const WIDTH: f64 = 1200.0;
@@ -43,6 +79,7 @@ pub fn four_panel(run: &Sketch, options: &FigureOptions) -> Scene {
             unit: units::ANGLE.raised,
             scale: Scale::Linear,
             window: None,
+            limits: options.limits(|joint| joint.positions),
             curves: positions,
         },
         Panel {
@@ -51,6 +88,7 @@ pub fn four_panel(run: &Sketch, options: &FigureOptions) -> Scene {
             unit: units::ANGLE.raised,
             scale: Scale::Decades,
             window: None,
+            limits: Vec::new(),
             curves: over(motor("e_m"), link("e_l")),
         },
         Panel {
@@ -59,6 +97,7 @@ pub fn four_panel(run: &Sketch, options: &FigureOptions) -> Scene {
             unit: units::MOMENTUM.raised,
             scale: Scale::Decades,
             window: None,
+            limits: Vec::new(),
             curves: over(motor("sigma_m"), link("sigma_l")),
         },
         Panel {
@@ -67,12 +106,18 @@ pub fn four_panel(run: &Sketch, options: &FigureOptions) -> Scene {
             unit: units::TORQUE.raised,
             scale: Scale::Linear,
             window: None,
+            limits: options.limits(|joint| [-joint.torque_limit, joint.torque_limit]),
             curves: link("u_m"),
         },
     ];
-    let view =
-        View { t: run.span(), diverged: run.diverged(), thinned: run.thinned(), buckets: buckets(&panels) };
-    four(&view, &panels, options, &legend(joints, &options.joints))
+    let view = View {
+        t: run.span(),
+        diverged: run.diverged(),
+        thinned: run.thinned(),
+        buckets: buckets(&panels),
+        happenings: options.happenings(run),
+    };
+    four(&view, &panels, options, &legend(joints, options, &view.happenings))
 }
 
 /// Four panels on one page, with a title and one legend.
@@ -82,8 +127,7 @@ pub(super) fn four(
     options: &FigureOptions,
     legend: &[(String, Stroke)],
 ) -> Scene {
-    let top = if options.subtitle.is_empty() { 62.0 } else { 82.0 };
-    let mut scene = page(WIDTH, &options.title, &options.subtitle);
+    let (mut scene, top) = page(WIDTH, &options.title, &options.subtitle);
     let top = top + line_legend(&mut scene, top, legend);
     scene.height = top + 2.0 * HEIGHT + 8.0;
     let width = (WIDTH - MARGIN) / 2.0;
@@ -106,16 +150,13 @@ pub(super) fn buckets(panels: &[Panel]) -> usize {
 }
 
 /// Hue names the joint, line style the side: one legend serves all panels.
-fn legend(joints: usize, names: &[String]) -> Vec<(String, Stroke)> {
-    let joint = |joint| {
-        let name = names.get(joint).map_or_else(|| format!("joint {}", joint + 1), Clone::clone);
-        (name, Stroke::swatch(joint, joints))
-    };
+fn legend(joints: usize, options: &FigureOptions, happenings: &[Happening]) -> Vec<(String, Stroke)> {
+    let joint = |joint| (options.joint(joint).name, Stroke::swatch(joint, joints));
     let side = |name: &str, stroke: Stroke| (name.to_owned(), Stroke { color: INK, ..stroke });
     let sides = [
         side("link side", Stroke::link(0, 1)),
         side("motor side", Stroke::motor(0, 1)),
         side("reference", Stroke::reference()),
     ];
-    (0..joints).map(joint).chain(sides).collect()
+    (0..joints).map(joint).chain(sides).chain(marks::legend(happenings)).collect()
 }

@@ -1,8 +1,9 @@
 //! One self-contained HTML page about several runs.
 
-use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
+use maud::{Markup, PreEscaped, html as markup};
 
 use super::certificates::{self, CertificateReport};
+use super::kit::{Page, Section, Verdict, figure};
 use super::markdown::{ERRATA, subscripts};
 use super::table::proved_rate;
 use crate::files::number::{NONE, engineering};
@@ -14,12 +15,16 @@ use crate::units;
 pub struct RunsReport {
     /// Heading of the page.
     pub title: String,
+    /// What came of the runs in a sentence; none if nothing is to be said of all of them.
+    pub verdict: Option<Verdict>,
     /// What was run and why: paragraphs, separated by empty lines.
     pub introduction: String,
     /// The runs, in the order of the page.
     pub runs: Vec<RunReport>,
-    /// Figure with all runs in one axis as SVG, from [`comparison`](super::comparison()).
+    /// The figure that shows what came of them, as SVG, from [`comparison`](super::comparison()).
     pub comparison_svg: Option<String>,
+    /// Runs in motion, a page of its own, from [`view`](super::view()).
+    pub motion: Option<String>,
     /// Summaries of the proofs, a table each.
     pub certificates: Vec<CertificateReport>,
     /// Numbers that no source gives.
@@ -33,10 +38,12 @@ pub struct RunsReport {
 pub struct RunReport {
     /// Errors, torques and rates of the run.
     pub summary: Summary,
-    /// Its figure as SVG, from [`four_panel`](super::four_panel()).
+    /// Its figure as SVG, from [`run_figure`](super::run_figure()).
     pub figure_svg: String,
     /// What the figure shows, in a sentence or two.
     pub description: String,
+    /// What is to be minded of it; such runs come last.
+    pub warning: Option<String>,
 }
 
 /// A number that was assumed, and why.
@@ -56,64 +63,57 @@ pub struct AssumedNumber {
 ///
 /// Every text is escaped. Figures are inserted as they are: they come from this crate.
 pub fn html(report: &RunsReport) -> String {
-    markup! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { (report.title) }
-                style { (PreEscaped(include_str!("report.css"))) }
-            }
-            body { main {
-                header {
-                    h1 { (report.title) }
-                    (paragraphs(&report.introduction))
-                }
-                (contents(report))
-                section id="summary" { h2 { "Summary" } (summary_table(&report.runs)) }
-                section id="runs" { h2 { "Runs" }
-                    @for (index, run) in report.runs.iter().enumerate() { (figure(index + 1, run)) }
-                }
-                @if let Some(svg) = &report.comparison_svg {
-                    section id="comparison" { h2 { "Comparison" }
-                        figure {
-                            div.card { (PreEscaped(svg)) }
-                            figcaption {
-                                "Largest link position error over the joints, for every run. On the logarithmic axis a straight "
-                                "line is an exponential decay, and its slope is the rate."
-                            }
-                        }
-                    }
-                }
-                @if !report.certificates.is_empty() {
-                    section id="certificates" { h2 { "Certificates" } (certificates::section(&report.certificates)) }
-                }
-                section id="assumptions" { h2 { "Assumptions" } (assumptions(&report.assumptions)) }
-                section id="errata" { h2 { "Slips of the paper" } div.scroll.prose { (PreEscaped(ERRATA)) } }
-                footer { h2 { "How this page was made" }
-                    ul { @for line in &report.provenance { li { (line) } } }
-                }
-            } }
-        }
+    let RunsReport { title, verdict, introduction, runs, comparison_svg, motion, .. } = report;
+    let (minded, good): (Vec<_>, Vec<_>) =
+        runs.iter().enumerate().partition(|(_, run)| run.warning.is_some());
+    let mut sections = Vec::new();
+    if let Some(page) = motion {
+        sections.push(Section::new("motion", "In motion", moving(page)));
     }
-    .into_string()
+    if !report.certificates.is_empty() {
+        sections.push(Section::new(
+            "certificates",
+            "Proved rates",
+            certificates::section(&report.certificates),
+        ));
+    }
+    sections.push(Section::new("summary", "All runs in numbers", summary_table(runs)));
+    if !minded.is_empty() {
+        sections.push(Section::new(
+            "warnings",
+            "Runs to be warned of",
+            markup! {
+                @for (index, run) in minded { (run_figure(index + 1, run)) }
+            },
+        ));
+    }
+    if !good.is_empty() {
+        let figures = markup! { @for (index, run) in good { (run_figure(index + 1, run)) } };
+        sections.push(Section::new("runs", "Each run", figures).folded());
+    }
+    sections.push(Section::new("assumptions", "Assumptions", assumptions(&report.assumptions)).folded());
+    let errata = markup! { div.scroll.prose { (PreEscaped(ERRATA)) } };
+    sections.push(Section::new("errata", "Slips of the paper", errata).folded());
+    let caption = markup! {
+        "Largest link position error over the joints. On the logarithmic axis a straight line is an exponential decay, and its slope \
+         is the rate."
+    };
+    let lead = markup! {
+        @if let Some(svg) = comparison_svg { (figure(svg, &caption)) }
+        (paragraphs(introduction))
+    };
+    let provenance = markup! { ul { @for line in &report.provenance { li { (line) } } } };
+    Page { title, verdict: verdict.as_ref(), lead, sections, provenance }.html()
 }
 
 fn paragraphs(text: &str) -> Markup {
     markup! { @for paragraph in text.split("\n\n").filter(|paragraph| !paragraph.trim().is_empty()) { p { (paragraph.trim()) } } }
 }
 
-fn contents(report: &RunsReport) -> Markup {
+/// A page within the page: what it does stays in there.
+fn moving(page: &str) -> Markup {
     markup! {
-        nav aria-label="Contents" {
-            a href="#summary" { "Summary" }
-            @for (index, run) in report.runs.iter().enumerate() { a href={ "#run-" (index + 1) } { (run.summary.name) } }
-            @if report.comparison_svg.is_some() { a href="#comparison" { "Comparison" } }
-            @if !report.certificates.is_empty() { a href="#certificates" { "Certificates" } }
-            a href="#assumptions" { "Assumptions" }
-            a href="#errata" { "Slips of the paper" }
-        }
+        iframe.motion title="The robot in motion" sandbox="allow-scripts" loading="lazy" srcdoc=(page) {}
     }
 }
 
@@ -144,9 +144,14 @@ fn numbers(summary: &Summary) -> [String; COLUMNS.len()] {
         engineering(100.0 * summary.saturated_fraction),
         engineering(summary.rate_pointwise),
         proved_rate(summary.rate_certified),
-        engineering(summary.energy_drift),
+        drift(summary.energy_drift),
         summary.steps.to_string(),
     ]
+}
+
+/// An energy drift: what is below this is rounding, whose digits say nothing.
+fn drift(value: f64) -> String {
+    if value < 1e-12 { "< 10⁻¹²".to_owned() } else { engineering(value) }
 }
 
 fn summary_table(runs: &[RunReport]) -> Markup {
@@ -188,14 +193,12 @@ pub(super) fn symbols(text: &str) -> Markup {
     markup! { (PreEscaped(subscripts(text))) }
 }
 
-fn figure(number: usize, run: &RunReport) -> Markup {
+fn run_figure(number: usize, run: &RunReport) -> Markup {
     markup! {
         article id={ "run-" (number) } {
             h3 { (number) ". " (run.summary.name) }
-            figure {
-                div.card { (PreEscaped(&run.figure_svg)) }
-                figcaption { (run.description) }
-            }
+            @if let Some(warning) = &run.warning { p.warning { strong { "Warning" } ": " (warning) } }
+            (figure(&run.figure_svg, &markup! { (run.description) }))
         }
     }
 }

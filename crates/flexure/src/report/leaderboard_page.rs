@@ -1,43 +1,63 @@
 //! The page of a comparison of laws.
 
-use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
+use maud::{Markup, html as markup};
 
-use crate::compare::{Leaderboard, Loss, Score, TaskScores, is_vcbc};
+use crate::compare::{Leaderboard, Loss, Score, Standing, TaskScores, is_vcbc};
 use crate::files::number::{NONE, engineering, short, significant};
-use crate::report::effort::{chatter_figure, effort_figure};
+use crate::report::effort::cost_figure;
 use crate::report::html::{AssumedNumber, assumptions};
+use crate::report::kit::{Page, Section, Verdict, figure};
 use crate::report::leaderboard_table::{place, range, ranks_with_one, spectral_radius};
+use crate::report::score_map::score_map;
 
 const TITLE: &str = "Control laws of flexible-joint robots on the same bench";
 
-/// The page: ranking, where v-CBC loses, errors, figures, gains and what was assumed. The same comparison gives the same
-/// page, byte for byte.
+/// The page: who is best at what, ranking, where v-CBC loses, errors, what they cost, gains and what was assumed. The same comparison gives
+/// the same page, byte for byte.
 pub fn leaderboard_page(board: &Leaderboard, assumed: &[AssumedNumber]) -> String {
-    markup! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { (TITLE) }
-                style { (PreEscaped(include_str!("report.css"))) }
-            }
-            body { main {
-                header { h1 { (TITLE) } (introduction(board)) }
-                (contents(board))
-                section id="ranking" { h2 { "Ranking" } (ranking(board)) }
-                @if board.has_vcbc() {
-                    section id="losses" { h2 { "Where v-CBC is not the best" } (losses(board)) }
-                }
-                section id="errors" { h2 { "Errors" } (errors(board)) }
-                section id="figures" { h2 { "What an error costs" } (figures(board)) }
-                section id="gains" { h2 { "Gains that were found" } (gains(board)) }
-                section id="assumptions" { h2 { "Assumptions" } (assumptions(assumed)) }
-                footer { h2 { "How this page was made" } (provenance(board)) }
-            } }
-        }
+    let map = markup! { "The darker the better. Rows in the order of the mean rank; v-CBC in bold." };
+    let lead = markup! { (figure(&score_map(board).svg(), &map)) (introduction(board)) };
+    let losses =
+        board.has_vcbc().then(|| Section::new("losses", "Where v-CBC is not the best", losses(board)));
+    let mut sections = vec![Section::new("ranking", "Ranking", ranking(board))];
+    sections.extend(losses);
+    sections.extend([
+        Section::new("figures", "What an error costs", cost(board)),
+        Section::new("errors", "Errors", errors(board)),
+        Section::new("gains", "Gains that were found", gains(board)).folded(),
+        Section::new("assumptions", "Assumptions", assumptions(assumed)).folded(),
+    ]);
+    Page { title: TITLE, verdict: Some(&verdict(board)), lead, sections, provenance: provenance(board) }
+        .html()
+}
+
+/// Who is first, and where v-CBC is; it is good if some law follows on every task.
+fn verdict(board: &Leaderboard) -> Verdict {
+    let tasks = board.tasks.len();
+    let hopeless = board.hopeless().count();
+    let words = |standing: &Standing| {
+        let of = counted(tasks, "task");
+        format!(
+            "{}, mean rank {}, best on {} of {of}, does not follow on {}",
+            standing.law,
+            short(standing.mean_rank, 3),
+            standing.wins,
+            standing.unfinished
+        )
+    };
+    let Some(first) = board.ranking.first() else {
+        return Verdict { good: false, words: "No law was ranked.".to_owned() };
+    };
+    let mut said = format!("First of {}: {}.", counted(board.laws().count(), "law"), words(first));
+    if let Some(vcbc) =
+        board.ranking.iter().find(|standing| is_vcbc(&standing.law)).filter(|vcbc| vcbc.law != first.law)
+    {
+        said += &format!(" The best v-CBC is at place {}: {}.", vcbc.place, words(vcbc));
     }
-    .into_string()
+    if hopeless > 0 {
+        said += &format!(" On {} no law follows.", counted(hopeless, "task"));
+    }
+    Verdict { good: hopeless == 0, words: said }
 }
 
 fn introduction(board: &Leaderboard) -> Markup {
@@ -49,19 +69,6 @@ fn introduction(board: &Leaderboard) -> Markup {
             em { "penalised error" } ": the root mean square error of the links times √(1 + (c / 0.05)²), with c the change of \
             the torque from one control instant to the next as a part of the torque. Chattering is no way to win. \
             Only loops that follow their reference with every seed, by the verdict on runs, are ranked."
-        }
-    }
-}
-
-fn contents(board: &Leaderboard) -> Markup {
-    markup! {
-        nav aria-label="Contents" {
-            a href="#ranking" { "Ranking" }
-            @if board.has_vcbc() { a href="#losses" { "Where v-CBC is not the best" } }
-            a href="#errors" { "Errors" }
-            a href="#figures" { "Figures" }
-            a href="#gains" { "Gains" }
-            a href="#assumptions" { "Assumptions" }
         }
     }
 }
@@ -113,7 +120,9 @@ fn losses(board: &Leaderboard) -> Markup {
             } }
             p.note {
                 "Factor: the penalised error of the best v-CBC that took part over that of the best law. Root mean square errors \
-                 beside the names; ~ marks torques that chatter. On the other tasks v-CBC is the best or ties with the best."
+                 beside the names; ~ marks torques that chatter."
+                @let others = board.tasks.len() - losses.len();
+                @if others > 0 { " On the other " (counted(others, "task")) " v-CBC is the best or ties with the best." }
             }
         }
     }
@@ -217,17 +226,9 @@ fn failures(board: &Leaderboard) -> impl Iterator<Item = (&TaskScores, &Score)> 
     scores.filter(|(_, score)| score.failure.is_some())
 }
 
-fn figures(board: &Leaderboard) -> Markup {
-    markup! {
-        figure {
-            div.card { (PreEscaped(effort_figure(board).svg())) }
-            figcaption { "Dark rims: v-CBC. Marks that lie on each other are drawn smaller and smaller. Every panel has its own axes." }
-        }
-        figure {
-            div.card { (PreEscaped(chatter_figure(board).svg())) }
-            figcaption { "The same errors over what noise, delay and gains make of the torque." }
-        }
-    }
+fn cost(board: &Leaderboard) -> Markup {
+    let caption = markup! { "Dark rims: v-CBC. Marks that would cover each other stand side by side. On the dotted line a law spends nothing on feedback." };
+    figure(&cost_figure(board).svg(), &caption)
 }
 
 fn gains(board: &Leaderboard) -> Markup {

@@ -4,9 +4,13 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::compare::{Leaderboard, Task};
-use crate::files::{WriteError, create_folder, write_atomic};
+use crate::files::{Unfinished, WriteError, create_folder, write_atomic};
+use crate::margins::Margins;
 use crate::prove::engine::Certificate;
-use crate::report::{Scene, assumptions, chatter_figure, effort_figure, leaderboard_page};
+use crate::report::{
+    Scene, Viewed, assumptions, cost_figure, leaderboard_page, margins_figure, margins_page, score_map, view,
+};
+use crate::scenario::Scenario;
 
 /// Writes a comparison into `folder`, which is created if missing: `compare.html`, its figures and `compare.csv`; returns
 /// the paths.
@@ -23,9 +27,7 @@ pub fn write_leaderboard(
     let page = leaderboard_page(board, &assumptions(tasks.iter().map(|task| &task.scenario)));
     write_atomic(&paths[0], |out| out.write_all(page.as_bytes()))?;
     write_scores(&paths[1], board)?;
-    for (name, figure) in
-        [("compare-effort", effort_figure(board)), ("compare-chatter", chatter_figure(board))]
-    {
+    for (name, figure) in [("compare-map", score_map(board)), ("compare-cost", cost_figure(board))] {
         paths.extend(write_figure(folder, name, &figure)?);
     }
     Ok(paths)
@@ -40,6 +42,41 @@ pub fn write_figure(folder: &Path, name: &str, figure: &Scene) -> Result<[PathBu
     write_atomic(&paths[0], |out| out.write_all(figure.svg().as_bytes()))?;
     write_atomic(&paths[1], |out| out.write_all(&figure.png().map_err(io::Error::other)?))?;
     Ok(paths)
+}
+
+/// Writes `NAME.margins.html` and its figures into `folder`, which is created if missing; returns the paths.
+///
+/// # Errors
+/// If a file cannot be written; none is ever half written.
+pub fn write_margins(
+    folder: &Path,
+    scenario: &Scenario,
+    loops: &[Margins],
+) -> Result<Vec<PathBuf>, WriteError> {
+    create_folder(folder)?;
+    let name = format!("{}.margins", scenario.name);
+    let mut paths = vec![folder.join(format!("{name}.html"))];
+    let page = margins_page(loops, &assumptions([scenario].into_iter()));
+    write_atomic(&paths[0], |out| out.write_all(page.as_bytes()))?;
+    for (i, margins) in loops.iter().enumerate() {
+        let name = if loops.len() == 1 { name.clone() } else { format!("{name}-{}", i + 1) };
+        paths.extend(write_figure(folder, &name, &margins_figure(margins))?);
+    }
+    Ok(paths)
+}
+
+/// Writes the page of a run in motion, or of two side by side, as `NAME.view.html` or `NAME-and-NAME.view.html` into `folder`, which is created
+/// if missing; returns its path.
+///
+/// # Errors
+/// As [`view`], and if it cannot be written; it is never half written.
+pub fn write_view(folder: &Path, runs: &[Viewed<'_>]) -> Result<PathBuf, Unfinished> {
+    let page = view(runs)?;
+    create_folder(folder)?;
+    let names: Vec<&str> = runs.iter().map(|run| run.scenario.name.as_str()).collect();
+    let path = folder.join(format!("{}.view.html", names.join("-and-")));
+    write_atomic(&path, |out| out.write_all(page.as_bytes()))?;
+    Ok(path)
 }
 
 /// Writes the scores as CSV: a row a task and law; errors in rad, torques in N m, nothing for numbers that there are not.

@@ -3,11 +3,12 @@
 use super::axes::{Axes, Axis, BOTTOM};
 use super::curve::Curve;
 use super::decimate::bucket_size;
+use super::marks::{Happening, shade};
 use super::range::{Linear, Range, decades};
 use super::scene::{Anchor, Point, Scene};
 use super::style::{INK, MUTED, Stroke, bold, letters};
 use super::ticks;
-use crate::files::number::{duration, short, significant};
+use crate::files::number::{duration, power_of_ten, short, significant};
 
 /// Height of a panel with its heading [px].
 pub(super) const HEIGHT: f64 = HEADING + AXES;
@@ -30,6 +31,8 @@ pub(super) struct View {
     /// The time of which a run of samples was left its extremes, if it was \[s\].
     pub thinned: Option<f64>,
     pub buckets: usize,
+    /// Spans that are shaded.
+    pub happenings: Vec<Happening>,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -46,6 +49,8 @@ pub(super) struct Panel {
     pub scale: Scale,
     /// The part of the time that is shown, where all of it would be too dense; of linear axes.
     pub window: Option<Range>,
+    /// Values that linear axes mark, where they are inside.
+    pub limits: Vec<(f64, Stroke)>,
     pub curves: Vec<Curve>,
 }
 
@@ -78,9 +83,9 @@ impl Panel {
     fn decades(&self, scene: &mut Scene, place: [f64; 4], view: &View) -> String {
         let curves: Vec<Curve> = self.curves.iter().map(|curve| curve.exponents(view.buckets)).collect();
         let range = decades(&curves);
-        let label = self.label();
+        let label = format!("{} [{}]", self.quantity, self.unit);
         let y = Axis { range, ticks: ticks::decades(range), label: &label };
-        draw(scene, &over_time(place, LEFT, view.t, TIME, y), &curves, view);
+        draw(scene, &over_time(place, LEFT, view.t, TIME, y), &[], &curves, view);
         let samples = self.curves.iter().map(|curve| curve.t.len()).max().unwrap_or(0);
         match bucket_size(samples, view.buckets) {
             1 => "absolute values".to_owned(),
@@ -100,7 +105,9 @@ impl Panel {
         if let Some(window) = excursion.filter(short) {
             return Some(self.split(scene, place, view, range, window));
         }
-        draw(scene, &over_time(place, LEFT, view.t, TIME, linear(range, &self.label())), &self.curves, view);
+        let label = self.label(range);
+        let axes = &over_time(place, LEFT, view.t, TIME, linear(range, &label));
+        draw(scene, axes, &self.limits, &self.curves, view);
         clipped.then(|| format!("{} outside the frame", self.peak()))
     }
 
@@ -108,9 +115,10 @@ impl Panel {
     fn detail(&self, scene: &mut Scene, place: [f64; 4], view: &View, window: Range) -> String {
         let inside: Vec<Curve> = self.curves.iter().map(|curve| curve.within(window)).collect();
         let range = Linear::whole(inside.iter().flat_map(|curve| curve.values.iter().copied()));
-        let label = self.label();
+        let label = self.label(range);
         let axes = over_time(place, LEFT, window, TIME, linear(range, &label));
-        draw(scene, &axes, &inside, &View { t: window, diverged: None, ..*view });
+        let view = View { t: window, diverged: None, happenings: Vec::new(), ..*view };
+        draw(scene, &axes, &self.limits, &inside, &view);
         let [from, to, end] = [window.low, window.high, view.t.high].map(|t| short(t, 4));
         format!("detail: {from} to {to} s of {end} s")
     }
@@ -123,19 +131,29 @@ impl Panel {
             self.curves.iter().map(|curve| curve.within(window).stretched(scale)).collect();
         let inside = Linear::whole(zoomed.iter().flat_map(|curve| curve.values.iter().copied()));
         let near = Range { low: scale * window.low, high: scale * window.high };
-        let (label, time) = (self.label(), format!("time [{unit}]"));
+        let (label, time) = (self.label(inside), format!("time [{unit}]"));
         let left = over_time([x, y, STRIP, height], LEFT, near, &time, linear(inside, &label));
-        draw(scene, &left, &zoomed, &View { t: near, diverged: None, buckets: view.buckets / 2, ..*view });
-        let right = over_time([x + STRIP, y, width - STRIP, height], 60.0, view.t, TIME, linear(range, ""));
-        draw(scene, &right, &self.curves, view);
+        let detail =
+            View { t: near, diverged: None, buckets: view.buckets / 2, happenings: Vec::new(), ..*view };
+        draw(scene, &left, &[], &zoomed, &detail);
+        // The label on the left is of both frames, unless their numbers are in other units.
+        let label =
+            if ticks::power(range) == ticks::power(inside) { String::new() } else { self.label(range) };
+        let right =
+            over_time([x + STRIP, y, width - STRIP, height], 60.0, view.t, TIME, linear(range, &label));
+        draw(scene, &right, &self.limits, &self.curves, view);
         let [from, to] = [near.low, near.high].map(|t| short(t, 3));
         let coarse =
             view.thinned.map(|t| format!("the extremes of each {}, ", duration(t))).unwrap_or_default();
         format!("left: {from} to {to} {unit}, {coarse}{}; right: whole run, axis cut", self.peak())
     }
 
-    fn label(&self) -> String {
-        format!("{} [{}]", self.quantity, self.unit)
+    /// What a linear axis shows, and in which unit its numbers are.
+    fn label(&self, range: Range) -> String {
+        match ticks::power(range) {
+            0 => format!("{} [{}]", self.quantity, self.unit),
+            power => format!("{} [{} {}]", self.quantity, power_of_ten(power), self.unit),
+        }
     }
 
     fn values(&self) -> impl Iterator<Item = f64> {
@@ -180,13 +198,17 @@ pub(super) fn over_time<'a>(place: [f64; 4], left: f64, t: Range, label: &'a str
 }
 
 fn linear(range: Range, label: &str) -> Axis<'_> {
-    Axis { range, ticks: ticks::even(range, 6.0), label }
+    Axis { range, ticks: ticks::even_by(range, 6.0, ticks::power(range)), label }
 }
 
-/// The frame, the curves in their order, and a dotted line at the end of a run that did not stay finite.
-fn draw(scene: &mut Scene, axes: &Axes, curves: &[Curve], view: &View) {
+/// What happens, the frame, the limits inside it, the curves in their order, and a dotted line at the end of a run that did not stay finite.
+fn draw(scene: &mut Scene, axes: &Axes, limits: &[(f64, Stroke)], curves: &[Curve], view: &View) {
     const END: Stroke = Stroke { color: MUTED, width: 1.2, dash: &[1.5, 3.0] };
+    shade(scene, axes, &view.happenings);
     axes.draw(scene);
+    for (limit, stroke) in limits.iter().filter(|(limit, _)| axes.y.range.contains(*limit)) {
+        axes.level(scene, *limit, *stroke);
+    }
     for curve in curves {
         axes.curve(scene, curve, view.buckets);
     }

@@ -39,6 +39,7 @@ pub fn replay_figure(replay: &Replay) -> Scene {
             unit: units::ANGLE.raised,
             scale: Scale::Linear,
             window: None,
+            limits: Vec::new(),
             curves: centred(over(over(logged(side), predicted(side)), closed(side)), trace, side),
         },
         Panel {
@@ -47,6 +48,7 @@ pub fn replay_figure(replay: &Replay) -> Scene {
             unit: units::ANGLE.raised,
             scale: Scale::Linear,
             window,
+            limits: Vec::new(),
             curves: over(over(logged("deflection"), predicted("deflection")), closed("deflection")),
         },
         Panel {
@@ -55,6 +57,7 @@ pub fn replay_figure(replay: &Replay) -> Scene {
             unit: units::TORQUE.raised,
             scale: Scale::Linear,
             window,
+            limits: Vec::new(),
             curves: over(logged("u_m"), closed("u_m")),
         },
         Panel {
@@ -67,6 +70,7 @@ pub fn replay_figure(replay: &Replay) -> Scene {
             unit: units::ANGLE.raised,
             scale: Scale::Decades,
             window: None,
+            limits: Vec::new(),
             curves: residuals(trace, &format!("{side}_residual"), Stroke::link),
         },
     ];
@@ -76,10 +80,15 @@ pub fn replay_figure(replay: &Replay) -> Scene {
             "log, closed loop of the scenario, and the robot under the logged torque predicted {} ahead at most",
             duration(replay.horizon)
         ),
-        joints: Vec::new(),
+        ..FigureOptions::default()
     };
-    let view =
-        View { t: span(t), diverged: divergence(t, &panels), thinned: None, buckets: buckets(&panels) };
+    let view = View {
+        t: span(t),
+        diverged: divergence(t, &panels),
+        thinned: None,
+        buckets: buckets(&panels),
+        happenings: Vec::new(),
+    };
     four(&view, &panels, &options, &legend(&replay.joints, joints))
 }
 

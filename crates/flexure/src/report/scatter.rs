@@ -51,7 +51,9 @@ impl Scatter<'_> {
             x: Axis { range: x, ticks: logarithmic(x, 5.0), label: self.x_label },
             y: Axis { range: y, ticks: logarithmic(y, 6.0), label: self.y_label },
         };
-        scene.text([left + LEFT, top + 22.0], self.title, bold(15.0, INK), Anchor::Start);
+        if !self.title.is_empty() {
+            scene.text([left + LEFT, top + 22.0], self.title, bold(15.0, INK), Anchor::Start);
+        }
         self.draw_aside(scene);
         axes.draw(scene);
         if let Some(value) = marked {

@@ -7,12 +7,33 @@ use super::text;
 /// White border on the left and the right [px].
 pub(super) const MARGIN: f64 = 24.0;
 
-/// An empty white page with its title and subtitle (either may be empty).
-pub(super) fn page(width: f64, title: &str, subtitle: &str) -> Scene {
+/// An empty white page with its title and subtitle (either may be empty), and where the base line of what follows is.
+pub(super) fn page(width: f64, title: &str, subtitle: &str) -> (Scene, f64) {
+    const LINE: f64 = 19.0;
+    const WORDS: Lettering = letters(14.0, MUTED);
     let mut scene = Scene::new(width, 0.0);
     fitted_text(&mut scene, 30.0, title, bold(21.0, INK));
-    fitted_text(&mut scene, 52.0, subtitle, letters(14.0, MUTED));
-    scene
+    let mut y = 52.0;
+    for line in lines(subtitle, width - 2.0 * MARGIN, WORDS) {
+        fitted_text(&mut scene, y, &line, WORDS);
+        y += LINE;
+    }
+    (scene, y + 11.0)
+}
+
+/// `content` in lines that are at most `room` wide [px], as far as its words allow.
+fn lines(content: &str, room: f64, lettering: Lettering) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in content.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if text::width(&format!("{line} {word}"), lettering) <= room => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
 }
 
 /// A legend in rows from `y` down: each entry a piece of its line and its name. Returns the height of the rows.
@@ -34,7 +55,7 @@ pub(super) fn line_legend(scene: &mut Scene, y: f64, entries: &[(String, Stroke)
     row + ROW
 }
 
-/// Text that shrinks until it fits the page: titles come from users.
+/// Text that shrinks until it fits the page: titles come from users, and words have no end.
 fn fitted_text(scene: &mut Scene, y: f64, content: &str, lettering: Lettering) {
     const SMALLEST: f64 = 9.0;
     let room = scene.width - 2.0 * MARGIN;

@@ -18,6 +18,9 @@ const POINTS: usize = 1 << 20;
 const LEAST: usize = 1 << 14;
 const MOST: usize = 1 << 16;
 
+/// Stops that are remembered: more could not be told apart.
+const MOST_STOPS: usize = 1000;
+
 /// The signals of a run that are drawn, in memory that does not grow with its duration: a run of up to 2¹⁴ instants and more as it is, a
 /// longer one with the smallest and the largest value of every so many instants, and when those were.
 ///
@@ -41,6 +44,11 @@ pub struct Sketch {
     drawn: [Vec<(usize, Thinned)>; DRAWN.len()],
     /// The largest |e_l| over the joints.
     error: Thinned,
+    /// The column that says whether the guard has stopped the robot.
+    stopped: Option<usize>,
+    /// When it had.
+    stops: Vec<Range>,
+    is_stopped: bool,
 }
 
 impl Sketch {
@@ -52,7 +60,17 @@ impl Sketch {
         let with =
             |columns: Vec<usize>| columns.into_iter().map(|column| (column, thinned.clone())).collect();
         let time = signals.iter().position(|signal| signal.name == "t");
-        Self { time, span: None, instants: 0, drawn: columns.map(with), error: thinned.clone() }
+        let stopped = signals.iter().position(|signal| signal.name == "stopped");
+        Self {
+            time,
+            span: None,
+            instants: 0,
+            drawn: columns.map(with),
+            error: thinned.clone(),
+            stopped,
+            stops: Vec::new(),
+            is_stopped: false,
+        }
     }
 
     /// Of a recorded run.
@@ -68,6 +86,11 @@ impl Sketch {
         let curve =
             |(joint, (_, signal)): (usize, &(usize, Thinned))| of(signal, stroke(joint, signals.len()));
         signals.iter().enumerate().map(curve).collect()
+    }
+
+    /// When the guard had stopped the robot.
+    pub(super) fn stops(&self) -> impl Iterator<Item = Range> {
+        self.stops.iter().copied()
     }
 
     /// How many joints the signal called `prefix` has.
@@ -115,6 +138,13 @@ impl Sink for Sketch {
             let span = self.span.unwrap_or(Range { low: t, high: t });
             self.span = Some(Range { low: span.low.min(t), high: span.high.max(t) });
         }
+        let is_stopped = self.stopped.is_some_and(|column| row[column] == 1.0);
+        if is_stopped && !self.is_stopped && self.stops.len() < MOST_STOPS {
+            self.stops.push(Range { low: t, high: t });
+        } else if let Some(stop) = self.stops.last_mut().filter(|_| is_stopped) {
+            stop.high = t;
+        }
+        self.is_stopped = is_stopped;
         self.instants += 1;
         for (column, signal) in self.drawn.iter_mut().flatten() {
             signal.push(t, row[*column]);

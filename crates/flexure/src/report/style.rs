@@ -31,6 +31,36 @@ pub(super) const MUTED: Color = Color::hex(0x59636e);
 pub(super) const GRID: Color = Color::hex(0xe4e7eb);
 pub(super) const WHITE: Color = Color::hex(0xffffff);
 
+/// Where a page is dark, what each colour becomes: light enough for what is drawn on [`DARK`], 4.5 : 1 and more.
+pub(super) fn in_the_dark() -> impl Iterator<Item = (Color, Color)> {
+    let hues = HUES.into_iter().zip(DARK_HUES).map(|(light, dark)| (Color::hex(light), Color::hex(dark)));
+    let [paper, ink, muted, grid] = [DARK, 0xe6e8ea, 0x9aa4ae, 0x2c3238].map(Color::hex);
+    let [pushed, stopped, limit, holds] = [0x3b2c17, 0x47252a, 0xff8a80, 0x48a878].map(Color::hex);
+    let marks = [(PUSHED, pushed), (STOPPED, stopped), (LIMIT.color, limit), (HOLDS, holds)];
+    [(WHITE, paper), (INK, ink), (MUTED, muted), (GRID, grid)].into_iter().chain(marks).chain(hues)
+}
+
+/// Spans in which links are pushed.
+pub(super) const PUSHED: Color = Color::hex(0xfdebd3);
+/// Spans in which the guard has stopped the robot.
+pub(super) const STOPPED: Color = Color::hex(0xf7d9d9);
+/// Cells of maps, from the best to the worst, the same on every page, with [letters](PAPER_INK) of their own.
+pub(super) const SHADES: [Color; 6] = [
+    Color::hex(0x08519c),
+    Color::hex(0x2171b5),
+    Color::hex(0x6baed6),
+    Color::hex(0x9ecae1),
+    Color::hex(0xc6dbef),
+    Color::hex(0xe6eff8),
+];
+/// Letters on dark and on light shades.
+pub(super) const PAPER_INK: [Color; 2] = [Color::hex(0xfefefe), Color::hex(0x10212b)];
+/// Where a loop holds.
+pub(super) const HOLDS: Color = Color::hex(0x3f9b6b);
+/// A limit.
+pub(super) const LIMIT: Stroke =
+    Stroke { color: Color::hex(0xb3261e), width: 1.2, dash: &[7.0, 3.0, 1.5, 3.0] };
+
 /// Letters of this size [px].
 pub(super) const fn letters(size: f64, color: Color) -> Lettering {
     Lettering { size, bold: false, color }
@@ -43,6 +73,12 @@ pub(super) const fn bold(size: f64, color: Color) -> Lettering {
 
 /// Okabe and Ito's colours without yellow and black, then two of Tol's: told apart with any colour vision.
 const HUES: [u32; 8] = [0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0x56b4e9, 0xe69f00, 0x332288, 0x882255];
+
+/// The same on a dark page.
+const DARK_HUES: [u32; 8] = [0x4ea8e0, 0xf28a3c, 0x2fc79a, 0xe39ac4, 0x9bd5f7, 0xf2c14e, 0x9a8cf0, 0xd9719f];
+
+/// A dark page, that of `report.css`.
+const DARK: u32 = 0x15181b;
 
 /// Colour of the joint (or run) with this index, from 0.
 pub(super) fn hue(index: usize) -> Color {
@@ -105,5 +141,29 @@ fn thinning(joint: usize, joints: usize) -> f64 {
         (0, false) => 1.2 * joint as f64 / (joints.max(2) - 1) as f64,
         (0, true) => 0.4 * joint as f64 / HUES.len() as f64,
         _ => 1.2 + 0.2 * (joint - HUES.len()) as f64 / HUES.len() as f64,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Color, DARK, GRID, PUSHED, STOPPED, WHITE, in_the_dark};
+
+    /// Relative luminance of sRGB, as WCAG 2 has it.
+    fn luminance(Color(rgb): Color) -> f64 {
+        let linear = |c: u8| {
+            let c = f64::from(c) / 255.0;
+            if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+        };
+        let [red, green, blue] = rgb.map(linear);
+        0.2126 * red + 0.7152 * green + 0.0722 * blue
+    }
+
+    #[test]
+    fn what_is_drawn_on_a_dark_page_is_seen() {
+        let behind = [WHITE, GRID, PUSHED, STOPPED];
+        for (light, dark) in in_the_dark().filter(|(light, _)| !behind.contains(light)) {
+            let contrast = (luminance(dark) + 0.05) / (luminance(Color::hex(DARK)) + 0.05);
+            assert!(contrast >= 4.5, "{light} as {dark}: {contrast:.2}");
+        }
     }
 }

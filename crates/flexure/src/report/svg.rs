@@ -3,7 +3,7 @@
 use std::fmt::{self, Display, Formatter};
 
 use super::scene::{Anchor, Point, Scene, Shape, Text};
-use super::style::{FONT, Stroke};
+use super::style::{FONT, Stroke, WHITE, in_the_dark};
 
 /// The drawing; text stays text.
 pub(super) fn svg(scene: &Scene) -> String {
@@ -11,8 +11,19 @@ pub(super) fn svg(scene: &Scene) -> String {
     let shapes: String = scene.shapes.iter().map(Shape::to_string).collect();
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" role=\"img\" width=\"{width}\" \
-         height=\"{height}\" font-family=\"{FONT}\"><rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>{shapes}</svg>"
+         height=\"{height}\" font-family=\"{FONT}\" class=\"flexure\"><style>{}</style><rect width=\"100%\" height=\"100%\" \
+         fill=\"{WHITE}\"/>{shapes}</svg>",
+        dark()
     )
+}
+
+/// Has the colours follow a page that is dark on a screen.
+fn dark() -> String {
+    let rule = |(light, dark)| {
+        format!(".flexure [fill=\"{light}\"]{{fill:{dark}}}.flexure [stroke=\"{light}\"]{{stroke:{dark}}}")
+    };
+    let rules: String = in_the_dark().map(rule).collect();
+    format!("@media screen and (prefers-color-scheme:dark){{{rules}}}")
 }
 
 impl Display for Shape {

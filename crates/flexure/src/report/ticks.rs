@@ -12,7 +12,23 @@ pub(super) struct Tick {
 
 /// At most `most` steps of 1, 2 or 5 times a power of ten.
 pub(super) fn even(axis: Range, most: f64) -> Vec<Tick> {
-    every(axis, round_step(axis, most)).map(|at| Tick { at, name: even_name(at) }).collect()
+    even_by(axis, most, 0)
+}
+
+/// The same, numbers written in units of ten to the `power`, which the label of the axis says.
+pub(super) fn even_by(axis: Range, most: f64, power: i32) -> Vec<Tick> {
+    let unit = 10f64.powi(power);
+    every(axis, round_step(axis, most)).map(|at| Tick { at, name: even_name(at / unit) }).collect()
+}
+
+/// The power of ten, in steps of three, in which the numbers of an axis are short; 0 for most.
+#[expect(clippy::cast_possible_truncation, reason = "an exponent of ten of an f64: within ±308")]
+pub(super) fn power(axis: Range) -> i32 {
+    let largest = axis.low.abs().max(axis.high.abs());
+    if (1e-3..1e5).contains(&largest) || !largest.is_finite() || largest == 0.0 {
+        return 0;
+    }
+    3 * (largest.log10() / 3.0).floor() as i32
 }
 
 /// For an axis that carries exponents of ten: whole decades, at most eight.
@@ -73,7 +89,7 @@ fn name(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Range, decades, even, logarithmic, name};
+    use super::{Range, decades, even, even_by, logarithmic, name, power};
 
     /// At least two numbers on any axis, at most nine, all inside.
     #[test]
@@ -99,6 +115,20 @@ mod tests {
         let names = |ticks: Vec<super::Tick>| ticks.into_iter().map(|tick| tick.name).collect::<Vec<_>>();
         assert_eq!(names(even(Range { low: -0.25, high: 0.61 }, 6.0)), ["−0.2", "0", "0.2", "0.4", "0.6"]);
         assert_eq!(names(decades(Range { low: -2.0, high: 1.25 })), ["10⁻²", "10⁻¹", "1", "10"]);
+    }
+
+    /// A diverged run has torques of 10⁸ N m, a smooth one errors of 10⁻⁷ rad: neither fits beside a frame.
+    #[test]
+    fn numbers_far_from_one_are_in_powers_of_a_thousand() {
+        let names = |high: f64| {
+            let axis = Range { low: -0.1 * high, high };
+            let ticks = even_by(axis, 6.0, power(axis));
+            (power(axis), ticks.into_iter().map(|tick| tick.name).collect::<Vec<_>>().join(" "))
+        };
+        assert_eq!(names(1.1e8), (6, "0 20 40 60 80 100".to_owned()));
+        assert_eq!(names(4.1e-7), (-9, "0 100 200 300 400".to_owned()));
+        assert_eq!(names(2.2), (0, "0 0.5 1 1.5 2".to_owned()));
+        assert_eq!(power(Range { low: -2e5, high: 1.0 }), 3);
     }
 
     /// Where neighbouring floats are further apart than the step: no end of numbers.

@@ -13,8 +13,8 @@ use crate::prove::question::{Direct, Proof, Question, Region, certified_rate, pr
 use crate::prove::standing::is_about;
 use crate::prove::summary::ProofSummary;
 use crate::report::{
-    CertificateReport, FigureOptions, RunReport, RunsReport, Scene, Sketch, assumptions, comparison,
-    four_panel,
+    CertificateReport, FigureOptions, Film, JointMarks, RunReport, RunsReport, Scene, Sketch, Verdict,
+    Viewed, assumptions, comparison, pushes, run_figure, view,
 };
 use crate::sampled::{Sampled, probe};
 use crate::scenario::{Hold, Scenario, load_scenario};
@@ -45,6 +45,8 @@ pub struct Experiment {
     pub exceeded: Vec<Problem>,
     /// What figures show of it.
     pub sketch: Sketch,
+    /// What its animation shows of it.
+    pub film: Film,
     /// The four-panel figure.
     pub figure: Scene,
 }
@@ -62,7 +64,8 @@ impl Experiment {
     ) -> Result<Self, Problems> {
         let signals = scenario.signals()?;
         let (mut sketch, mut watch) = (Sketch::new(&signals), LimitWatch::new(&scenario.robot, &signals));
-        let mut all: Vec<&mut dyn Sink> = vec![&mut sketch, &mut watch];
+        let mut film = Film::new(&scenario.robot, &signals);
+        let mut all: Vec<&mut dyn Sink> = vec![&mut sketch, &mut watch, &mut film];
         for sink in sinks {
             all.push(&mut **sink);
         }
@@ -78,10 +81,15 @@ impl Experiment {
             (None, None) => String::new(),
         };
         let subtitle = describe(&scenario) + &ended;
-        let joints = scenario.robot.joints.iter().map(|joint| joint.name.clone()).collect();
-        let options = FigureOptions { title: scenario.name.clone(), subtitle, joints };
-        let figure = four_panel(&sketch, &options);
-        Ok(Self { scenario, run, sampled, exceeded, sketch, figure })
+        let options = FigureOptions {
+            title: scenario.name.clone(),
+            subtitle,
+            joints: JointMarks::of(&scenario),
+            happenings: pushes(&scenario),
+            settled: run.summary.settling_time,
+        };
+        let figure = run_figure(&sketch, &options);
+        Ok(Self { scenario, run, sampled, exceeded, sketch, film, figure })
     }
 }
 
@@ -147,13 +155,8 @@ fn describe(scenario: &Scenario) -> String {
     let conditions = scenario.conditions();
     let unknown =
         if conditions.is_empty() { String::new() } else { format!("; with {}", conditions.join(", ")) };
-    let law = law_name(scenario.controller.kind(), scenario.controller.phi());
+    let law = scenario.controller.in_words();
     format!("{} under {law}; {start}; {hold}{}", scenario.robot.name, unknown.replace('_', " "))
-}
-
-/// A law in words.
-fn law_name(kind: &str, phi: Option<&str>) -> String {
-    phi.map_or_else(|| kind.to_owned(), |phi| format!("v-CBC with φ = {phi}"))
 }
 
 /// What the plant has that the law does not know, from the keys of `[plant]`.
@@ -182,14 +185,26 @@ pub fn reproduce(
         .collect()
 }
 
-/// The report of some experiments.
-pub fn report(experiments: &[Experiment], certificates: &[Certified]) -> RunsReport {
-    let sketches: Vec<_> = experiments.iter().map(|e| (e.scenario.name.as_str(), &e.sketch)).collect();
-    RunsReport {
+/// The report of some experiments: those that join their reference smoothly first, with their rates; those from rest are warnings.
+///
+/// # Errors
+/// As [`Scenario::open`].
+pub fn report(experiments: &[Experiment], certificates: &[Certified]) -> Result<RunsReport, Problems> {
+    let smooth = || experiments.iter().filter(|experiment| experiment.scenario.smooth_start.is_some());
+    let sketches: Vec<_> = smooth().map(|e| (e.scenario.name.as_str(), &e.sketch)).collect();
+    let verdict = verdict_of(&smooth().collect::<Vec<_>>(), certificates);
+    let shown: Vec<(&Experiment, String)> = smooth()
+        .filter(|e| SHOWN.contains(&e.scenario.name.as_str()))
+        .map(|e| (e, e.run.summary.in_words()))
+        .collect();
+    let viewed: Vec<Viewed<'_>> = shown.iter().map(|(e, words)| e.viewed(true, words)).collect();
+    Ok(RunsReport {
         title: "Virtual-contraction control of a flexible-joint robot".to_owned(),
+        motion: if viewed.is_empty() { None } else { Some(view(&viewed)?) },
+        verdict: Some(verdict),
         introduction: INTRODUCTION.to_owned(),
         runs: experiments.iter().map(run_report).collect(),
-        comparison_svg: Some(comparison(&sketches).svg()),
+        comparison_svg: (!sketches.is_empty()).then(|| comparison(&sketches).svg()),
         certificates: certificates.iter().map(certificate_report).collect(),
         assumptions: assumptions(experiments.iter().map(|experiment| &experiment.scenario)),
         provenance: vec![
@@ -197,6 +212,38 @@ pub fn report(experiments: &[Experiment], certificates: &[Certified]) -> RunsRep
             "No random numbers: the same build writes the same page, byte for byte, on any number of threads."
                 .to_owned(),
         ],
+    })
+}
+
+/// The run that moves in the report.
+const SHOWN: [&str; 1] = ["two-link-tanh-smooth"];
+
+/// What came of the runs that join their reference smoothly, and what was proved of their laws.
+fn verdict_of(smooth: &[&Experiment], certificates: &[Certified]) -> Verdict {
+    let summaries = || smooth.iter().map(|experiment| &experiment.run.summary);
+    let follow = summaries().filter(|summary| summary.following.follows).count();
+    let error = summaries().map(|summary| summary.max_abs_e_l).fold(0.0, f64::max);
+    let torque = summaries().map(|summary| summary.max_abs_u_m).fold(0.0, f64::max);
+    let rates = certificates.iter().filter_map(|certified| {
+        let rate = certified.summary().contraction_rate?;
+        Some(format!("{} {} 1/s", certified.scenario.controller.phi().unwrap_or_default(), engineering(rate)))
+    });
+    let rates: Vec<String> = rates.collect();
+    let words = format!(
+        "{follow} of {} runs that join the reference smoothly follow it: link errors of {} rad at most, torques of {} N m. Proved \
+         contraction rates of the laws in continuous time: {}.",
+        smooth.len(),
+        engineering(error),
+        engineering(torque),
+        if rates.is_empty() { "none".to_owned() } else { rates.join(", ") }
+    );
+    Verdict { good: follow == smooth.len() && rates.len() == certificates.len(), words }
+}
+
+impl Experiment {
+    /// For its animation: whether it is good, and what came of it in a sentence.
+    pub fn viewed<'a>(&'a self, good: bool, words: &'a str) -> Viewed<'a> {
+        Viewed { scenario: &self.scenario, run: &self.run, film: &self.film, good, words }
     }
 }
 
@@ -225,7 +272,17 @@ fn run_report(experiment: &Experiment) -> RunReport {
         summary: experiment.run.summary.clone(),
         figure_svg: experiment.figure.svg(),
         description: outcome(&experiment.run.summary),
+        warning: experiment.scenario.smooth_start.is_none().then(|| from_rest(&experiment.run.summary)),
     }
+}
+
+/// What is to be minded of a run from rest off a reference that moves.
+fn from_rest(summary: &Summary) -> String {
+    format!(
+        "the arm starts at rest and its reference already moves. The law answers at once, with {} N m, which no motor of this size gives: \
+         such starts show what the formulas do, not what a robot could",
+        engineering(summary.max_abs_u_m)
+    )
 }
 
 /// Whether a run follows, why not, and what it was held to.
@@ -240,19 +297,7 @@ fn verdict(following: &Following) -> String {
 
 /// What a run came to, in a sentence.
 fn outcome(summary: &Summary) -> String {
-    let settled = match summary.settling_time {
-        Some(0.0) => "every link stays within 1 mrad of the reference".to_owned(),
-        Some(time) => {
-            format!("every link stays within 1 mrad of the reference after {} s", engineering(time))
-        }
-        None => "the links do not settle within 1 mrad of the reference".to_owned(),
-    };
     let law = summary.phi.as_ref().map_or_else(|| summary.controller.clone(), |phi| format!("φ = {phi}"));
     let unknown = unknown(&summary.plant).map(|unknown| format!("; {unknown}")).unwrap_or_default();
-    format!(
-        "{law}: {settled}; largest motor torque {} N m, root mean square {} N m{unknown}. {}",
-        engineering(summary.max_abs_u_m),
-        engineering(summary.rms_u_m),
-        verdict(&summary.following)
-    )
+    format!("{law}: {}{unknown}. {}", summary.in_words(), verdict(&summary.following))
 }

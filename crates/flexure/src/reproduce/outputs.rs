@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::files::{WriteError, create_folder, folder_of, write_atomic};
+use crate::files::{Unfinished, WriteError, create_folder, folder_of, write_atomic};
 use crate::report::{html, write_certificate, write_figure};
 use crate::reproduce::{Certified, Experiment, certificate_name, report};
 use crate::scenario::Scenario;
@@ -47,15 +47,15 @@ pub fn write_certificates(folder: &Path, certificates: &[Certified]) -> Result<V
 /// Writes `report.html` into `folder`, which is created if missing; returns its path.
 ///
 /// # Errors
-/// If it cannot be written.
+/// As [`report`], and if it cannot be written.
 pub fn write_report(
     folder: &Path,
     experiments: &[Experiment],
     certificates: &[Certified],
-) -> Result<PathBuf, WriteError> {
+) -> Result<PathBuf, Unfinished> {
     create_folder(folder)?;
     let path = folder.join("report.html");
-    let page = html(&report(experiments, certificates));
+    let page = html(&report(experiments, certificates)?);
     write_atomic(&path, |out| out.write_all(page.as_bytes()))?;
     Ok(path)
 }

@@ -62,10 +62,7 @@ pub fn overview(robot: &Robot) -> Result<Vec<JointRow>, Problems> {
         let (stiffness, motor_inertia) = (robot.stiffness[i], robot.motor_inertia[i]);
         JointRow {
             name: joint.name.clone(),
-            kind: match joint.kind {
-                JointKind::Revolute => "revolute",
-                JointKind::Prismatic => "prismatic",
-            },
+            kind: kind_in_words(joint.kind),
             parent: parent(i).map(|parent| robot.joints[parent].name.clone()),
             stiffness,
             motor_inertia,
@@ -82,4 +79,12 @@ pub fn overview(robot: &Robot) -> Result<Vec<JointRow>, Problems> {
         }
     };
     Ok(robot.joints.iter().enumerate().map(row).collect())
+}
+
+/// How a joint moves, as in files.
+pub(crate) fn kind_in_words(kind: JointKind) -> &'static str {
+    match kind {
+        JointKind::Revolute => "revolute",
+        JointKind::Prismatic => "prismatic",
+    }
 }

@@ -165,6 +165,11 @@ impl<L: Links<f64, N>, const N: usize> Held<L, N> {
         self.simulation.controller().reference.at(t)
     }
 
+    /// Torque from outside on the links [N m].
+    fn pushed(&self, t: f64) -> Vector<f64, N> {
+        self.simulation.pushes().iter().fold(Vector::ZERO, |sum, push: &Push<N>| sum + push.at(t))
+    }
+
     fn list(&self, v: &Vector<f64, N>) -> Vec<f64> {
         v.iter().take(self.robot().links.joints()).collect()
     }
@@ -240,10 +245,25 @@ where
         check("rate", "4n", rate.len(), 4 * n)?;
         let (x, u_m): (Motion<f64, N>, _) = (read_motion(motion, n)?, read("u_m", u_m, n)?);
         let plant = self.simulation.plant();
-        let external =
-            self.simulation.pushes().iter().fold(Vector::ZERO, |sum, push: &Push<N>| sum + push.at(t));
+        let external = self.pushed(t);
         let [a_l, a_m] = Plant { external, ..plant.clone() }.accelerations(&x, &u_m);
         write_motion(&Motion { q_l: x.v_l, q_m: x.v_m, v_l: a_l, v_m: a_m }, n, rate);
+        Ok(())
+    }
+
+    fn loads(
+        &self,
+        t: f64,
+        motion: &[f64],
+        spring: &mut [f64],
+        external: &mut [f64],
+    ) -> Result<(), Mismatch> {
+        let n = self.joints();
+        check("spring", "n", spring.len(), n)?;
+        check("external", "n", external.len(), n)?;
+        let x: Motion<f64, N> = read_motion(motion, n)?;
+        write(&self.simulation.plant().spring_torque(&x), spring);
+        write(&self.pushed(t), external);
         Ok(())
     }
 

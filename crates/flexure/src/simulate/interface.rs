@@ -67,6 +67,14 @@ pub trait Loop: Send + Sync {
     /// For slices of a wrong length.
     fn derivative(&self, t: f64, motion: &[f64], u_m: &[f64], rate: &mut [f64]) -> Result<(), Mismatch>;
 
+    /// What loads the links of the simulated robot at the time `t` in s when it moves as `motion`, beside gravity, friction and damping: the
+    /// torque of the springs, without what hysteresis adds, which is no function of the motion, and that of pushes [N m].
+    ///
+    /// # Errors
+    /// For slices of a wrong length.
+    fn loads(&self, t: f64, motion: &[f64], spring: &mut [f64], external: &mut [f64])
+    -> Result<(), Mismatch>;
+
     /// Moves on to the next control instant, the first at t = 0, and does what the controller does there. There is no end: the
     /// duration of the scenario is that of its runs.
     ///

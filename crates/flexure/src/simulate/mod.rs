@@ -44,6 +44,7 @@ mod trace_file;
 mod turns;
 
 pub use assembly::TOLERANCE;
+pub(crate) use assembly::acting_limits;
 pub use batch::Batch;
 pub use controller::{Action, Compensation, Controller, Feedback, Said};
 pub use criteria::{Bound, Criteria, Measure};

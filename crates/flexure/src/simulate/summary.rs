@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::files::number::engineering;
 use crate::simulate::following::Following;
 
 /// The figures of one closed-loop run: the contract of `run --json` and `reproduce --json`.
@@ -63,4 +64,22 @@ pub struct Summary {
     pub steps: u64,
     /// Wall-clock time of the simulation in s.
     pub wall_seconds: f64,
+}
+
+impl Summary {
+    /// How well the links settle, and what that takes of the motors.
+    pub fn in_words(&self) -> String {
+        let settled = match self.settling_time {
+            Some(0.0) => "every link stays within 1 mrad of the reference".to_owned(),
+            Some(time) => {
+                format!("every link stays within 1 mrad of the reference after {} s", engineering(time))
+            }
+            None => "the links do not settle within 1 mrad of the reference".to_owned(),
+        };
+        format!(
+            "{settled}; largest motor torque {} N m, root mean square {} N m",
+            engineering(self.max_abs_u_m),
+            engineering(self.rms_u_m)
+        )
+    }
 }

@@ -15,8 +15,8 @@ use flexure::compare::tasks;
 use flexure::compare::{check_budget, compare};
 use flexure::files::{Outside, TASKS};
 use flexure::imperfections::Imperfection;
-use flexure::report::chatter_figure;
-use flexure::report::effort_figure;
+use flexure::report::cost_figure;
+use flexure::report::score_map;
 use flexure::report::{WIDTH, leaderboard_page, leaderboard_table};
 use flexure::scenario::load_scenario;
 
@@ -313,7 +313,7 @@ fn laws_that_are_late(unlimited: bool) {
     assert_eq!(json["tasks"][0]["scores"][0]["rms_error"].is_null(), unlimited);
     assert!(
         leaderboard_table(&board, WIDTH).contains('—')
-            && effort_figure(&board).svg().contains("do not follow:")
+            && cost_figure(&board).svg().contains("follow nowhere:")
     );
 }
 
@@ -323,11 +323,11 @@ fn figures_are_drawings_with_finite_numbers() {
     let tasks =
         vec![made_up("a", [1e-3, f64::NAN, 2e-3]), made_up("b", [f64::NAN; 3]), made_up("c", [1e-3; 3])];
     let board = Leaderboard::new(1, 0, tasks);
-    for figure in [effort_figure(&board), chatter_figure(&board)] {
+    // Circles are the first law's: in the legend and among the points.
+    for (figure, circles) in [(cost_figure(&board), 2), (score_map(&board), 0)] {
         let svg = figure.svg();
         let document = roxmltree::Document::parse(&svg).expect("well-formed");
-        // Circles are the first law's: in the legend, in two panels, and beside the title of the one where it diverged.
-        assert_eq!(document.descendants().filter(|node| node.has_tag_name("circle")).count(), 4);
+        assert_eq!(document.descendants().filter(|node| node.has_tag_name("circle")).count(), circles);
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
         for law in board.laws() {
             assert!(document.descendants().any(|node| node.text() == Some(law)), "{law} in the legend");

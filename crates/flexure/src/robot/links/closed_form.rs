@@ -2,6 +2,7 @@
 
 use crate::files::field::Field;
 use crate::files::table::Table;
+use crate::robot::links::Body;
 
 /// Links in closed form as data, with numbers of type `C`: all that a `kind` in `[links]` stands for but its reader. The
 /// first joint stands on the base, each of the others on the link before it, and all of them turn.
@@ -27,6 +28,15 @@ pub trait ClosedForm<C> {
     fn bodies(&mut self) -> Vec<LineBody<'_, C>>;
 }
 
+/// A body with its joint, where pictures show it.
+#[derive(Clone, Debug)]
+pub(crate) struct Placed {
+    /// The body.
+    pub body: Body,
+    /// The end of its link in the link frame \[m\], if that is known.
+    pub tip: Option<[f64; 3]>,
+}
+
 /// A body whose centre of mass lies on the line of its link.
 #[derive(Debug)]
 pub struct LineBody<'a, C> {
@@ -45,6 +55,9 @@ pub(crate) trait ReadClosedForm: ClosedForm<f64> + Sized {
 
     /// Reads them from `[links]`.
     fn read(table: &Table<'_>) -> Option<Self>;
+
+    /// The bodies where pictures show them.
+    fn placed(&self) -> Vec<Placed>;
 
     /// Notes an error at `field` if gravity \[m/s²\] has a part that the closed form leaves out.
     fn check_gravity(gravity: &[f64; 3], field: &Field<'_>);
@@ -121,6 +134,16 @@ macro_rules! closed_forms {
                 match self {
                     $(Self::$kind(data) => Bodies::Line(data.bodies()),)+
                     Self::Tree(bodies) => Bodies::Tree(bodies),
+                }
+            }
+        }
+
+        impl Links {
+            /// The bodies, in the order of the joints, where pictures show them.
+            pub(crate) fn placed(&self) -> Vec<Placed> {
+                match self {
+                    $(Self::$kind(data) => ReadClosedForm::placed(data),)+
+                    Self::Tree(bodies) => bodies.iter().map(|body| Placed { body: body.clone(), tip: None }).collect(),
                 }
             }
         }

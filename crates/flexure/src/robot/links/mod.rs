@@ -24,6 +24,7 @@ use crate::files::field::{Field, Joints};
 use crate::files::table::Table;
 use crate::lanes::{Each, Several, numbers, together};
 pub(crate) use closed_form::ClosedForm;
+pub(crate) use closed_form::Placed;
 use closed_form::{LineBody, ReadClosedForm, closed_forms};
 
 pub use pendulum::Pendulum;

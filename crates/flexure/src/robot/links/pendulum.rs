@@ -6,7 +6,8 @@ use flexure_core::scalar::Scalar;
 use crate::files::field::Field;
 use crate::files::quantity;
 use crate::files::table::Table;
-use crate::robot::links::closed_form::{ClosedForm, LineBody, ReadClosedForm};
+use crate::robot::links::closed_form::{ClosedForm, LineBody, Placed, ReadClosedForm};
+use crate::robot::links::{Body, JointKind};
 
 /// One link on a horizontal axis; q = 0 hangs along gravity.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,6 +58,22 @@ impl ReadClosedForm for Pendulum {
         let (mass, com) = (table.number("mass", &quantity::MASS), table.number("com", &quantity::POSITION));
         let inertia = table.number("inertia", &quantity::INERTIA);
         Some(Self { mass: mass?, com: com?, inertia: inertia? })
+    }
+
+    fn placed(&self) -> Vec<Placed> {
+        let Self { mass, com, inertia } = *self;
+        // Hanging along −z, which is the link's x; it turns about its y.
+        let body = Body {
+            parent: None,
+            kind: JointKind::Revolute,
+            axis: [0.0, 1.0, 0.0],
+            rotation: [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]],
+            translation: [0.0; 3],
+            mass,
+            com: [com, 0.0, 0.0],
+            inertia: [[0.0, 0.0, 0.0], [0.0, inertia, 0.0], [0.0, 0.0, inertia]],
+        };
+        vec![Placed { body, tip: None }]
     }
 
     fn check_gravity(_: &[f64; 3], _: &Field<'_>) {}

@@ -6,7 +6,8 @@ use flexure_core::scalar::Scalar;
 use crate::files::field::Field;
 use crate::files::quantity::{self, Quantity};
 use crate::files::table::Table;
-use crate::robot::links::closed_form::{ClosedForm, LineBody, ReadClosedForm};
+use crate::robot::links::closed_form::{ClosedForm, LineBody, Placed, ReadClosedForm};
+use crate::robot::links::{Body, JointKind};
 
 /// Two links in a horizontal plane, in closed form; gravity does not act on them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,6 +64,21 @@ impl ReadClosedForm for PlanarTwoLink {
         let (mass, length) = (read("mass", &quantity::MASS), read("length", &quantity::LENGTH));
         let (com, inertia) = (read("com", &quantity::POSITION), read("inertia", &quantity::INERTIA));
         Some(Self { mass: mass?, length: length?, com: com?, inertia: inertia? })
+    }
+
+    fn placed(&self) -> Vec<Placed> {
+        let Self { mass, length, com, inertia } = *self;
+        let body = |i: usize| Body {
+            parent: i.checked_sub(1),
+            kind: JointKind::Revolute,
+            axis: [0.0, 0.0, 1.0],
+            rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            translation: [if i == 0 { 0.0 } else { length[0] }, 0.0, 0.0],
+            mass: mass[i],
+            com: [com[i], 0.0, 0.0],
+            inertia: [[0.0, 0.0, 0.0], [0.0, inertia[i], 0.0], [0.0, 0.0, inertia[i]]],
+        };
+        (0..2).map(|i| Placed { body: body(i), tip: Some([length[i], 0.0, 0.0]) }).collect()
     }
 
     fn check_gravity([x, y, _]: &[f64; 3], field: &Field<'_>) {

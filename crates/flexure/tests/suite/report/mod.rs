@@ -8,8 +8,8 @@ use flexure::report::AssumedNumber;
 use flexure::report::RunsReport;
 use flexure::report::decimate::{Thinned, bucket_size, decimate, envelope};
 use flexure::report::{
-    CertificateReport, FigureOptions, RunReport, Sketch, WIDTH, certificate_table, comparison, four_panel,
-    html, proof_table, summary_table,
+    CertificateReport, FigureOptions, JointMarks, RunReport, Sketch, Verdict, WIDTH, certificate_table,
+    comparison, four_panel, html, proof_table, summary_table,
 };
 use flexure::scenario::load_scenario;
 use flexure::simulate::{Summary, Trace};
@@ -19,7 +19,8 @@ fn figure(trace: &Trace) -> String {
     let options = FigureOptions {
         title: "tanh, 1 kHz".to_owned(),
         subtitle: "quanser-2dof".to_owned(),
-        joints: vec!["shoulder".to_owned()],
+        joints: vec![JointMarks::named("shoulder")],
+        ..FigureOptions::default()
     };
     four_panel(&Sketch::of(trace), &options).svg()
 }
@@ -242,7 +243,7 @@ fn titles_are_text() {
     let title = "<script>alert(1)</script> & $\\frac{1}{2}$ \u{0}".repeat(3);
     let svg = four_panel(
         &Sketch::of(&trace),
-        &FigureOptions { title: title.clone(), subtitle: title.clone(), joints: Vec::new() },
+        &FigureOptions { title: title.clone(), subtitle: title.clone(), ..FigureOptions::default() },
     )
     .svg();
     check(&svg);
@@ -292,9 +293,12 @@ fn report() -> RunsReport {
         summary: fake::summary(name),
         figure_svg: figure(&trace),
         description: "<b>A run".to_owned(),
+        warning: (name == "linear").then(|| "<i>wild".to_owned()),
     };
     RunsReport {
         title: "<script>title</script>".to_owned(),
+        verdict: Some(Verdict { good: true, words: "<u>all well".to_owned() }),
+        motion: Some("<script>move()</script>".to_owned()),
         introduction: "One.\n\nTwo & three.".to_owned(),
         runs: vec![run("<script>name</script>"), run("linear")],
         comparison_svg: Some(comparison(&[("tanh", &Sketch::of(&trace))]).svg()),

@@ -1,0 +1,95 @@
+//! What every page is made of: the result in a sentence, the picture that shows it, then detail, folded where it is long.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
+
+/// The result in a sentence.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Verdict {
+    /// Whether it is good.
+    pub good: bool,
+    /// The result, in numbers.
+    pub words: String,
+}
+
+/// A part of a page.
+pub(super) struct Section {
+    /// Its place in the address.
+    pub id: &'static str,
+    pub heading: &'static str,
+    pub body: Markup,
+    /// Whether it is shown only when it is asked for, and on paper.
+    pub folded: bool,
+}
+
+impl Section {
+    pub(super) fn new(id: &'static str, heading: &'static str, body: Markup) -> Self {
+        Self { id, heading, body, folded: false }
+    }
+
+    pub(super) fn folded(self) -> Self {
+        Self { folded: true, ..self }
+    }
+}
+
+/// A whole page.
+pub(super) struct Page<'a> {
+    pub title: &'a str,
+    pub verdict: Option<&'a Verdict>,
+    /// What stands under the verdict: the picture that shows it.
+    pub lead: Markup,
+    pub sections: Vec<Section>,
+    /// How the page was made.
+    pub provenance: Markup,
+}
+
+impl Page<'_> {
+    /// As HTML, which needs nothing else.
+    pub(super) fn html(&self) -> String {
+        markup! {
+            (DOCTYPE)
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta name="viewport" content="width=device-width, initial-scale=1";
+                    title { (self.title) }
+                    style { (PreEscaped(include_str!("report.css"))) }
+                }
+                body { main {
+                    header {
+                        h1 { (self.title) }
+                        @if let Some(verdict) = self.verdict { (said(verdict)) }
+                    }
+                    (self.lead)
+                    nav aria-label="Contents" {
+                        @for section in &self.sections { a href={ "#" (section.id) } { (section.heading) } }
+                    }
+                    @for section in &self.sections { (part(section)) }
+                    footer { h2 { "How this page was made" } (self.provenance) }
+                } }
+            }
+        }
+        .into_string()
+    }
+}
+
+fn said(Verdict { good, words }: &Verdict) -> Markup {
+    let (class, mark) = if *good { ("verdict good", "✓ good") } else { ("verdict bad", "✗ not good") };
+    markup! { p class=(class) { strong { (mark) } " " (words) } }
+}
+
+fn part(Section { id, heading, body, folded }: &Section) -> Markup {
+    markup! {
+        section id=(id) {
+            @if *folded {
+                details { summary { h2 { (heading) } } (body) }
+            } @else {
+                h2 { (heading) } (body)
+            }
+        }
+    }
+}
+
+/// A figure in its frame, with what it shows.
+pub(super) fn figure(svg: &str, caption: &Markup) -> Markup {
+    markup! { figure { div.card { (PreEscaped(svg)) } figcaption { (caption) } } }
+}

@@ -1,0 +1,108 @@
+//! The page of what loops bear.
+
+use maud::{Markup, html as markup};
+
+use super::html::{AssumedNumber, assumptions};
+use super::kit::{Page, Section, Verdict, figure};
+use super::margins_figure::margins_figure;
+use crate::files::number::{NONE, significant};
+use crate::margins::{Edge, Margins};
+
+/// The page: for each loop what it bears, as a picture, then all numbers. The same margins give the same page, byte for byte.
+pub fn margins_page(loops: &[Margins], assumed: &[AssumedNumber]) -> String {
+    let title =
+        loops.first().map_or_else(|| "Margins".to_owned(), |first| format!("{}: margins", first.name));
+    let verdict = verdict(loops);
+    let caption = markup! {
+        "Bars end where the loop was seen to hold last, red begins where it did not. Each change is made alone, from the scenario as it is, by \
+         steps and bisection to 1 %: where a loop holds again farther out was not looked for."
+    };
+    let lead = markup! { @for margins in loops { (figure(&margins_figure(margins).svg(), &caption)) } };
+    let sections = vec![
+        Section::new("numbers", "In numbers", numbers(loops)),
+        Section::new("holds", "What holding means", criteria(loops)).folded(),
+        Section::new("assumptions", "Assumptions", assumptions(assumed)).folded(),
+    ];
+    let runs: usize = loops.iter().map(|margins| margins.runs).sum();
+    let provenance = markup! { ul {
+        li { "flexure " (env!("CARGO_PKG_VERSION")) }
+        li { (runs) " runs were simulated. The same build writes the same page, byte for byte, on any number of threads." }
+    } };
+    Page { title: &title, verdict: Some(&verdict), lead, sections, provenance }.html()
+}
+
+/// What the first loop bears, in a sentence; it is good if every loop holds as it is.
+fn verdict(loops: &[Margins]) -> Verdict {
+    let holds = |margins: &Margins| {
+        margins.reasons.is_empty() && margins.sampled.as_ref().is_none_or(|sampled| sampled.stable)
+    };
+    let words = loops.iter().map(|margins| {
+        if !holds(margins) {
+            let why = margins.reasons.first().cloned().or_else(|| margins.sampled.as_ref().map(crate::sampled::Sampled::line));
+            return format!("{} does not hold as it is: {}.", margins.law(), why.unwrap_or_default());
+        }
+        let upto = |edge: &Edge, unit: &str, scale: f64| {
+            edge.holds().map_or_else(|| format!("no {unit}"), |holds| format!("{} {unit}", significant(scale * holds, 3)))
+        };
+        let between = |low: &Edge, high: &Edge| {
+            let number = |edge: &Edge| edge.holds().map_or(NONE.to_owned(), |holds| significant(holds, 3));
+            format!("{} to {}", number(low), number(high))
+        };
+        format!(
+            "{} holds with {} of delay more, {} times its torque, {} times its stiffness, and {} of noise more.",
+            margins.law(),
+            upto(&margins.delay, "ms", 1e3),
+            between(&margins.gain_low, &margins.gain_high),
+            between(&margins.stiffness_low, &margins.stiffness_high),
+            upto(&margins.noise, "mrad", 1e3)
+        )
+    });
+    Verdict { good: loops.iter().all(holds), words: words.collect::<Vec<_>>().join(" ") }
+}
+
+fn numbers(loops: &[Margins]) -> Markup {
+    let both = |edge: &Edge, scale: f64| match edge {
+        Edge::Between { holds, fails } => [holds, fails].map(|x| significant(scale * x, 3)),
+        Edge::Beyond { holds } | Edge::Open { holds } => [significant(scale * holds, 3), NONE.to_owned()],
+        Edge::Nowhere => [NONE.to_owned(), NONE.to_owned()],
+    };
+    markup! {
+        @for margins in loops {
+            h3 { (margins.law()) }
+            div.scroll { table.numbers {
+                thead { tr { th { "change" } th { "holds" } th { "does not hold" } } }
+                tbody {
+                    @for (name, edge, scale) in [
+                        ("delay from command to torque added [ms]", &margins.delay, 1e3),
+                        ("torque too small by the factor", &margins.gain_low, 1.0),
+                        ("torque too large by the factor", &margins.gain_high, 1.0),
+                        ("springs softer than the law believes by the factor", &margins.stiffness_low, 1.0),
+                        ("springs stiffer than the law believes by the factor", &margins.stiffness_high, 1.0),
+                        ("white noise added to all positions, standard deviation [mrad]", &margins.noise, 1e3),
+                    ] {
+                        tr { th scope="row" { (name) } @for number in both(edge, scale) { td { (number) } } }
+                    }
+                }
+            } }
+            @if let (Some(error), Some(torque)) = (margins.noise_to_error, margins.noise_to_torque) {
+                p.note {
+                    "At a tenth of that noise: " (significant(error, 3)) " rad of link error for each rad of noise, and "
+                    (significant(1e-3 * torque, 3)) " N m of torque step for each mrad (root mean squares)."
+                }
+            }
+            @if let Some(sampled) = &margins.sampled { p.note { (sampled.line()) } }
+        }
+    }
+}
+
+fn criteria(loops: &[Margins]) -> Markup {
+    markup! {
+        ul { @for margins in loops {
+            li {
+                (margins.law()) ": it follows its reference by the verdict on runs, with an rms error of at most "
+                (significant(1e3 * margins.allowed_rms_e_l, 3)) " mrad, torques of at most " (significant(margins.allowed_max_u_m, 3))
+                " N m, and steps of the torque of at most " (significant(margins.allowed_rms_torque_change, 3)) " N m (rms) a control period."
+            }
+        } }
+    }
+}
