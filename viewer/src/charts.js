@@ -4,6 +4,7 @@ import uPlot from 'uplot';
 import { decimate } from './decimate.js';
 import { usualPeak } from './data.js';
 import { palette } from './theme.js';
+import { digits } from './units.js';
 
 const FONT = '12px system-ui, "Segoe UI", Roboto, "DejaVu Sans", sans-serif';
 
@@ -88,12 +89,12 @@ export class Charts {
     return [low - room, high + room];
   }
 
-  /** Times of pushes, behind the lines. */
+  /** Times of pushes and stops, behind the lines. */
   spans(plot) {
     const { ctx, bbox } = plot, drawn = new Set();
     ctx.save();
     ctx.fillStyle = palette().span;
-    for (const run of this.runs) for (const push of run.pushes) {
+    for (const run of this.runs) for (const push of [...run.pushes, ...stops(run)]) {
       const key = `${push.from} ${push.to}`;
       if (drawn.has(key)) continue;
       drawn.add(key);
@@ -119,10 +120,10 @@ export class Charts {
         const y = Math.round(plot.valToPos(value, 'y', true));
         ctx.strokeStyle = palette().joints[joint.colour];
         ctx.beginPath(); ctx.moveTo(bbox.left, y); ctx.lineTo(bbox.left + bbox.width, y); ctx.stroke();
-        // One word is enough; two limits are often close.
+        // One name is enough; two limits are often close.
         if (drawn.size > 1) continue;
         ctx.fillStyle = palette().muted; ctx.font = FONT.replace('12px', `${11 * devicePixelRatio}px`); ctx.textAlign = 'right'; ctx.textBaseline = value > 0 ? 'top' : 'bottom';
-        ctx.fillText('limit', bbox.left + bbox.width - 4 * devicePixelRatio, y + (value > 0 ? 3 : -3) * devicePixelRatio);
+        ctx.fillText(`limit of ${joint.name}`, bbox.left + bbox.width - 4 * devicePixelRatio, y + (value > 0 ? 3 : -3) * devicePixelRatio);
       }
     }));
     ctx.restore();
@@ -179,7 +180,16 @@ export class Charts {
   }
 }
 
-const tidy = tick => String(Number(tick.toPrecision(8))).replace('-', '\u2212').replace(/e\+?/, '·10^');
+/** From when until when the robot was stopped. */
+function stops(run) {
+  return run.events.filter(event => event.kind === 'stop').map(stop => ({
+    from: stop.t, to: run.events.find(event => event.kind === 'rejoin' && event.t >= stop.t)?.t ?? run.t[run.last],
+  }));
+}
+
+// Without an exponent as long as there is room for it beside the frame.
+const tidy = tick => (Math.abs(tick) >= 1e5 ? digits(tick) : plain(tick));
+const plain = tick => String(Number(tick.toPrecision(8))).replace('-', '\u2212').replace(/e\+?/, '·10^');
 
 function line(kind, over) {
   const element = document.createElement('i');

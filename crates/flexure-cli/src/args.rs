@@ -54,7 +54,7 @@ pub enum Command {
         /// Scenario file, or the name of a built-in scenario.
         scenario: String,
         /// With --view: another one, for the same page.
-        #[arg(value_name = "BESIDE", requires = "view")]
+        #[arg(value_name = "BESIDE")]
         beside: Option<String>,
         #[command(flatten)]
         traced: Traced,
@@ -98,6 +98,9 @@ pub enum Command {
         /// Files, or names of built-in robots and scenarios.
         #[arg(required = true, value_name = "FILE")]
         files: Vec<String>,
+        /// Draw how each joint of the robots answers its motor over frequency, into this folder; created if missing.
+        #[arg(long, value_name = "FOLDER")]
+        figure: Option<PathBuf>,
     },
     #[command(
         after_help = "Example:\n  flexure verify out/two-link-tanh.certificate.json --against two-link-tanh"

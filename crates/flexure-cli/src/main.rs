@@ -73,7 +73,7 @@ fn dispatch(command: Command, reading: Reading<'_>, json: bool) -> Result<(), Fa
         Command::Eval { scenario, states } => commands::eval(&scenario, reading, &states, json),
         Command::Model { robot, states } => commands::model(&robot, reading.outside, &states, json),
         Command::Certify(options) => commands::certify(&options, reading, json),
-        Command::Check { files } => commands::check(&files, reading, json),
+        Command::Check { files, figure } => commands::check(&files, figure.as_deref(), reading, json),
         Command::Import(options) => commands::import(&options, json),
         Command::Verify { certificate, against } => {
             commands::verify(&certificate, against.as_deref(), reading, json)

@@ -43,6 +43,12 @@ pub struct Findings {
     /// Whether the loop is stable that holds its torque for a control period, for a scenario.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sampled: Option<Sampled>,
+    /// The joints of the robot, also of that of a scenario.
+    #[serde(skip)]
+    pub rows: Vec<JointRow>,
+    /// The name of the robot.
+    #[serde(skip)]
+    pub robot_name: String,
     /// What is suspicious.
     #[serde(skip)]
     pub warnings: Vec<Problem>,
@@ -102,7 +108,9 @@ impl Findings {
             joints: rows.len(),
             assumptions: assumed.len(),
             assumed,
-            robot: Some(rows),
+            robot: Some(rows.clone()),
+            rows,
+            robot_name: robot.name.clone(),
             reference: None,
             starting_gains: None,
             sampled: None,
@@ -134,6 +142,8 @@ impl Findings {
             assumptions: assumed.len(),
             assumed,
             robot: None,
+            rows: overview(&scenario.robot)?,
+            robot_name: scenario.robot.name.clone(),
             reference: Some(reference),
             starting_gains: scenario.has_starting_gains().then(|| scenario.controller.to_toml()),
             sampled,

@@ -1,8 +1,10 @@
 //! `flexure check`: are these files good?
 
+use std::path::{Path, PathBuf};
+
 use flexure::check::{Along, Assumed, Findings};
-use flexure::files::{Problem, Reading};
-use flexure::report::{joint_table, usage_table};
+use flexure::files::{Problem, Reading, create_folder, prepare};
+use flexure::report::{joint_table, response_figure, usage_table, write_figure};
 use serde::Serialize;
 
 use super::print;
@@ -18,6 +20,9 @@ struct Verdict {
     content: Option<Findings>,
     warnings: Vec<Complaint>,
     errors: Vec<Complaint>,
+    /// Figures that were drawn; not there without `--figure`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    files: Vec<PathBuf>,
 }
 
 impl Verdict {
@@ -27,8 +32,22 @@ impl Verdict {
     }
 }
 
-pub fn check(files: &[String], reading: Reading<'_>, json: bool) -> Result<(), Failure> {
-    let verdicts: Vec<_> = files.iter().map(|file| verdict(file, reading, json)).collect();
+pub fn check(
+    files: &[String],
+    figure: Option<&Path>,
+    reading: Reading<'_>,
+    json: bool,
+) -> Result<(), Failure> {
+    figure.map_or(Ok(()), prepare)?;
+    let mut verdicts: Vec<_> = files.iter().map(|file| verdict(file, reading, json)).collect();
+    if let Some(folder) = figure {
+        for verdict in &mut verdicts {
+            let Some(Findings { robot_name, rows, .. }) = &verdict.content else { continue };
+            create_folder(folder)?;
+            let figure = response_figure(robot_name, rows);
+            verdict.files = write_figure(folder, &format!("{robot_name}.response"), &figure)?.to_vec();
+        }
+    }
     if json {
         print::json(&verdicts)?;
     } else {
@@ -83,7 +102,7 @@ fn show(verdict: &Verdict) -> Result<(), Failure> {
     if let Some(sampled) = sampled {
         print::line(&sampled.line())?;
     }
-    Ok(())
+    verdict.files.iter().try_for_each(|file| print::line(&format!("wrote {}", file.display())))
 }
 
 fn counted(n: usize, what: &str) -> String {
@@ -102,6 +121,7 @@ fn verdict(file: &str, reading: Reading<'_>, json: bool) -> Verdict {
                 warnings: content.warnings.iter().map(Complaint::from).collect(),
                 errors: content.exceeded.iter().map(Complaint::from).collect(),
                 content: Some(content),
+                files: Vec::new(),
             }
         }
         Err(problems) => {
@@ -115,6 +135,7 @@ fn verdict(file: &str, reading: Reading<'_>, json: bool) -> Verdict {
                 file: file.to_owned(),
                 ok: false,
                 content: None,
+                files: Vec::new(),
                 warnings: complaints(warnings),
                 errors: complaints(errors),
             }

@@ -62,6 +62,10 @@ pub fn run(
     traced: &Traced,
     json: bool,
 ) -> Result<(), Failure> {
+    if beside.is_some() && !traced.view {
+        let message = "a second scenario is there for the page that shows both".to_owned();
+        return Err(Failure::input("usage", message, "add --view, or run them one after the other"));
+    }
     let mut scenarios = Vec::new();
     for name in [Some(scenario), beside].into_iter().flatten() {
         scenarios.push(load_scenario_with(name, reading)?);

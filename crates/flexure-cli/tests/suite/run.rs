@@ -239,3 +239,42 @@ fn what_is_accepted_is_checked() {
         place.run(&["run", "bad.toml"]).refused(&fragments);
     }
 }
+
+/// What the page shows is tested in a browser, `npm test` in `viewer`.
+#[test]
+fn a_page_with_the_robot_in_motion_is_one_file() {
+    let place = Place::new();
+    place.scenario("short.toml", &[SHORT]);
+    let text = place.run(&["run", "short.toml", "--view"]).done().stdout;
+    assert!(text.ends_with("wrote out/short.view.html\n"), "{text}");
+    let page = place.read("out/short.view.html");
+    assert!(page.contains("\"name\":\"short\"") && page.len() < 1_500_000, "{}", page.len());
+    let summary = place.run(&["run", "short.toml", "--view", "--json"]).done().json();
+    assert_eq!(summary["files"][3], "out/short.view.html");
+    assert_eq!(place.read("out/short.view.html"), page);
+}
+
+#[test]
+fn two_runs_share_a_page() {
+    let place = Place::new();
+    place.scenario("short.toml", &[SHORT]);
+    place.scenario("longer.toml", &[("duration = 10.0", "duration = 0.06")]);
+    let found = place.run(&["run", "--view", "short.toml", "longer.toml", "--json"]).done().json();
+    assert_eq!(found["files"][0], "out/short-and-longer.view.html");
+    assert_eq!((&found["runs"][0]["name"], &found["runs"][1]["name"]), (&"short".into(), &"longer".into()));
+    let page = place.read("out/short-and-longer.view.html");
+    assert!(page.contains("\"name\":\"short\"") && page.contains("\"name\":\"longer\""));
+}
+
+#[test]
+fn a_second_run_wants_a_page_and_a_name_of_its_own() {
+    let place = Place::new();
+    place.scenario("short.toml", &[SHORT]);
+    place.scenario("elsewhere/short.toml", &[SHORT]);
+    place.run(&["run", "short.toml", "two-link-tanh"]).refused(&["--view"]);
+    place
+        .run(&["run", "--view", "short.toml", "elsewhere/short.toml"])
+        .refused(&["both scenarios are called short"]);
+    place.run(&["run", "--view", "short.toml", "nowhere"]).refused(&["nowhere"]);
+    assert!(!place.path().join("out").exists(), "nothing was run");
+}

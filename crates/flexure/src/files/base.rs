@@ -1,7 +1,7 @@
 //! What paths inside a file are relative to, and which files may be named there.
 
-use std::io;
 use std::path::{Component, Path, PathBuf};
+use std::{fs, io};
 
 use crate::files::change::Change;
 use crate::files::diagnostic::Problem;
@@ -94,6 +94,18 @@ impl Base {
             }),
             Self::Kept(kept) => kept.read(path, limit),
         }
+    }
+
+    /// The bytes of the file at `path`, at most `limit` of them; none if there is no such file, or it may not be named.
+    pub fn bytes(&self, path: &str, limit: u64) -> Option<Vec<u8>> {
+        let Self::Folder(folder, outside) = self else { return None };
+        let real = match outside {
+            Outside::Allowed => folder.join(path),
+            Outside::Refused => inside(folder, Path::new(path)).ok()??,
+        };
+        let what = real.metadata().ok().filter(|what| what.is_file() && what.len() <= limit)?;
+        let bytes = fs::read(real).ok()?;
+        (bytes.len() as u64 <= limit.max(what.len())).then_some(bytes)
     }
 }
 

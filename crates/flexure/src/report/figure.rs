@@ -7,7 +7,7 @@
 use super::curve::Curve;
 use super::joint_panels::joint_panels;
 use super::marks::{self, Happening, JointMarks, What};
-use super::panel::{self, HEIGHT, Panel, Scale, View};
+use super::panel::{self, HEIGHT, Limit, Panel, Scale, View};
 use super::range::Range;
 use super::scene::Scene;
 use super::sheet::{MARGIN, line_legend, page};
@@ -37,9 +37,13 @@ impl FigureOptions {
     }
 
     /// Limits of the joints, each in its colour.
-    fn limits(&self, of: impl Fn(&JointMarks) -> [f64; 2]) -> Vec<(f64, Stroke)> {
+    fn limits(&self, of: impl Fn(&JointMarks) -> [f64; 2]) -> Vec<Limit> {
         let each = |(i, joint): (usize, &JointMarks)| {
-            of(joint).map(|limit| (limit, Stroke { color: hue(i), ..LIMIT }))
+            of(joint).map(|value| Limit {
+                value,
+                of: joint.name.clone(),
+                stroke: Stroke { color: hue(i), ..LIMIT },
+            })
         };
         self.joints.iter().enumerate().flat_map(each).collect()
     }

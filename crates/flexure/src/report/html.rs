@@ -81,7 +81,7 @@ pub fn html(report: &RunsReport) -> String {
     if !minded.is_empty() {
         sections.push(Section::new(
             "warnings",
-            "Runs to be warned of",
+            "Runs with a warning",
             markup! {
                 @for (index, run) in minded { (run_figure(index + 1, run)) }
             },
@@ -95,7 +95,7 @@ pub fn html(report: &RunsReport) -> String {
     let errata = markup! { div.scroll.prose { (PreEscaped(ERRATA)) } };
     sections.push(Section::new("errata", "Slips of the paper", errata).folded());
     let caption = markup! {
-        "Largest link position error over the joints. On the logarithmic axis a straight line is an exponential decay, and its slope \
+        "Largest link position error over the joints, of the runs that join their reference smoothly. On the logarithmic axis a straight line is an exponential decay, and its slope \
          is the rate."
     };
     let lead = markup! {
@@ -182,7 +182,7 @@ fn summary_table(runs: &[RunReport]) -> Markup {
         p.note {
             "Settling time: after it every " (symbols("|e_l|")) " stays below 1 mrad; — if that never happens. "
             "Rate at states: the smallest contraction rate of the law in continuous time at the states of the run, evaluated and not proved. "
-            "Rate certified: proved, on the region that " code { "flexure certify" } " takes by itself; — where nothing was proved of this loop. "
+            "Rate certified: proved on the region that " code { "flexure certify" } " takes by itself, smaller or larger than the errors of up to 3 rad of the rates above; — where nothing was proved of this loop. "
             "Energy drift: the energy balance's residual, relative to the energy that went through the robot."
         }
     }

@@ -37,8 +37,11 @@ const COLUMNS: [&str; 3] = ["position", "|position error|", "motor torque"];
 pub fn joint_panels(run: &Sketch, options: &FigureOptions) -> Scene {
     let joints = run.joints("q_l").max(run.joints("u_m"));
     let happenings = options.happenings(run);
-    let (mut scene, top) = page(WIDTH, &options.title, &options.subtitle);
-    let top = top + line_legend(&mut scene, top, &legend(options, &happenings)) + HEADING - 14.0;
+    let (mut scene, under_title) = page(WIDTH, &options.title, &options.subtitle);
+    let mut marked = Marked { limit: true, settled: true };
+    let entries = legend(marked, options.settled, &happenings);
+    let top = under_title + line_legend(&mut scene.clone(), under_title, &entries) + HEADING - 14.0;
+    marked = Marked { limit: false, settled: false };
     scene.height = top + ROW * joints as f64 + BELOW;
     let width = (WIDTH - MARGIN) / COLUMNS.len() as f64;
     for (column, heading) in COLUMNS.iter().enumerate() {
@@ -56,18 +59,19 @@ pub fn joint_panels(run: &Sketch, options: &FigureOptions) -> Scene {
         let marks = options.joint(joint);
         let row = Row { run, happenings: &happenings, last: joint + 1 == joints };
         let place = |column: usize| [0.5 * MARGIN + width * column as f64, top + ROW * joint as f64, width];
-        row.linear(
+        marked.limit |= row.linear(
             &mut scene,
             place(0),
             &marks.name,
-            drawn(&positions, joint),
+            &drawn(&positions, joint),
             units::ANGLE.of(marks.kind).raised,
             &marks.positions,
         );
-        row.errors(&mut scene, place(1), &drawn(&errors, joint), &marks, options.settled);
+        marked.settled |= row.errors(&mut scene, place(1), &drawn(&errors, joint), &marks, options.settled);
         let (torques, unit, limits) = share(drawn(&[("u_m", side(LINK))], joint), &marks);
-        row.linear(&mut scene, place(2), "", torques, unit, &limits);
+        marked.limit |= row.linear(&mut scene, place(2), "", &torques, unit, &limits);
     }
+    line_legend(&mut scene, under_title, &legend(marked, options.settled, &happenings));
     scene
 }
 
@@ -100,16 +104,16 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// A frame with a linear axis: `name` and unit above it, `limits` marked where they are inside.
+    /// A frame with a linear axis: `name` and unit above it, `limits` marked where they are inside. Returns whether one is.
     fn linear(
         &self,
         scene: &mut Scene,
         place: [f64; 3],
         name: &str,
-        curves: Vec<Curve>,
+        curves: &[Curve],
         unit: &str,
         limits: &[f64; 2],
-    ) {
+    ) -> bool {
         let mut values = curves.iter().flat_map(|curve| curve.values.iter().copied());
         let of = if self.run.diverged().is_some() { Linear::of_diverged } else { Linear::of };
         let Linear { range, clipped } = of(&mut values);
@@ -120,7 +124,7 @@ impl Row<'_> {
         for limit in limits.iter().filter(|limit| range.contains(**limit)) {
             axes.level(scene, *limit, LIMIT);
         }
-        self.draw(scene, &axes, &curves);
+        self.draw(scene, &axes, curves);
         let unit = if power == 0 { unit.to_owned() } else { format!("{} {unit}", power_of_ten(power)) };
         let peak = clipped.then(|| {
             let values = curves.iter().flat_map(|curve| &curve.values);
@@ -128,9 +132,11 @@ impl Row<'_> {
             format!("peak {}", significant(peak / 10f64.powi(power), 3))
         });
         head(scene, &axes, name, &unit, peak.as_deref().unwrap_or(""));
+        limits.iter().any(|limit| range.contains(*limit))
     }
 
-    /// A frame with absolute errors in decades, and when they have settled below what counts as settled.
+    /// A frame with absolute errors in decades, and when they have settled below what counts as settled. Returns
+    /// whether either is inside.
     fn errors(
         &self,
         scene: &mut Scene,
@@ -138,7 +144,7 @@ impl Row<'_> {
         curves: &[Curve],
         marks: &JointMarks,
         settled: Option<f64>,
-    ) {
+    ) -> bool {
         let exponents: Vec<Curve> =
             curves.iter().map(|curve| curve.exponents(buckets(2 * COLUMNS.len()))).collect();
         let range = decades(&exponents);
@@ -146,14 +152,17 @@ impl Row<'_> {
         let axes = self.axes(place, range, every_other(ticks::decades(range)));
         shade(scene, &axes, self.happenings);
         axes.draw(scene);
-        if range.contains(SETTLED.log10()) {
+        let is_level = range.contains(SETTLED.log10());
+        if is_level {
             axes.level(scene, SETTLED.log10(), DOTTED);
         }
-        if let Some(time) = settled.filter(|time| *time > axes.x.range.low && axes.x.range.contains(*time)) {
+        let settled = settled.filter(|time| *time > axes.x.range.low && axes.x.range.contains(*time));
+        if let Some(time) = settled {
             axes.mark(scene, time, DOTTED);
         }
         self.draw(scene, &axes, &exponents);
         head(scene, &axes, "", units::ANGLE.of(marks.kind).raised, "");
+        is_level || settled.is_some()
     }
 
     fn axes(&self, [left, top, width]: [f64; 3], range: Range, ticks: Vec<ticks::Tick>) -> Axes<'static> {
@@ -201,20 +210,25 @@ fn every_other(ticks: Vec<ticks::Tick>) -> Vec<ticks::Tick> {
     ticks.into_iter().step_by(step).collect()
 }
 
-fn legend(options: &FigureOptions, happenings: &[Happening]) -> Vec<(String, Stroke)> {
-    let limited = options
-        .joints
-        .iter()
-        .any(|joint| joint.torque_limit.is_finite() || joint.positions.iter().any(|q| q.is_finite()));
+/// What frames mark.
+#[derive(Clone, Copy)]
+struct Marked {
+    limit: bool,
+    settled: bool,
+}
+
+fn legend(marked: Marked, settled: Option<f64>, happenings: &[Happening]) -> Vec<(String, Stroke)> {
     let entry = |name: &str, stroke: Stroke| (name.to_owned(), stroke);
-    let lines = [
+    let mut entries = vec![
         entry("link side", side(LINK)),
         entry("motor side", side(MOTOR)),
         entry("reference", Stroke::reference()),
     ];
-    let settled = format!("1 mrad{}", if options.settled.is_some() { ", and settled below it" } else { "" });
-    let mut entries: Vec<(String, Stroke)> = lines.into_iter().chain([(settled, DOTTED)]).collect();
-    if limited {
+    if marked.settled {
+        let when = if settled.is_some() { "1 mrad, and settled below it" } else { "1 mrad" };
+        entries.push(entry(when, DOTTED));
+    }
+    if marked.limit {
         entries.push(entry("limit", LIMIT));
     }
     entries.extend(marks::legend(happenings));

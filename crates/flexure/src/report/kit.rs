@@ -73,18 +73,16 @@ impl Page<'_> {
 }
 
 fn said(Verdict { good, words }: &Verdict) -> Markup {
-    let (class, mark) = if *good { ("verdict good", "✓ good") } else { ("verdict bad", "✗ not good") };
+    let (class, mark) = if *good { ("verdict good", "✓ good") } else { ("verdict bad", "✕ bad") };
     markup! { p class=(class) { strong { (mark) } " " (words) } }
 }
 
 fn part(Section { id, heading, body, folded }: &Section) -> Markup {
     markup! {
-        section id=(id) {
-            @if *folded {
-                details { summary { h2 { (heading) } } (body) }
-            } @else {
-                h2 { (heading) } (body)
-            }
+        @if *folded {
+            section.folded id=(id) { details { summary { h2 { (heading) } } (body) } }
+        } @else {
+            section id=(id) { h2 { (heading) } (body) }
         }
     }
 }

@@ -15,7 +15,7 @@ const TITLE: &str = "Control laws of flexible-joint robots on the same bench";
 /// The page: who is best at what, ranking, where v-CBC loses, errors, what they cost, gains and what was assumed. The same comparison gives
 /// the same page, byte for byte.
 pub fn leaderboard_page(board: &Leaderboard, assumed: &[AssumedNumber]) -> String {
-    let map = markup! { "The darker the better. Rows in the order of the mean rank; v-CBC in bold." };
+    let map = markup! { "The deeper the blue the better; cells with a dash: the law does not follow. Rows in the order of the mean rank; v-CBC in bold." };
     let lead = markup! { (figure(&score_map(board).svg(), &map)) (introduction(board)) };
     let losses =
         board.has_vcbc().then(|| Section::new("losses", "Where v-CBC is not the best", losses(board)));
@@ -38,11 +38,11 @@ fn verdict(board: &Leaderboard) -> Verdict {
     let words = |standing: &Standing| {
         let of = counted(tasks, "task");
         format!(
-            "{}, mean rank {}, best on {} of {of}, does not follow on {}",
+            "{}, mean rank {}, follows on {} of {of}, best on {}",
             standing.law,
             short(standing.mean_rank, 3),
-            standing.wins,
-            standing.unfinished
+            tasks - standing.unfinished,
+            standing.wins
         )
     };
     let Some(first) = board.ranking.first() else {
@@ -65,7 +65,9 @@ fn introduction(board: &Leaderboard) -> Markup {
         p {
             (counted(board.laws().count(), "law")) " on " (counted(board.tasks.len(), "task"))
             ". Each law starts each task from gains made by one rule from stiffness and inertias, and may simulate "
-            (counted(board.budget, "run")) " to find better ones, with each of " (counted(seeds(board), "seed")) ". What the search makes small, and what ranks, is the "
+            (counted(board.budget, "run")) " to find better ones"
+            @if seeds(board) > 1 { ", with each of " (counted(seeds(board), "seed")) }
+            ". What the search makes small, and what ranks, is the "
             em { "penalised error" } ": the root mean square error of the links times √(1 + (c / 0.05)²), with c the change of \
             the torque from one control instant to the next as a part of the torque. Chattering is no way to win. \
             Only loops that follow their reference with every seed, by the verdict on runs, are ranked."
@@ -122,7 +124,8 @@ fn losses(board: &Leaderboard) -> Markup {
                 "Factor: the penalised error of the best v-CBC that took part over that of the best law. Root mean square errors \
                  beside the names; ~ marks torques that chatter."
                 @let others = board.tasks.len() - losses.len();
-                @if others > 0 { " On the other " (counted(others, "task")) " v-CBC is the best or ties with the best." }
+                @if others == 1 { " On the other task v-CBC is the best or ties with the best." }
+                @if others > 1 { " On the other " (others) " tasks v-CBC is the best or ties with the best." }
             }
         }
     }

@@ -11,7 +11,7 @@ use crate::margins::{Edge, Margins};
 
 const WIDTH: f64 = 1200.0;
 /// Left end of the frames: names stand before it [px].
-const LEFT: f64 = 190.0;
+const LEFT: f64 = 206.0;
 /// Right of the frames, for words [px].
 const WORDS: f64 = 300.0;
 const ROW: f64 = 84.0;

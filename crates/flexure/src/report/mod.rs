@@ -32,6 +32,7 @@ mod proof_table;
 mod range;
 pub mod raster;
 mod replay;
+mod response_figure;
 mod scatter;
 mod scene;
 mod score_map;
@@ -68,6 +69,7 @@ pub use outputs::{write_certificate, write_figure, write_leaderboard, write_marg
 pub use proof_table::{certificate_table, proof_table};
 pub use raster::RasterError;
 pub use replay::{replay_figure, replay_table, write_replay};
+pub use response_figure::response_figure;
 pub use scene::Scene;
 pub use score_map::score_map;
 pub use sketch::Sketch;

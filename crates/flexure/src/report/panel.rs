@@ -5,7 +5,7 @@ use super::curve::Curve;
 use super::decimate::bucket_size;
 use super::marks::{Happening, shade};
 use super::range::{Linear, Range, decades};
-use super::scene::{Anchor, Point, Scene};
+use super::scene::{Anchor, Lettering, Point, Scene};
 use super::style::{INK, MUTED, Stroke, bold, letters};
 use super::ticks;
 use crate::files::number::{duration, power_of_ten, short, significant};
@@ -42,6 +42,13 @@ pub(super) enum Scale {
     Decades,
 }
 
+/// A value that is not to be passed, and whose it is.
+pub(super) struct Limit {
+    pub value: f64,
+    pub of: String,
+    pub stroke: Stroke,
+}
+
 pub(super) struct Panel {
     pub title: &'static str,
     pub quantity: &'static str,
@@ -50,7 +57,7 @@ pub(super) struct Panel {
     /// The part of the time that is shown, where all of it would be too dense; of linear axes.
     pub window: Option<Range>,
     /// Values that linear axes mark, where they are inside.
-    pub limits: Vec<(f64, Stroke)>,
+    pub limits: Vec<Limit>,
     pub curves: Vec<Curve>,
 }
 
@@ -77,7 +84,9 @@ impl Panel {
         };
         let end = view.diverged.map(|t| format!("not finite after {}", duration(t)));
         let note = [end, note].into_iter().flatten().collect::<Vec<_>>().join("; ");
-        scene.text([x + 14.0, y + 39.0], &note, letters(12.0, MUTED), Anchor::Start);
+        if !note.is_empty() {
+            scene.text([x + 14.0, y + 39.0], &note, letters(12.0, MUTED), Anchor::Start);
+        }
     }
 
     fn decades(&self, scene: &mut Scene, place: [f64; 4], view: &View) -> String {
@@ -202,12 +211,16 @@ fn linear(range: Range, label: &str) -> Axis<'_> {
 }
 
 /// What happens, the frame, the limits inside it, the curves in their order, and a dotted line at the end of a run that did not stay finite.
-fn draw(scene: &mut Scene, axes: &Axes, limits: &[(f64, Stroke)], curves: &[Curve], view: &View) {
+fn draw(scene: &mut Scene, axes: &Axes, limits: &[Limit], curves: &[Curve], view: &View) {
     const END: Stroke = Stroke { color: MUTED, width: 1.2, dash: &[1.5, 3.0] };
     shade(scene, axes, &view.happenings);
     axes.draw(scene);
-    for (limit, stroke) in limits.iter().filter(|(limit, _)| axes.y.range.contains(*limit)) {
-        axes.level(scene, *limit, *stroke);
+    for Limit { value, of, stroke } in limits.iter().filter(|limit| axes.y.range.contains(limit.value)) {
+        axes.level(scene, *value, *stroke);
+        let [left, _, width, _] = axes.frame;
+        let [_, y] = axes.place(axes.x.range.low, *value);
+        let name = Lettering { color: stroke.color, ..letters(11.5, MUTED) };
+        scene.text([left + width - 6.0, y - 4.0], &format!("limit of {of}"), name, Anchor::End);
     }
     for curve in curves {
         axes.curve(scene, curve, view.buckets);

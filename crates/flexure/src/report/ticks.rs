@@ -125,7 +125,7 @@ mod tests {
             let ticks = even_by(axis, 6.0, power(axis));
             (power(axis), ticks.into_iter().map(|tick| tick.name).collect::<Vec<_>>().join(" "))
         };
-        assert_eq!(names(1.1e8), (6, "0 20 40 60 80 100".to_owned()));
+        assert_eq!(names(1.1e8), (6, "0 50 100".to_owned()));
         assert_eq!(names(4.1e-7), (-9, "0 100 200 300 400".to_owned()));
         assert_eq!(names(2.2), (0, "0 0.5 1 1.5 2".to_owned()));
         assert_eq!(power(Range { low: -2e5, high: 1.0 }), 3);

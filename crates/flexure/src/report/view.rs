@@ -4,9 +4,11 @@
 
 mod document;
 mod film;
+mod shapes;
 
 pub use film::Film;
 
+use super::sketch::Sketch;
 use crate::files::Problems;
 use crate::scenario::Scenario;
 use crate::simulate::Run;
@@ -27,6 +29,8 @@ pub struct Viewed<'a> {
     pub run: &'a Run,
     /// Its instants.
     pub film: &'a Film,
+    /// What figures show of it: it knows when the robot was stopped.
+    pub sketch: &'a Sketch,
     /// Whether that is good.
     pub good: bool,
     /// What came of it in a sentence.

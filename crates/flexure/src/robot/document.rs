@@ -14,6 +14,7 @@ use crate::files::table::Table;
 use crate::files::{Assumption, Outside, Places, Problem, Problems, provenance, quantity};
 use crate::robot::joints::{self, Drives, Limits};
 use crate::robot::links::{self, Assembled, Links, MovingJoint};
+use crate::robot::looks::Looks;
 use crate::robot::tolerances::{self, Tolerances};
 
 /// A flexible-joint robot as data: links, and per moving joint (in the order of the links) motor and spring.
@@ -59,6 +60,8 @@ pub struct Robot {
     /// Line and column of each key of the file, for messages.
     pub places: Places,
     pub(crate) decimals: Decimals,
+    /// What its links look like.
+    pub(crate) looks: Looks,
     /// SHA-256 of what the files say, in hexadecimal.
     pub(crate) digest: String,
 }
@@ -148,6 +151,7 @@ fn robot(root: &Table<'_>, places: &Places, base: &Base) -> Option<Robot> {
         warnings: Vec::new(),
         places: places.clone(),
         decimals: root.decimals(),
+        looks: links.looks,
         digest: normal(root).digest(),
     })
 }

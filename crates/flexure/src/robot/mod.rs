@@ -6,9 +6,11 @@ pub(crate) mod drives;
 pub(crate) mod joints;
 pub(crate) mod links;
 mod load;
+pub(crate) mod looks;
 mod overview;
 pub(crate) mod sized;
 pub(crate) mod slices;
+pub(crate) mod stl;
 pub(crate) mod tolerances;
 pub(crate) mod urdf;
 

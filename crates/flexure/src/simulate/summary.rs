@@ -67,17 +67,28 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// How well the links settle, and what that takes of the motors.
+    /// How far the links are off, whether and when they settle, and what that takes of the motors.
     pub fn in_words(&self) -> String {
         let settled = match self.settling_time {
-            Some(0.0) => "every link stays within 1 mrad of the reference".to_owned(),
-            Some(time) => {
-                format!("every link stays within 1 mrad of the reference after {} s", engineering(time))
-            }
-            None => "the links do not settle within 1 mrad of the reference".to_owned(),
+            Some(0.0) => "always within 1 mrad".to_owned(),
+            Some(time) => format!("within 1 mrad after {} s", engineering(time)),
+            None => "not within 1 mrad at the end".to_owned(),
+        };
+        let off = if self.max_abs_e_l.is_finite() {
+            format!(
+                "links are at most {} mrad off their reference, {settled}",
+                engineering(1e3 * self.max_abs_e_l)
+            )
+        } else {
+            "links leave their reference".to_owned()
+        };
+        let stops = match self.stops {
+            0 => String::new(),
+            1 => "; the guard stopped the robot once".to_owned(),
+            stops => format!("; the guard stopped the robot {stops} times"),
         };
         format!(
-            "{settled}; largest motor torque {} N m, root mean square {} N m",
+            "{off}; largest motor torque {} N m, root mean square {} N m{stops}",
             engineering(self.max_abs_u_m),
             engineering(self.rms_u_m)
         )

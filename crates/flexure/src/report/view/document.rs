@@ -5,12 +5,13 @@ use base64::prelude::BASE64_STANDARD;
 use serde::Serialize;
 
 use super::Viewed;
+use super::shapes::{Shape, shapes};
 use crate::files::Problems;
 use crate::files::number::short;
 use crate::imperfections::Push;
 use crate::robot::{Body, MovingJoint, Placed, Robot, kind_in_words};
 use crate::scenario::Scenario;
-use crate::simulate::{self, acting_limits};
+use crate::simulate::acting_limits;
 use crate::units;
 
 /// The version of the format.
@@ -48,6 +49,7 @@ struct Verdict {
 struct Pictured {
     name: String,
     bodies: Vec<PicturedBody>,
+    base_shapes: Vec<Shape>,
     gravity: [f64; 3],
     limits: Limits,
 }
@@ -64,6 +66,7 @@ struct PicturedBody {
     mass: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     tip: Option<[f64; 3]>,
+    shapes: Vec<Shape>,
 }
 
 /// Limits per joint, none where there is none.
@@ -123,7 +126,7 @@ impl Document {
 }
 
 fn run(viewed: &Viewed<'_>) -> Result<Run, Problems> {
-    let Viewed { scenario, run, film, good, words } = *viewed;
+    let Viewed { scenario, film, good, words, .. } = *viewed;
     let t = film.times();
     let [q_l, q_m, q_ld, e_l, u_m] = ["q_l", "q_m", "q_ld", "e_l", "u_m"].map(|prefix| film.signal(prefix));
     let [spring, external] = loads(scenario, &t, [&q_l, &q_m])?;
@@ -146,7 +149,7 @@ fn run(viewed: &Viewed<'_>) -> Result<Run, Problems> {
             external: (!pushes.is_empty()).then(|| columns(&external)),
         },
         pushes,
-        events: events(scenario, run, &t, &u_m),
+        events: events(viewed, &t, &u_m),
     })
 }
 
@@ -179,15 +182,12 @@ fn pictured(robot: &Robot) -> Pictured {
     let limits = &robot.limits;
     let of =
         |limits: &[f64]| limits.iter().map(|&limit| Some(limit).filter(|limit| limit.is_finite())).collect();
+    let (base_shapes, shapes) = shapes(robot);
+    let bodies = robot.links.placed().into_iter().zip(&robot.joints).zip(shapes);
     Pictured {
         name: robot.name.clone(),
-        bodies: robot
-            .links
-            .placed()
-            .into_iter()
-            .zip(&robot.joints)
-            .map(|(placed, joint)| body(placed, &joint.name))
-            .collect(),
+        bodies: bodies.map(|((placed, joint), shapes)| body(placed, &joint.name, shapes)).collect(),
+        base_shapes,
         gravity: robot.gravity,
         limits: Limits {
             torque: of(&limits.torque),
@@ -199,7 +199,7 @@ fn pictured(robot: &Robot) -> Pictured {
     }
 }
 
-fn body(Placed { body, tip }: Placed, joint: &str) -> PicturedBody {
+fn body(Placed { body, tip }: Placed, joint: &str, shapes: Vec<Shape>) -> PicturedBody {
     let Body { parent, kind, axis, rotation, translation, mass, com, .. } = body;
     PicturedBody {
         joint: joint.to_owned(),
@@ -211,6 +211,7 @@ fn body(Placed { body, tip }: Placed, joint: &str) -> PicturedBody {
         com,
         mass,
         tip,
+        shapes,
     }
 }
 
@@ -235,24 +236,28 @@ fn pushes(scenario: &Scenario) -> Vec<Pushed> {
     pushes.flat_map(of_push).collect()
 }
 
-/// Stops of the guard, torques that reach their limits, and where the loop ends before its time, in the order of time.
-fn events(scenario: &Scenario, run: &simulate::Run, t: &[f64], u_m: &[Vec<f64>]) -> Vec<Event> {
+/// Stops of the guard and how they end, torques that reach their limits, and where the loop ends before its time, in the order of time.
+fn events(viewed: &Viewed<'_>, t: &[f64], u_m: &[Vec<f64>]) -> Vec<Event> {
+    let Viewed { scenario, run, sketch, .. } = *viewed;
     let name = |joint: usize| scenario.robot.joints.get(joint).map_or("the controller", |joint| &joint.name);
+    let end = t.last().copied().unwrap_or(0.0);
     let stops = run.faults.iter().flat_map(|faults| &faults.stops).map(|stop| {
         let joint = stop.joint.map(|joint| joint as usize);
         let at = stop
             .side
             .zip(joint)
             .map_or(String::new(), |(side, joint)| format!(", {side} side of {}", name(joint)));
-        Event {
-            t: stop.time,
-            kind: "stop",
-            joint,
-            words: format!("the guard stops the robot: {}{at}", stop.cause),
-        }
+        let words = format!("the guard stops the robot: {}{at}", cause(stop.cause));
+        Event { t: stop.time, kind: "stop", joint, words }
+    });
+    let ended = sketch.stops().filter(|stop| stop.high < end).map(|stop| Event {
+        t: stop.high,
+        kind: "rejoin",
+        joint: None,
+        words: "the guard lets the robot go on".to_owned(),
     });
     let limits = acting_limits(scenario);
-    let reached = u_m.iter().zip(limits).enumerate().filter_map(|(joint, (torques, limit))| {
+    let reached = u_m.iter().zip(&limits).enumerate().filter_map(|(joint, (torques, limit))| {
         let first = torques.iter().position(|torque| torque.abs() >= AT_LIMIT * limit)?;
         let words = format!("the torque of {} is at its limit", name(joint));
         Some(Event { t: t[first], kind: "limit", joint: Some(joint), words })
@@ -269,7 +274,14 @@ fn events(scenario: &Scenario, run: &simulate::Run, t: &[f64], u_m: &[Vec<f64>])
         joint: None,
         words: "the run was broken off".to_owned(),
     });
-    let mut events: Vec<Event> = stops.chain(reached).chain(diverged).chain(broken_off).collect();
+    let all = stops.chain(ended).chain(reached).chain(diverged).chain(broken_off);
+    // What ends a run comes after its last instant: it is shown there.
+    let mut events: Vec<Event> = all.map(|event| Event { t: event.t.min(end), ..event }).collect();
     events.sort_by(|a, b| a.t.total_cmp(&b.t));
     events
+}
+
+/// Why a guard stops a robot, for who does not know its words.
+fn cause(name: &str) -> String {
+    if name == "not-finite" { "a reading is no number".to_owned() } else { name.replace('-', " ") }
 }

@@ -11,6 +11,7 @@ use crate::files::site::Site;
 use crate::robot::links::rigid::{Pose, Rigid};
 use crate::robot::links::written::{Axis, Frame, Hold, Matter};
 use crate::robot::links::{Assembled, Body, JointKind, Links, MovingJoint};
+use crate::robot::looks::Looks;
 use crate::units;
 
 /// A joint, with the body that it carries.
@@ -34,9 +35,9 @@ pub(crate) enum Motion {
 
 /// Where the frame of a joint ended up: fixed in a moving body, or in the base.
 #[derive(Clone, Copy)]
-struct Placed<S> {
-    body: Option<usize>,
-    pose: Pose<S>,
+pub(crate) struct Fixed<S> {
+    pub body: Option<usize>,
+    pub pose: Pose<S>,
 }
 
 /// A moving joint, and what fixed joints have added to its body.
@@ -57,13 +58,13 @@ pub(crate) fn assemble(
     decimals: Decimals,
     none_moves: impl FnOnce(),
 ) -> Option<Assembled> {
-    let bodies = merged(joints, |x| x);
+    let (bodies, frames) = merged(joints, |x| x);
     if bodies.is_empty() {
         none_moves();
         return None;
     }
     check(joints, &bodies)?;
-    let enclosed = merged(joints, |x| decimals.enclose(x));
+    let (enclosed, _) = merged(joints, |x| decimals.enclose(x));
     let moving = joints.iter().filter_map(|joint| match &joint.motion {
         Motion::Moving(moving, _) => Some(moving.clone()),
         Motion::Fixed | Motion::Held(..) => None,
@@ -72,20 +73,22 @@ pub(crate) fn assemble(
         links: Links::Tree(bodies.iter().map(Moving::body).collect()),
         enclosed: Links::Tree(enclosed.iter().map(Moving::body).collect()),
         joints: moving.collect(),
+        frames,
+        looks: Looks::default(),
     })
 }
 
-/// The moving bodies, with what is fixed in them, over the numbers that `number` makes of decimals.
-fn merged<S: Scalar>(joints: &[Joint<'_>], number: impl Fn(f64) -> S) -> Vec<Moving<S>> {
-    let mut placed: Vec<Placed<S>> = Vec::new();
+/// The moving bodies, with what is fixed in them, over the numbers that `number` makes of decimals, and where the frame of each joint is.
+fn merged<S: Scalar>(joints: &[Joint<'_>], number: impl Fn(f64) -> S) -> (Vec<Moving<S>>, Vec<Fixed<S>>) {
+    let mut placed: Vec<Fixed<S>> = Vec::new();
     let mut bodies: Vec<Moving<S>> = Vec::new();
     for (index, Joint { parent, motion, frame, matter, .. }) in joints.iter().enumerate() {
-        let carrier = parent.map_or(Placed { body: None, pose: Pose::identity() }, |index| placed[index]);
+        let carrier = parent.map_or(Fixed { body: None, pose: Pose::identity() }, |index| placed[index]);
         let pose = carrier.pose.then(&frame.pose(&number));
         let rigid = matter.rigid(&number);
         let pose = match motion {
             Motion::Moving(MovingJoint { kind, .. }, axis) => {
-                placed.push(Placed { body: Some(bodies.len()), pose: Pose::identity() });
+                placed.push(Fixed { body: Some(bodies.len()), pose: Pose::identity() });
                 let axis = axis.unit(&number);
                 bodies.push(Moving { joint: index, kind: *kind, parent: carrier.body, axis, pose, rigid });
                 continue;
@@ -97,9 +100,9 @@ fn merged<S: Scalar>(joints: &[Joint<'_>], number: impl Fn(f64) -> S) -> Vec<Mov
         if let Some(index) = carrier.body {
             bodies[index].rigid = bodies[index].rigid.joined(&rigid.seen_from(&pose));
         }
-        placed.push(Placed { body: carrier.body, pose });
+        placed.push(Fixed { body: carrier.body, pose });
     }
-    bodies
+    (bodies, placed)
 }
 
 /// Notes an error at each joint that moves no inertia, the outermost of several in a row: the mass matrix at q = 0 would

@@ -182,3 +182,40 @@ macro_rules! closed_forms {
     };
 }
 pub(super) use closed_forms;
+
+#[cfg(test)]
+mod tests {
+    use flexure_core::linalg::Vector;
+    use flexure_core::model::Links as _;
+    use flexure_core::robots::Tree;
+
+    use crate::robot::links::{Links, Pendulum, PlanarTwoLink};
+
+    /// What pictures show of a closed form moves, and weighs, as the closed form does: as a tree it has the same dynamics.
+    #[test]
+    fn bodies_of_pictures_are_those_of_the_closed_form() {
+        let gravity = [0.0, 0.0, -9.81];
+        let arm =
+            PlanarTwoLink { mass: [3.0, 2.0], length: [0.4, 0.3], com: [0.17, 0.11], inertia: [0.05, 0.02] };
+        let tree = as_tree::<2>(&Links::PlanarTwoLink(arm), gravity);
+        let closed = arm.core(gravity);
+        for q in [[0.3, -1.1], [2.0, 0.7]].map(Vector) {
+            let difference = (tree.mass_matrix(&q) - closed.mass_matrix(&q)).0;
+            assert!(difference.iter().flatten().all(|x| x.abs() < 1e-14), "{difference:?}");
+        }
+        let pendulum = Pendulum { mass: 1.5, com: 0.4, inertia: 0.03 };
+        let tree = as_tree::<1>(&Links::Pendulum(pendulum), gravity);
+        let closed = pendulum.core(gravity);
+        for q in [0.4, -2.0].map(|q| Vector([q])) {
+            let torques = [tree.gravity_torque(&q)[0], closed.gravity_torque(&q)[0]];
+            assert!((torques[0] - torques[1]).abs() < 1e-13, "{torques:?}");
+            let masses = [tree.mass_matrix(&q).0[0][0], closed.mass_matrix(&q).0[0][0]];
+            assert!((masses[0] - masses[1]).abs() < 1e-14, "{masses:?}");
+        }
+    }
+
+    fn as_tree<const N: usize>(links: &Links, gravity: [f64; 3]) -> Tree<f64, N> {
+        let bodies: Vec<_> = links.placed().into_iter().map(|placed| placed.body).collect();
+        Tree::from_bodies(&bodies, gravity, |x| x).expect("a tree")
+    }
+}

@@ -23,6 +23,8 @@ use crate::files::decimals::Decimals;
 use crate::files::field::{Field, Joints};
 use crate::files::table::Table;
 use crate::lanes::{Each, Several, numbers, together};
+use crate::robot::looks::Looks;
+use assembly::Fixed;
 pub(crate) use closed_form::ClosedForm;
 pub(crate) use closed_form::Placed;
 use closed_form::{LineBody, ReadClosedForm, closed_forms};
@@ -128,13 +130,18 @@ pub(crate) struct Assembled {
     pub enclosed: Links<Interval>,
     /// In the order of all per-joint numbers.
     pub joints: Vec<MovingJoint>,
+    /// Where the frame of each joint of the file is, fixed ones included; of trees.
+    pub frames: Vec<Fixed<f64>>,
+    /// What the links look like, if that is told.
+    pub looks: Looks,
 }
 
 impl Assembled {
     /// From links whose numbers stand in the file as they are.
     fn closed_form(links: Links, decimals: Decimals) -> Self {
         let joints = MovingJoint::numbered(links.joints());
-        Self { enclosed: links.map(|x| decimals.enclose(x)), links, joints }
+        let enclosed = links.map(|x| decimals.enclose(x));
+        Self { enclosed, links, joints, frames: Vec::new(), looks: Looks::default() }
     }
 }
 

@@ -6,6 +6,10 @@ use crate::files::field::Field;
 use crate::files::quantity;
 use crate::files::table::Table;
 use crate::robot::links::Assembled;
+use crate::robot::links::assembly::Fixed;
+use crate::robot::links::rigid::Pose;
+use crate::robot::looks::LinkLook;
+use crate::robot::urdf::looks::{Looks, looks};
 use crate::robot::urdf::{self, Locks};
 
 pub(crate) fn read(table: &Table<'_>, base: &Base) -> Option<Assembled> {
@@ -26,14 +30,32 @@ pub(crate) fn read(table: &Table<'_>, base: &Base) -> Option<Assembled> {
         sound.into_iter().collect::<Option<()>>()?;
         file.log.note(log.decimals());
         file.log.contain(&file.path, urdf.normal.clone());
-        urdf.assemble(
+        let links: Vec<String> = urdf.joints.iter().map(|joint| joint.link.to_owned()).collect();
+        let root = urdf.root.to_owned();
+        let assembled = urdf.assemble(
             &locked.iter().map(|(name, q, _)| (*name, *q)).collect::<Locks<'_>>(),
             unknown_limits,
             file.log.decimals(),
-        )
+        )?;
+        Some(pictured(assembled, (root, links), looks(&source.text)))
     });
+    let place = file.text()?;
     // What is wrong with the locks is in this file's log, not in that of the URDF.
-    file.log.absorb(log.finish(Some(assembled)))?
+    let mut assembled = file.log.absorb(log.finish(Some(assembled)))??;
+    assembled.looks.base = Some(base.beside(place));
+    Some(assembled)
+}
+
+/// With what its links look like: the root link, and those that its joints carry.
+fn pictured(mut assembled: Assembled, (root, links): (String, Vec<String>), mut looks: Looks) -> Assembled {
+    let base = Fixed { body: None, pose: Pose::identity() };
+    let frames = std::iter::once(base).chain(assembled.frames.iter().copied());
+    let names = std::iter::once(root).chain(links);
+    let of_link = |(name, Fixed { body, pose }): (String, Fixed<f64>)| {
+        Some(LinkLook { body, pose, look: looks.remove(&name)? })
+    };
+    assembled.looks.links = names.zip(frames).filter_map(of_link).collect();
+    assembled
 }
 
 /// Joints to hold still, where, and where that stands.

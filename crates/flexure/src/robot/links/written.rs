@@ -7,7 +7,7 @@ use crate::robot::links::JointKind;
 use crate::robot::links::rigid::{Pose, Rigid, Weight};
 
 /// A frame in another.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Frame {
     /// Origin of the frame \[m\].
     pub xyz: [f64; 3],

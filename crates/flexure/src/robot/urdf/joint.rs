@@ -23,6 +23,8 @@ pub(crate) struct Joint<'a> {
     /// Limits under which it cannot move, if it has such.
     pub standstill: Option<Standstill<'a>>,
     pub mimic: Option<Mimic<'a>>,
+    /// Name of the link that it carries.
+    pub link: &'a str,
     pub matter: Matter,
 }
 
@@ -93,6 +95,7 @@ pub(crate) fn read<'a>(name: &'a str, node: &Node<'a>) -> Option<Connection<'a>>
         drive,
         standstill,
         mimic: mimic?,
+        link: child.as_ref()?.0,
         matter: Matter::NOTHING,
     };
     Some(Connection { joint, parent: parent?, child: child? })

@@ -1,12 +1,13 @@
 //! URDF files: the XML of ROS for rigid robots.
 //!
-//! Only what moves and what it weighs is read; shapes, meshes, sensors and plug-ins are passed over. A file of unknown
+//! What moves and what it weighs is read, and for pictures what it looks like; sensors and plug-ins are passed over. A file of unknown
 //! origin is harmless: size, nesting and number of elements are bounded, nothing is recursed into, expanded or opened.
 
 mod drive_table;
 mod effort;
 mod joint;
 mod link;
+pub(crate) mod looks;
 mod node;
 mod sidecar;
 mod tree;

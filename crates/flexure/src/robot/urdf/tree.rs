@@ -33,6 +33,8 @@ pub(crate) struct Urdf<'a> {
     pub name: Option<&'a str>,
     /// Depth first, in the order of the file: parents before children.
     pub joints: Vec<Joint<'a>>,
+    /// Name of the link that no joint carries.
+    pub root: &'a str,
     /// What the file says.
     pub normal: Normal,
 }
@@ -51,8 +53,8 @@ pub(crate) fn read<'a>(root: &'a Element<'a>, log: &'a Log) -> Option<Urdf<'a>> 
     let node = Node { element: root, site };
     let name = if node.has("name") { Some(node.text("name", "")?.0) } else { None };
     let parts = parts(root, log)?;
-    let joints = ordered(parts, &node.site)?;
-    Some(Urdf { site: node.site, name, joints, normal: normal(root) })
+    let (joints, base) = ordered(parts, &node.site)?;
+    Some(Urdf { site: node.site, name, joints, root: base, normal: normal(root) })
 }
 
 /// The links and joints in the order of the file. What the robot is called is left out.
@@ -96,8 +98,8 @@ fn parts<'a>(root: &'a Element<'a>, log: &'a Log) -> Option<Parts<'a>> {
     sound.map(|()| parts)
 }
 
-/// The joints depth first from the root link; notes an error if they make no tree.
-fn ordered<'a>(parts: Parts<'a>, robot: &Site<'a>) -> Option<Vec<Joint<'a>>> {
+/// The joints depth first from the root link, and its name; notes an error if they make no tree.
+fn ordered<'a>(parts: Parts<'a>, robot: &Site<'a>) -> Option<(Vec<Joint<'a>>, &'a str)> {
     let Parts { links, connections } = parts;
     let index: HashMap<&str, usize> = links.iter().enumerate().map(|(i, (name, ..))| (*name, i)).collect();
     let find = |(name, site): &(&str, Site<'_>)| {
@@ -163,10 +165,11 @@ fn ordered<'a>(parts: Parts<'a>, robot: &Site<'a>) -> Option<Vec<Joint<'a>>> {
     }
     let mut joints: Vec<Option<Joint<'a>>> =
         connections.into_iter().map(|connection| Some(connection.joint)).collect();
-    order
+    let joints: Option<Vec<Joint<'a>>> = order
         .into_iter()
         .map(|(i, parent)| Some(Joint { parent, matter: links[children[i]].2, ..joints[i].take()? }))
-        .collect()
+        .collect();
+    Some((joints?, links[root].0))
 }
 
 /// The one link that no joint carries.

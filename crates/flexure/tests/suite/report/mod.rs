@@ -1,6 +1,7 @@
 //! Figures, pictures, tables and the page: what holds for every trace.
 
 mod fake;
+mod view;
 
 use flexure::prove::question::{Question, prove};
 use flexure::prove::summary::ProofSummary;
