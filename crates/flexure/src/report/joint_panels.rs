@@ -170,7 +170,9 @@ impl Row<'_> {
         let t = self.run.span();
         let mut times = ticks::even(t, (frame[2] / 55.0).clamp(2.0, 8.0));
         if !self.last {
-            times.iter_mut().for_each(|tick| tick.name.clear());
+            for tick in &mut times {
+                tick.name.clear();
+            }
         }
         let label = if self.last { super::panel::TIME } else { "" };
         Axes {

@@ -48,16 +48,15 @@ fn verdict(board: &Leaderboard) -> Verdict {
     let Some(first) = board.ranking.first() else {
         return Verdict { good: false, words: "No law was ranked.".to_owned() };
     };
-    let mut said = format!("First of {}: {}.", counted(board.laws().count(), "law"), words(first));
-    if let Some(vcbc) =
-        board.ranking.iter().find(|standing| is_vcbc(&standing.law)).filter(|vcbc| vcbc.law != first.law)
-    {
-        said += &format!(" The best v-CBC is at place {}: {}.", vcbc.place, words(vcbc));
-    }
-    if hopeless > 0 {
-        said += &format!(" On {} no law follows.", counted(hopeless, "task"));
-    }
-    Verdict { good: hopeless == 0, words: said }
+    let is_other = |standing: &&Standing| is_vcbc(&standing.law) && standing.law != first.law;
+    let vcbc = board.ranking.iter().find(|standing| is_vcbc(&standing.law)).filter(is_other);
+    let said = [
+        Some(format!("First of {}: {}.", counted(board.laws().count(), "law"), words(first))),
+        vcbc.map(|vcbc| format!("The best v-CBC is at place {}: {}.", vcbc.place, words(vcbc))),
+        (hopeless > 0).then(|| format!("On {} no law follows.", counted(hopeless, "task"))),
+    ];
+    let said: Vec<String> = said.into_iter().flatten().collect();
+    Verdict { good: hopeless == 0, words: said.join(" ") }
 }
 
 fn introduction(board: &Leaderboard) -> Markup {

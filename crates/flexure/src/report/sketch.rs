@@ -138,7 +138,7 @@ impl Sink for Sketch {
             let span = self.span.unwrap_or(Range { low: t, high: t });
             self.span = Some(Range { low: span.low.min(t), high: span.high.max(t) });
         }
-        let is_stopped = self.stopped.is_some_and(|column| row[column] == 1.0);
+        let is_stopped = self.stopped.is_some_and(|column| row[column] > 0.5);
         if is_stopped && !self.is_stopped && self.stops.len() < MOST_STOPS {
             self.stops.push(Range { low: t, high: t });
         } else if let Some(stop) = self.stops.last_mut().filter(|_| is_stopped) {

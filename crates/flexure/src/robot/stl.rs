@@ -43,7 +43,9 @@ fn of_text(text: &str) -> Option<Vec<Triangle>> {
             numbers.try_into().ok()
         })
         .collect::<Option<_>>()?;
-    (corners.len() % 3 == 0)
+    corners
+        .len()
+        .is_multiple_of(3)
         .then(|| corners.chunks_exact(3).map(|three| [three[0], three[1], three[2]]).collect())
 }
 

@@ -123,7 +123,7 @@ mod tests {
             );
             let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
             if let [equal @ .., last] = steps.as_slice() {
-                assert!(equal.iter().all(|step| *step == equal[0] && step >= last), "{instants}");
+                assert!(equal.iter().all(|step| (step - equal[0]).abs() < 0.5 && step >= last), "{instants}");
             }
         }
     }

@@ -110,7 +110,7 @@ fn numbers<const K: usize>(tag: &BytesStart<'_>, name: &str) -> Option<[f64; K]>
 
 #[cfg(test)]
 mod tests {
-    use super::{Form, looks};
+    use super::{Form, Frame, ORIGIN, looks};
 
     #[test]
     fn shapes_are_found_with_their_frames() {
@@ -121,10 +121,10 @@ mod tests {
                <inertial><origin xyz="9 9 9"/></inertial></link><link name="empty"/></robot>"#,
         );
         let a = &found["a"];
-        assert_eq!((a.visual[0].frame.xyz, a.visual[0].frame.rpy), ([1.0, 2.0, 3.0], [0.0, 0.0, 0.5]));
+        assert_eq!(a.visual[0].frame, Frame { xyz: [1.0, 2.0, 3.0], rpy: [0.0, 0.0, 0.5] });
         assert_eq!(a.visual[0].form, Form::Box([1.0, 2.0, 3.0]));
         assert_eq!(a.collision[0].form, Form::Cylinder([0.1, 2.0]));
-        assert_eq!(a.collision[0].frame.xyz, [0.0; 3]);
+        assert_eq!(a.collision[0].frame, ORIGIN);
         assert_eq!(found["b"].visual[0].form, Form::Mesh("package://p/b.stl".to_owned(), [1e-3; 3]));
         assert_eq!(found.len(), 2);
     }
