@@ -60,7 +60,8 @@ function readRun(raw) {
 
 /** A run that ends in numbers that are none has diverged, whether or not the program listed that. */
 function eventsOf(events, t, last, samples) {
-  const sorted = events.filter(event => Number.isFinite(event.t)).sort((a, b) => a.t - b.t);
+  // What ends a run may be told of an instant after the last that there is, if only by the digits of 32 bits.
+  const sorted = events.filter(event => Number.isFinite(event.t)).map(event => ({ ...event, t: Math.min(event.t, t[last]) })).sort((a, b) => a.t - b.t);
   if (last < samples - 1 && !sorted.some(event => event.kind === 'diverged')) sorted.push({ t: t[last], kind: 'diverged', joint: null, words: 'diverged' });
   return sorted;
 }

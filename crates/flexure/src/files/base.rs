@@ -98,7 +98,11 @@ impl Base {
 
     /// The bytes of the file at `path`, at most `limit` of them; none if there is no such file, or it may not be named.
     pub fn bytes(&self, path: &str, limit: u64) -> Option<Vec<u8>> {
-        let Self::Folder(folder, outside) = self else { return None };
+        let (folder, outside) = match self {
+            Self::Folder(folder, outside) => (folder, outside),
+            Self::Kept(kept) => return kept.bytes(path, limit),
+            Self::BuiltIn => return None,
+        };
         let real = match outside {
             Outside::Allowed => folder.join(path),
             Outside::Refused => inside(folder, Path::new(path)).ok()??,

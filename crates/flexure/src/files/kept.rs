@@ -69,6 +69,11 @@ impl Kept {
         Ok(source)
     }
 
+    /// The bytes of a file that is not kept, if there are still files to be read: of pictures, which no document depends on.
+    pub fn bytes(&self, path: &str, limit: u64) -> Option<Vec<u8>> {
+        self.from.as_ref()?.bytes(path, limit)
+    }
+
     /// What is relative to the file at `path`.
     pub fn beside(&self, path: &str) -> Self {
         let here = self.here.join(path);

@@ -5,7 +5,7 @@ use super::curve::Curve;
 use super::decimate::bucket_size;
 use super::marks::{Happening, shade};
 use super::range::{Linear, Range, decades};
-use super::scene::{Anchor, Lettering, Point, Scene};
+use super::scene::{Anchor, Point, Scene};
 use super::style::{INK, MUTED, Stroke, bold, letters};
 use super::ticks;
 use crate::files::number::{duration, power_of_ten, short, significant};
@@ -219,8 +219,12 @@ fn draw(scene: &mut Scene, axes: &Axes, limits: &[Limit], curves: &[Curve], view
         axes.level(scene, *value, *stroke);
         let [left, _, width, _] = axes.frame;
         let [_, y] = axes.place(axes.x.range.low, *value);
-        let name = Lettering { color: stroke.color, ..letters(11.5, MUTED) };
-        scene.text([left + width - 6.0, y - 4.0], &format!("limit of {of}"), name, Anchor::End);
+        scene.text(
+            [left + width - 6.0, y - 4.0],
+            &format!("limit of {of}"),
+            letters(12.0, MUTED),
+            Anchor::End,
+        );
     }
     for curve in curves {
         axes.curve(scene, curve, view.buckets);
