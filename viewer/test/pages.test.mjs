@@ -254,7 +254,7 @@ describe('the checks', { skip: !there, concurrency: false }, () => {
     ['words under a button', text => text.replace('</main>', '<p style="margin: 0">some words<button style="margin-left: -30px">on them</button></p></main>'), 'collisions', /“some words” and button lie on each other/],
     ['shortened words', text => text.replace('</main>', '<p style="width: 40px; overflow: hidden; white-space: nowrap; text-overflow: ellipsis">a long name</p></main>'), 'shortened', /“a long name” \(p\) shows 40 px of \d+ px/],
     ['words that leave a chart', text => text.replace('</main>', '<canvas width="50" height="50"></canvas><script>document.querySelector("canvas").getContext("2d").fillText("100000000", -20, 20)</script></main>'), 'chopped', /“100000000” is drawn from -20 px/],
-    ['a figure that is too small', style('figure { width: 300px }'), 'small', /smallest words are \d\.\d px high and need 8/],
+    ['a figure that is too small', style('.card svg { width: 300px; min-width: 0 }'), 'small', /smallest words are \d\.\d px high and need 8/],
     ['a heading with nothing under it', text => text.replace('</main>', '<section id="none"><h2>Alone</h2></section></main>'), 'bare', /nothing stands under “Alone” \(#none\)/],
     ['a link to nowhere', text => text.replace('</main>', '<a href="#gone">gone</a></main>'), 'lost', /“gone” leads to #gone/],
   ]) {

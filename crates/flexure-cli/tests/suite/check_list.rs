@@ -108,3 +108,17 @@ fn assumptions_and_warnings_count_once() {
     let assumed = |file: &str| place.read(file).matches("= \"assumed").count();
     assert_eq!(verdict["assumptions"], Value::from(assumed("arm.toml") + assumed("s.toml")));
 }
+
+#[test]
+fn joints_are_drawn_over_frequency() {
+    let place = Place::new();
+    let text = place.run(&["check", "panda", "--figure", "there"]).done().stdout;
+    assert!(text.ends_with("wrote there/panda.response.svg\nwrote there/panda.response.png\n"), "{text}");
+    let svg = place.read("there/panda.response.svg");
+    assert!(svg.contains("panda_joint7") && svg.contains("antiresonance") && !svg.contains("NaN"));
+    // Of a scenario its robot; of a bad file nothing.
+    let json = place.run(&["check", "pendulum-tanh", "--figure", "there", "--json"]).done().json();
+    assert_eq!(json[0]["files"][0], "there/pendulum-1dof.response.svg");
+    place.run(&["check", "none.toml", "--figure", "elsewhere"]).refused(&["none.toml"]);
+    assert!(!place.path().join("elsewhere").exists());
+}

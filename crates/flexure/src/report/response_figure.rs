@@ -9,7 +9,7 @@ use super::scene::{Anchor, Scene};
 use super::sheet::{MARGIN, line_legend, page};
 use super::style::{INK, MUTED, Stroke, bold, hue, letters};
 use super::ticks;
-use crate::files::number::significant;
+use crate::files::number::{short, significant};
 use crate::robot::JointRow;
 
 const WIDTH: f64 = 1200.0;
@@ -99,8 +99,7 @@ fn draw(scene: &mut Scene, top: f64, index: usize, row: &JointRow) {
     let numbers = ticks::decades(range).into_iter().step_by(if range.span() > 5.0 { 2 } else { 1 }).collect();
     let magnitude = Axis { range, ticks: numbers, label: &label };
     let range = Range { low: -380.0, high: 20.0 };
-    let degrees =
-        [-360.0, -270.0, -180.0, -90.0, 0.0].map(|at: f64| ticks::Tick { at, name: significant(at, 3) });
+    let degrees = [-360.0, -270.0, -180.0, -90.0, 0.0].map(|at: f64| ticks::Tick { at, name: short(at, 3) });
     let phase = Axis { range, ticks: degrees.into_iter().collect(), label: "phase [°]" };
     for (side, (y, curves)) in [(magnitude, magnitudes), (phase, phases)].into_iter().enumerate() {
         let axes = Axes {

@@ -28,16 +28,18 @@ pub(crate) struct LinkLook {
 }
 
 impl Looks {
-    /// The bytes of the mesh that a URDF calls `file`, if it is where such files are allowed to be: relative to the URDF, or, of a package, in a folder
-    /// called as the package above it, or in that package itself.
+    /// The bytes of the mesh that a URDF calls `file`, if it is where such files are allowed to be: relative to the URDF, or, of a package, where
+    /// the end of its path leads to from the folder of the URDF or from one above it.
     pub(crate) fn mesh(&self, file: &str) -> Option<Vec<u8>> {
         let base = self.base.as_ref()?;
         let Some(inside) = file.strip_prefix("package://") else {
             return base.bytes(file.strip_prefix("file://").unwrap_or(file), LARGEST);
         };
-        let (_, rest) = inside.split_once('/')?;
-        let up = |k: usize| "../".repeat(k);
-        let places = (0..=UPWARDS).flat_map(|k| [format!("{}{inside}", up(k)), format!("{}{rest}", up(k))]);
+        // A name alone may be anybody's: at least its folder has to be the same.
+        let ends = std::iter::successors(Some(inside), |rest| rest.split_once('/').map(|(_, rest)| rest));
+        let ends: Vec<&str> = ends.filter(|rest| rest.contains('/')).collect();
+        let places =
+            (0..=UPWARDS).flat_map(|k| ends.iter().map(move |end| format!("{}{end}", "../".repeat(k))));
         places.into_iter().find_map(|place| base.bytes(&place, LARGEST))
     }
 }

@@ -250,7 +250,9 @@ fn events(viewed: &Viewed<'_>, t: &[f64], u_m: &[Vec<f64>]) -> Vec<Event> {
         let words = format!("the guard stops the robot: {}{at}", cause(stop.cause));
         Event { t: stop.time, kind: "stop", joint, words }
     });
-    let ended = sketch.stops().filter(|stop| stop.high < end).map(|stop| Event {
+    // The guard keeps its last stops alone.
+    let kept = run.faults.iter().flat_map(|faults| &faults.stops).map(|stop| stop.time).fold(end, f64::min);
+    let ended = sketch.stops().filter(|stop| stop.high < end && stop.high >= kept).map(|stop| Event {
         t: stop.high,
         kind: "rejoin",
         joint: None,
