@@ -41,11 +41,17 @@ pub fn check(
     figure.map_or(Ok(()), prepare)?;
     let mut verdicts: Vec<_> = files.iter().map(|file| verdict(file, reading, json)).collect();
     if let Some(folder) = figure {
+        let mut drawn: Vec<String> = Vec::new();
         for verdict in &mut verdicts {
             let Some(Findings { robot_name, rows, .. }) = &verdict.content else { continue };
             create_folder(folder)?;
             let figure = response_figure(robot_name, rows);
-            verdict.files = write_figure(folder, &format!("{robot_name}.response"), &figure)?.to_vec();
+            // Robots of one name have a figure each.
+            let same = drawn.iter().filter(|name| *name == robot_name).count();
+            let number = if same == 0 { String::new() } else { format!("-{}", same + 1) };
+            drawn.push(robot_name.clone());
+            verdict.files =
+                write_figure(folder, &format!("{robot_name}{number}.response"), &figure)?.to_vec();
         }
     }
     if json {

@@ -40,8 +40,9 @@ pub fn margins(options: &Margins, reading: Reading<'_>, json: bool) -> Result<()
         measured(&scenario, &chosen, options, &|part, fraction| progress.set(part, fraction))?
     };
     let files = match &options.out {
-        Some(folder) => write_margins(folder, &scenario, &loops)?,
-        None => Vec::new(),
+        // Of a part of the search a page would be taken for the whole.
+        Some(folder) if is_whole => write_margins(folder, &scenario, &loops)?,
+        _ => Vec::new(),
     };
     let words = "broken off: as far as ≥ and ≤ say the loop was seen to hold";
     if json {

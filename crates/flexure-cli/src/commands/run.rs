@@ -1,5 +1,6 @@
 //! `flexure run`: one closed loop.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use flexure::feasible;
@@ -7,7 +8,7 @@ use flexure::files::number::short;
 use flexure::files::{Problem, Reading, prepare};
 use flexure::imperfections::Imperfection;
 use flexure::prove::standing::outside_of_proofs;
-use flexure::report::{summary_table, write_view};
+use flexure::report::{summary_table, unseen, write_view};
 use flexure::reproduce::{Experiment, trace_file, write_experiment};
 use flexure::sampled::{Sampled, not_looked_at};
 use flexure::scenario::{Scenario, load_scenario_with};
@@ -99,8 +100,12 @@ pub fn told(
     traced: &Traced,
     json: bool,
 ) -> Result<(), Failure> {
+    free(&scenarios, traced)?;
     let mut finished: Vec<Finished> = Vec::new();
     for scenario in scenarios {
+        if traced.view {
+            say(unseen(&scenario.robot).as_slice());
+        }
         finished.push(run_of(scenario, traced)?);
         if finished.iter().any(|run| run.experiment.run.broken_off.is_some()) {
             break;
@@ -132,6 +137,28 @@ pub fn told(
         ));
     }
     if answers.is_empty() { Ok(()) } else { Err(Failure::No(answers)) }
+}
+
+/// Whether all that is to be written can be: no folder has the name, and none is too long. A run may take an hour.
+fn free(scenarios: &[Scenario], traced: &Traced) -> Result<(), Failure> {
+    let names: Vec<&str> = scenarios.iter().map(|scenario| scenario.name.as_str()).collect();
+    let page = traced.view.then(|| format!("{}.view.html", names.join("-and-")));
+    let files = names.iter().flat_map(|name| ["csv", "svg", "png"].map(|ending| format!("{name}.{ending}")));
+    for file in files.chain(page) {
+        let path = traced.output.out.join(file);
+        let objection = match path.symlink_metadata() {
+            Ok(what) if what.is_dir() => "there is a folder of that name".to_owned(),
+            Err(error) if error.kind() == ErrorKind::InvalidFilename => "the name is too long".to_owned(),
+            _ => continue,
+        };
+        let message = format!("cannot write {}: {objection}", path.display());
+        return Err(Failure::input(
+            "unwritable",
+            message,
+            "files are called as the scenario: give it another name, or another --out",
+        ));
+    }
+    Ok(())
 }
 
 /// Runs a scenario and writes its trace and its figure.
@@ -182,9 +209,16 @@ impl Finished {
         let Experiment { scenario, run, .. } = &self.experiment;
         match (run.broken_off, self.answers.first()) {
             (Some(time), _) => words_of_end(scenario, time),
-            (None, Some(answer)) => {
-                let words = answer.to_string();
-                words.strip_prefix(&format!("{}: ", scenario.name)).unwrap_or(&words).to_owned()
+            (None, Some(_)) => {
+                let prefix = format!("{}: ", scenario.name);
+                let first = |answer: &Problem| {
+                    let words = answer.to_string();
+                    let words = words.strip_prefix(&prefix).unwrap_or(&words);
+                    words.split(";\n").next().unwrap_or(words).to_owned()
+                };
+                let stops = run.summary.stops;
+                let stopped = (stops > 0).then(|| format!("the guard stopped the robot {stops} times"));
+                self.answers.iter().map(first).chain(stopped).collect::<Vec<_>>().join("; ")
             }
             (None, None) => run.summary.in_words(),
         }

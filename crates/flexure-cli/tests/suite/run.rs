@@ -278,3 +278,20 @@ fn a_second_run_wants_a_page_and_a_name_of_its_own() {
     place.run(&["run", "--view", "short.toml", "nowhere"]).refused(&["nowhere"]);
     assert!(!place.path().join("out").exists(), "nothing was run");
 }
+
+/// A run may take an hour: what cannot be written is found before it.
+#[test]
+fn names_that_are_taken_or_too_long_are_found_before_the_run() {
+    let place = Place::new();
+    place.scenario("short.toml", &[SHORT]);
+    std::fs::create_dir_all(place.path().join("out/short.view.html")).unwrap();
+    place
+        .run(&["run", "short.toml", "--view"])
+        .refused(&["short.view.html", "there is a folder of that name"]);
+    assert_eq!(place.names("out"), ["short.view.html"]);
+    place.run(&["run", "short.toml"]).done();
+    let long = format!("{}.toml", "n".repeat(248));
+    place.scenario(&long, &[SHORT]);
+    place.run(&["run", &long, "--view", "--out", "there"]).refused(&["the name is too long"]);
+    assert!(!place.path().join("there").exists());
+}

@@ -52,6 +52,15 @@ pub fn short(value: f64, digits: usize) -> String {
     format!("{digits}{power}")
 }
 
+/// An angle in rad in the unit in which it is short: mrad, or µrad below a tenth of that.
+pub fn small_angle(radians: f64) -> String {
+    if radians.abs() < 1e-4 {
+        format!("{} µrad", engineering(1e6 * radians))
+    } else {
+        format!("{} mrad", engineering(1e3 * radians))
+    }
+}
+
 /// The largest number of `digits` significant digits, or nearly, that is not above `value`, which is positive.
 pub fn rounded_down(value: f64, digits: usize) -> f64 {
     let rounded = |x: f64| format!("{x:.*e}", digits.saturating_sub(1)).parse().unwrap_or(x);
@@ -89,7 +98,7 @@ fn shift(mantissa: &str, places: i32) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{duration, engineering, power_of_ten, rounded_down, significant};
+    use super::{duration, engineering, power_of_ten, rounded_down, significant, small_angle};
 
     #[test]
     fn three_digits_and_powers_in_steps_of_three() {
@@ -163,5 +172,11 @@ mod tests {
             [power_of_ten(-6), power_of_ten(0), power_of_ten(1), power_of_ten(3)],
             ["10⁻⁶", "1", "10", "10³"]
         );
+    }
+
+    #[test]
+    fn small_angles_are_in_the_unit_that_is_short() {
+        let words = [0.0206, 1e-4, 5.12e-6, 9.39e-7, 0.0].map(small_angle);
+        assert_eq!(words, ["20.6 mrad", "0.100 mrad", "5.12 µrad", "0.939 µrad", "0 µrad"]);
     }
 }

@@ -4,7 +4,7 @@ use maud::{Markup, html as markup};
 
 use crate::compare::{Leaderboard, Loss, Score, Standing, TaskScores, is_vcbc};
 use crate::files::number::{NONE, engineering, short, significant};
-use crate::report::effort::cost_figure;
+use crate::report::cost::cost_figure;
 use crate::report::html::{AssumedNumber, assumptions};
 use crate::report::kit::{Page, Section, Verdict, figure};
 use crate::report::leaderboard_table::{place, range, ranks_with_one, spectral_radius};

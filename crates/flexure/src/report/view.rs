@@ -7,6 +7,7 @@ mod film;
 mod shapes;
 
 pub use film::Film;
+pub use shapes::unseen;
 
 use super::sketch::Sketch;
 use crate::files::Problems;

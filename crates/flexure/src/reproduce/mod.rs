@@ -6,7 +6,7 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-use crate::files::number::engineering;
+use crate::files::number::{engineering, small_angle};
 use crate::files::{Problem, Problems, Unfinished};
 use crate::progress::{PartProgress, Progress};
 use crate::prove::question::{Direct, Proof, Question, Region, certified_rate, prove};
@@ -223,7 +223,7 @@ fn verdict_of(experiments: &[Experiment], certificates: &[Certified]) -> Verdict
     let (smooth, from_rest): (Vec<&Experiment>, Vec<&Experiment>) =
         experiments.iter().partition(|experiment| experiment.scenario.smooth_start.is_some());
     let largest = |runs: &[&Experiment], of: fn(&Summary) -> f64| {
-        engineering(runs.iter().map(|experiment| of(&experiment.run.summary)).fold(0.0, f64::max))
+        runs.iter().map(|experiment| of(&experiment.run.summary)).fold(0.0, f64::max)
     };
     let follow = smooth.iter().filter(|experiment| experiment.run.summary.following.follows).count();
     let rates = certificates.iter().filter_map(|certified| {
@@ -232,13 +232,13 @@ fn verdict_of(experiments: &[Experiment], certificates: &[Certified]) -> Verdict
     });
     let rates: Vec<String> = rates.collect();
     let words = format!(
-        "{follow} of {} runs that join the reference smoothly follow it: link errors of {} mrad at most, torques of {} N m. The {} from rest \
+        "{follow} of {} runs that join the reference smoothly follow it: link errors of {} at most, torques of {} N m. The {} from rest \
          off it take up to {} N m. Proved contraction rates for position errors of up to 3 rad, in continuous time: {}.",
         smooth.len(),
-        largest(&smooth, |summary| 1e3 * summary.max_abs_e_l),
-        largest(&smooth, |summary| summary.max_abs_u_m),
+        small_angle(largest(&smooth, |summary| summary.max_abs_e_l)),
+        engineering(largest(&smooth, |summary| summary.max_abs_u_m)),
         from_rest.len(),
-        largest(&from_rest, |summary| summary.max_abs_u_m),
+        engineering(largest(&from_rest, |summary| summary.max_abs_u_m)),
         if rates.is_empty() { "none".to_owned() } else { rates.join(", ") }
     );
     Verdict { good: follow == smooth.len() && rates.len() == certificates.len(), words }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::files::number::engineering;
+use crate::files::number::{engineering, small_angle};
 use crate::simulate::following::Following;
 
 /// The figures of one closed-loop run: the contract of `run --json` and `reproduce --json`.
@@ -75,10 +75,7 @@ impl Summary {
             None => "not within 1 mrad at the end".to_owned(),
         };
         let off = if self.max_abs_e_l.is_finite() {
-            format!(
-                "links are at most {} mrad off their reference, {settled}",
-                engineering(1e3 * self.max_abs_e_l)
-            )
+            format!("links are at most {} off their reference, {settled}", small_angle(self.max_abs_e_l))
         } else {
             "links leave their reference".to_owned()
         };

@@ -5,13 +5,13 @@ use base64::prelude::BASE64_STANDARD;
 use serde::Serialize;
 
 use super::Viewed;
-use super::shapes::{Shape, shapes};
+use super::shapes::{Shape, Shaped, shapes};
 use crate::files::Problems;
 use crate::files::number::short;
 use crate::imperfections::Push;
 use crate::robot::{Body, MovingJoint, Placed, Robot, kind_in_words};
 use crate::scenario::Scenario;
-use crate::simulate::acting_limits;
+use crate::simulate::{Stopped, acting_limits};
 use crate::units;
 
 /// The version of the format.
@@ -199,7 +199,7 @@ fn pictured(robot: &Robot) -> Pictured {
     }
 }
 
-fn body(Placed { body, tip }: Placed, joint: &str, shapes: Vec<Shape>) -> PicturedBody {
+fn body(Placed { body, tip }: Placed, joint: &str, Shaped { shapes, tip: seen }: Shaped) -> PicturedBody {
     let Body { parent, kind, axis, rotation, translation, mass, com, .. } = body;
     PicturedBody {
         joint: joint.to_owned(),
@@ -210,7 +210,7 @@ fn body(Placed { body, tip }: Placed, joint: &str, shapes: Vec<Shape>) -> Pictur
         axis,
         com,
         mass,
-        tip,
+        tip: seen.or(tip),
         shapes,
     }
 }
@@ -241,18 +241,22 @@ fn events(viewed: &Viewed<'_>, t: &[f64], u_m: &[Vec<f64>]) -> Vec<Event> {
     let Viewed { scenario, run, sketch, .. } = *viewed;
     let name = |joint: usize| scenario.robot.joints.get(joint).map_or("the controller", |joint| &joint.name);
     let end = t.last().copied().unwrap_or(0.0);
-    let stops = run.faults.iter().flat_map(|faults| &faults.stops).map(|stop| {
-        let joint = stop.joint.map(|joint| joint as usize);
-        let at = stop
-            .side
+    // The guard's own log has its last stops alone, with their causes.
+    let cause_at = |t: f64| {
+        let near = |stop: &&Stopped| (stop.time - t).abs() < 0.5 * scenario.control_period;
+        run.faults.iter().flat_map(|faults| &faults.stops).find(near)
+    };
+    let stops = sketch.stops().map(|stop| {
+        let why = cause_at(stop.low);
+        let joint = why.and_then(|why| why.joint).map(|joint| joint as usize);
+        let at = why
+            .and_then(|why| why.side)
             .zip(joint)
             .map_or(String::new(), |(side, joint)| format!(", {side} side of {}", name(joint)));
-        let words = format!("the guard stops the robot: {}{at}", cause(stop.cause));
-        Event { t: stop.time, kind: "stop", joint, words }
+        let why = why.map_or(String::new(), |why| format!(": {}", cause(why.cause)));
+        Event { t: stop.low, kind: "stop", joint, words: format!("the guard stops the robot{why}{at}") }
     });
-    // The guard keeps its last stops alone.
-    let kept = run.faults.iter().flat_map(|faults| &faults.stops).map(|stop| stop.time).fold(end, f64::min);
-    let ended = sketch.stops().filter(|stop| stop.high < end && stop.high >= kept).map(|stop| Event {
+    let ended = sketch.stops().filter(|stop| stop.high < end).map(|stop| Event {
         t: stop.high,
         kind: "rejoin",
         joint: None,

@@ -2,8 +2,10 @@
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
+use flexure_core::linalg::Vector;
 use serde::Serialize;
 
+use crate::files::{Problem, suggest};
 use crate::robot::Robot;
 use crate::robot::links::rigid::Pose;
 use crate::robot::looks::{LinkLook, Looks};
@@ -40,27 +42,95 @@ const MOST: usize = 14_000;
 /// Cells along a mesh, from fine to coarse, for robots of more triangles.
 const CELLS: [f32; 5] = [96.0, 64.0, 40.0, 24.0, 12.0];
 
+/// What a body looks like.
+#[derive(Default)]
+pub(super) struct Shaped {
+    pub shapes: Vec<Shape>,
+    /// Where it ends in its link frame \[m\]: as far out as its shapes go, on the way to their middle; none without shapes.
+    pub tip: Option<[f64; 3]>,
+}
+
 /// The shapes of the base and of each body; of none if a link is told to look like something that cannot be shown: half a robot would be
 /// worse than one that is made up.
-pub(super) fn shapes(robot: &Robot) -> (Vec<Shape>, Vec<Vec<Shape>>) {
+pub(super) fn shapes(robot: &Robot) -> (Vec<Shape>, Vec<Shaped>) {
     let mut base = Vec::new();
-    let mut bodies: Vec<Vec<Shape>> = robot.joints.iter().map(|_| Vec::new()).collect();
+    let mut bodies: Vec<Shaped> = robot.joints.iter().map(|_| Shaped::default()).collect();
+    let mut points: Vec<Vec<Vector<f64, 3>>> = robot.joints.iter().map(|_| Vec::new()).collect();
     let found: Option<Vec<_>> =
         robot.looks.links.iter().map(|link| Some((link, parts(link, &robot.looks)?))).collect();
     let Some(mut found) = found else { return (base, bodies) };
     lighten(found.iter_mut().flat_map(|(_, parts)| parts));
     for (link, parts) in found {
-        let of = link.body.map_or(&mut base, |body| &mut bodies[body]);
-        of.extend(parts.into_iter().map(|part| shape(&link.pose, part)));
+        let Some(body) = link.body else {
+            base.extend(parts.into_iter().map(|part| shape(&link.pose, part)));
+            continue;
+        };
+        points[body].extend(parts.iter().flat_map(|part| corners(&link.pose, part)));
+        bodies[body].shapes.extend(parts.into_iter().map(|part| shape(&link.pose, part)));
+    }
+    for (body, points) in bodies.iter_mut().zip(points) {
+        body.tip = tip(&points);
     }
     (base, bodies)
+}
+
+/// A warning that links are drawn in another way than their file says, if they are.
+pub fn unseen(robot: &Robot) -> Option<Problem> {
+    let link = robot.looks.links.iter().find(|link| parts(link, &robot.looks).is_none())?;
+    let mesh = |part: &Part| match &part.form {
+        Form::Mesh(file, _) => Some(file.clone()),
+        _ => None,
+    };
+    let file = link.look.visual.iter().chain(&link.look.collision).find_map(mesh).unwrap_or_default();
+    let message = format!(
+        "{}: the picture has links from joint to joint: {} cannot be shown",
+        robot.name,
+        suggest::quoted(&file)
+    );
+    let help = "shown are STL files of at most 32 MB below the folder of the URDF, with --allow-outside also where its packages are";
+    Some(Problem::new("unseen", message, help).warning())
+}
+
+/// Points of a part in the frame of its body: all corners of triangles and boxes, the ends of cylinders, the middle of spheres.
+fn corners(link: &Pose<f64>, found: &Found<'_>) -> Vec<Vector<f64, 3>> {
+    let (Found::Plain(part) | Found::Mesh(part, _)) = found;
+    let pose = link.then(&part.frame.pose(|x| x));
+    let own: Vec<[f64; 3]> = match (&part.form, found) {
+        (Form::Box(size), _) => {
+            let [x, y, z] = size.map(|length| [-0.5 * length, 0.5 * length]);
+            x.iter().flat_map(|&x| y.iter().flat_map(move |&y| z.map(|z| [x, y, z]))).collect()
+        }
+        (Form::Cylinder([_, length]), _) => vec![[0.0, 0.0, -0.5 * length], [0.0, 0.0, 0.5 * length]],
+        (Form::Sphere(_), _) => vec![[0.0; 3]],
+        (Form::Mesh(_, scale), Found::Mesh(_, triangles)) => {
+            let scaled = |corner: &[f32; 3]| std::array::from_fn(|k| f64::from(corner[k]) * scale[k]);
+            triangles.iter().flatten().map(scaled).collect()
+        }
+        (Form::Mesh(..), Found::Plain(_)) => Vec::new(),
+    };
+    own.into_iter().map(|point| pose.of(Vector(point))).collect()
+}
+
+/// Where a body that fills these points ends, seen from its joint.
+fn tip(points: &[Vector<f64, 3>]) -> Option<[f64; 3]> {
+    let sum = points.iter().fold(Vector::ZERO, |sum: Vector<f64, 3>, point| sum + *point);
+    let length = sum.dot(&sum).sqrt();
+    if points.is_empty() || length == 0.0 {
+        return None;
+    }
+    let along = sum.scaled(1.0 / length);
+    let reach = points.iter().map(|point| point.dot(&along)).fold(0.0, f64::max);
+    Some(along.scaled(reach).0)
 }
 
 /// The parts of a link that can be shown: its visual, or else what collides.
 fn parts<'a>(LinkLook { look, .. }: &'a LinkLook, looks: &Looks) -> Option<Vec<Found<'a>>> {
     let all = |parts: &'a [Part]| -> Option<Vec<Found<'a>>> {
         let found = parts.iter().map(|part| match &part.form {
-            Form::Mesh(file, _) => Some(Found::Mesh(part, triangles(&looks.mesh(file)?)?)),
+            Form::Mesh(file, scale) if scale.iter().all(|x| (1e-6..1e6).contains(&x.abs())) => {
+                Some(Found::Mesh(part, triangles(&looks.mesh(file)?)?))
+            }
+            Form::Mesh(..) => None,
             _ => Some(Found::Plain(part)),
         });
         found.collect()

@@ -92,7 +92,11 @@ fn form(tag: &BytesStart<'_>) -> Option<Form> {
         "box" => numbers(tag, "size").map(Form::Box),
         "cylinder" => Some(Form::Cylinder([length("radius")?, length("length")?])),
         "sphere" => length("radius").map(Form::Sphere),
-        "mesh" => Some(Form::Mesh(attribute(tag, "filename")?, numbers(tag, "scale").unwrap_or([1.0; 3]))),
+        "mesh" => {
+            // A scale that is no numbers is nobody's guess.
+            let scale = if attribute(tag, "scale").is_some() { numbers(tag, "scale")? } else { [1.0; 3] };
+            Some(Form::Mesh(attribute(tag, "filename")?, scale))
+        }
         _ => None,
     }
 }

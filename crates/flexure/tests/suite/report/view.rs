@@ -4,7 +4,7 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use flexure::Scenario;
 use flexure::files::Outside;
-use flexure::report::view;
+use flexure::report::{unseen, view};
 use flexure::reproduce::Experiment;
 use flexure::scenario::{load_scenario, load_scenario_with};
 use flexure::simulate::Trace;
@@ -158,8 +158,8 @@ fn stl() -> Vec<u8> {
     bytes
 }
 
-/// The robot of the page, of a URDF that lies in the folder `urdf` of a package whose meshes are there.
-fn arm(outside: Outside) -> Value {
+/// What `of` makes of the loop of a URDF that lies in the folder `urdf` of a package whose meshes are there.
+fn package<T>(outside: Outside, of: impl Fn(Scenario) -> T) -> T {
     let package = tempfile::tempdir().expect("a folder");
     let home = package.path().join("arm_description");
     std::fs::create_dir_all(home.join("urdf")).expect("a folder");
@@ -169,10 +169,15 @@ fn arm(outside: Outside) -> Value {
     }
     std::fs::write(home.join("meshes/thigh.stl"), stl()).expect("a file");
     let path = home.join("urdf/loop.toml");
-    let scenario =
-        load_scenario_with(path.to_str().expect("UTF-8"), outside).unwrap_or_else(|p| panic!("{p}"));
-    let experiment = Experiment::new(scenario, &mut [], &flexure::progress::unwatched).expect("a run");
-    document(&view(&[experiment.viewed(true, "well")]).expect("a page"))["runs"][0]["robot"].clone()
+    of(load_scenario_with(path.to_str().expect("UTF-8"), outside).unwrap_or_else(|p| panic!("{p}")))
+}
+
+/// The robot of the page.
+fn arm(outside: Outside) -> Value {
+    package(outside, |scenario| {
+        let experiment = Experiment::new(scenario, &mut [], &flexure::progress::unwatched).expect("a run");
+        document(&view(&[experiment.viewed(true, "well")]).expect("a page"))["runs"][0]["robot"].clone()
+    })
 }
 
 #[test]
@@ -194,6 +199,9 @@ fn links_look_as_their_urdf_says() {
     let at: Vec<f64> = (0..3).map(|k| shapes[1]["translation"][k].as_f64().expect("a number")).collect();
     let expected = [0.1 * 0.5f64.cos(), 0.1 * 0.5f64.sin(), -0.3];
     assert!(at.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15), "{at:?}");
+    // The body ends where its shapes do, on the way to their middle.
+    let tip: Vec<f64> = (0..3).map(|k| robot["bodies"][0]["tip"][k].as_f64().expect("a number")).collect();
+    assert!(tip[2] < -0.2 && tip[2] > -0.35, "{tip:?}");
 }
 
 /// The mesh is outside of the folder of the file that names it: it is not opened, and no part of the robot is shown without the rest.
@@ -202,4 +210,14 @@ fn meshes_outside_are_not_opened() {
     let robot = arm(Outside::Refused);
     assert_eq!(robot["base_shapes"], serde_json::json!([]));
     assert_eq!(robot["bodies"][0]["shapes"], serde_json::json!([]));
+}
+
+/// A page with links that are made up says so before.
+#[test]
+fn what_cannot_be_shown_is_told() {
+    let told =
+        |outside| unseen(&package(outside, |scenario| scenario.robot)).map(|problem| problem.to_string());
+    assert_eq!(told(Outside::Allowed), None);
+    let told = told(Outside::Refused).expect("a warning");
+    assert!(told.contains("thigh.dae") && told.contains("joint to joint"), "{told}");
 }
