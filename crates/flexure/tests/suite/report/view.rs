@@ -216,7 +216,7 @@ fn meshes_outside_are_not_opened() {
 #[test]
 fn what_cannot_be_shown_is_told() {
     let told =
-        |outside| unseen(&package(outside, |scenario| scenario.robot)).map(|problem| problem.to_string());
+        |outside| package(outside, |scenario| unseen(&scenario.robot).map(|problem| problem.to_string()));
     assert_eq!(told(Outside::Allowed), None);
     let told = told(Outside::Refused).expect("a warning");
     assert!(told.contains("thigh.dae") && told.contains("joint to joint"), "{told}");
