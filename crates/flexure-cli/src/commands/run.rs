@@ -1,6 +1,5 @@
 //! `flexure run`: one closed loop.
 
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use flexure::feasible;
@@ -139,24 +138,27 @@ pub fn told(
     if answers.is_empty() { Ok(()) } else { Err(Failure::No(answers)) }
 }
 
+/// Bytes of a file's name, at most, on every system in use.
+const LONGEST_NAME: usize = 255;
+
 /// Whether all that is to be written can be: no folder has the name, and none is too long. A run may take an hour.
 fn free(scenarios: &[Scenario], traced: &Traced) -> Result<(), Failure> {
     let names: Vec<&str> = scenarios.iter().map(|scenario| scenario.name.as_str()).collect();
     let page = traced.view.then(|| format!("{}.view.html", names.join("-and-")));
     let files = names.iter().flat_map(|name| ["csv", "svg", "png"].map(|ending| format!("{name}.{ending}")));
     for file in files.chain(page) {
+        let is_long = file.len() > LONGEST_NAME;
         let path = traced.output.out.join(file);
-        let objection = match path.symlink_metadata() {
-            Ok(what) if what.is_dir() => "there is a folder of that name".to_owned(),
-            Err(error) if error.kind() == ErrorKind::InvalidFilename => "the name is too long".to_owned(),
-            _ => continue,
+        let objection = if is_long {
+            "has a name that is too long"
+        } else if path.is_dir() {
+            "is not a regular file"
+        } else {
+            continue;
         };
-        let message = format!("cannot write {}: {objection}", path.display());
-        return Err(Failure::input(
-            "unwritable",
-            message,
-            "files are called as the scenario: give it another name, or another --out",
-        ));
+        let message = format!("{} {objection}", path.display());
+        let help = "files are called as the scenario: give it another name, or another --out";
+        return Err(Failure::input("write", message, help));
     }
     Ok(())
 }

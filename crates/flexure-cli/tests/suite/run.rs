@@ -285,13 +285,11 @@ fn names_that_are_taken_or_too_long_are_found_before_the_run() {
     let place = Place::new();
     place.scenario("short.toml", &[SHORT]);
     std::fs::create_dir_all(place.path().join("out/short.view.html")).unwrap();
-    place
-        .run(&["run", "short.toml", "--view"])
-        .refused(&["short.view.html", "there is a folder of that name"]);
+    place.run(&["run", "short.toml", "--view"]).refused(&["short.view.html is not a regular file"]);
     assert_eq!(place.names("out"), ["short.view.html"]);
     place.run(&["run", "short.toml"]).done();
     let long = format!("{}.toml", "n".repeat(248));
     place.scenario(&long, &[SHORT]);
-    place.run(&["run", &long, "--view", "--out", "there"]).refused(&["the name is too long"]);
+    place.run(&["run", &long, "--view", "--out", "there"]).refused(&["has a name that is too long"]);
     assert!(!place.path().join("there").exists());
 }
