@@ -96,6 +96,15 @@ impl Base {
         }
     }
 
+    /// Whether files come out of the program.
+    pub fn is_built_in(&self) -> bool {
+        match self {
+            Self::BuiltIn => true,
+            Self::Folder(..) => false,
+            Self::Kept(kept) => kept.is_built_in(),
+        }
+    }
+
     /// The bytes of the file at `path`, at most `limit` of them; none if there is no such file, or it may not be named.
     pub fn bytes(&self, path: &str, limit: u64) -> Option<Vec<u8>> {
         let (folder, outside) = match self {

@@ -69,6 +69,11 @@ impl Kept {
         Ok(source)
     }
 
+    /// Whether they came out of the program.
+    pub fn is_built_in(&self) -> bool {
+        self.from.as_ref().is_some_and(|from| from.is_built_in())
+    }
+
     /// The bytes of a file that is not kept, if there are still files to be read: of pictures, which no document depends on.
     pub fn bytes(&self, path: &str, limit: u64) -> Option<Vec<u8>> {
         self.from.as_ref()?.bytes(path, limit)

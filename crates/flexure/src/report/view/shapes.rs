@@ -74,8 +74,11 @@ pub(super) fn shapes(robot: &Robot) -> (Vec<Shape>, Vec<Shaped>) {
     (base, bodies)
 }
 
-/// A warning that links are drawn in another way than their file says, if they are.
+/// A warning that links are drawn in another way than their file says, if they are; not of built-in robots, which have no meshes to be found.
 pub fn unseen(robot: &Robot) -> Option<Problem> {
+    if robot.looks.base.as_ref().is_some_and(|base| base.is_built_in()) {
+        return None;
+    }
     let link = robot.looks.links.iter().find(|link| parts(link, &robot.looks).is_none())?;
     let mesh = |part: &Part| match &part.form {
         Form::Mesh(file, _) => Some(file.clone()),

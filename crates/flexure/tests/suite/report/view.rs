@@ -218,6 +218,7 @@ fn what_cannot_be_shown_is_told() {
     let told =
         |outside| package(outside, |scenario| unseen(&scenario.robot).map(|problem| problem.to_string()));
     assert_eq!(told(Outside::Allowed), None);
+    assert!(unseen(&load_scenario("panda-tanh-smooth").expect("built in").robot).is_none());
     let told = told(Outside::Refused).expect("a warning");
     assert!(told.contains("thigh.dae") && told.contains("joint to joint"), "{told}");
 }
