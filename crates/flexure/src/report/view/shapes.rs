@@ -5,6 +5,7 @@ use base64::prelude::BASE64_STANDARD;
 use flexure_core::linalg::Vector;
 use serde::Serialize;
 
+use crate::files::base::Base;
 use crate::files::{Problem, suggest};
 use crate::robot::Robot;
 use crate::robot::links::rigid::Pose;
@@ -76,7 +77,7 @@ pub(super) fn shapes(robot: &Robot) -> (Vec<Shape>, Vec<Shaped>) {
 
 /// A warning that links are drawn in another way than their file says, if they are; not of built-in robots, which have no meshes to be found.
 pub fn unseen(robot: &Robot) -> Option<Problem> {
-    if robot.looks.base.as_ref().is_some_and(|base| base.is_built_in()) {
+    if robot.looks.base.as_ref().is_some_and(Base::is_built_in) {
         return None;
     }
     let link = robot.looks.links.iter().find(|link| parts(link, &robot.looks).is_none())?;
