@@ -22,8 +22,9 @@ export function header(runs) {
     if (run.law) head.append(make('span', 'law', `law ${run.law}`));
     article.append(head);
     if (run.verdict) {
-      const verdict = make('p', `verdict ${run.verdict.good ? 'good' : 'bad'}`);
-      verdict.append(make('b', '', run.verdict.good ? '✓ good' : '✕ bad'), make('span', '', run.verdict.words));
+      const [kind, mark] = run.verdict.good === null ? ['open', '– not known'] : run.verdict.good ? ['good', '✓ good'] : ['bad', '✕ bad'];
+      const verdict = make('p', `verdict ${kind}`);
+      verdict.append(make('b', '', mark), make('span', '', run.verdict.words));
       article.append(verdict);
     }
     host.append(article);

@@ -49,6 +49,24 @@ impl Unit {
     }
 }
 
+/// How numbers about several joints are measured, each with `prefix` before it: "N m", "N", or "N m or N".
+pub fn of_joints(unit: Unit, prefix: &str, kinds: impl Iterator<Item = JointKind>) -> String {
+    let (mut turns, mut slides) = (false, false);
+    for kind in kinds {
+        match kind {
+            JointKind::Revolute => turns = true,
+            JointKind::Prismatic => slides = true,
+        }
+    }
+    let [turning, sliding] =
+        [JointKind::Revolute, JointKind::Prismatic].map(|kind| format!("{prefix}{}", unit.of(kind).raised));
+    match (turns, slides) {
+        (true, true) => format!("{turning} or {sliding}"),
+        (false, true) => sliding,
+        (_, false) => turning,
+    }
+}
+
 /// Plain numbers.
 pub const NONE: Unit = Unit::new("", 0);
 /// Times and durations.
@@ -114,6 +132,16 @@ const KEYS: [(&[&str], Unit); 13] = [
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn units_of_several_joints_name_what_there_is() {
+        use JointKind::{Prismatic, Revolute};
+        let units = |kinds: &[JointKind]| of_joints(ANGLE, "m", kinds.iter().copied());
+        assert_eq!(units(&[Revolute, Revolute]), "mrad");
+        assert_eq!(units(&[Prismatic]), "mm");
+        assert_eq!(units(&[Prismatic, Revolute]), "mrad or mm");
+        assert_eq!(of_joints(TORQUE, "", [Prismatic, Revolute].into_iter()), "N m or N");
+    }
 
     /// Every unit, and for those of joints the power of rad that is the same power of m at a joint that slides: torque is energy
     /// per rad, inertia energy s²/rad².

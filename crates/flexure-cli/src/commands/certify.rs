@@ -57,9 +57,7 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
             print::line("broken off: what is here is proved, not all that was asked was looked at")?;
         }
         print::line(&proof_table(&summary, print::columns()))?;
-        if let Some(file) = &file {
-            print::line(&format!("wrote {}", file.display()))?;
-        }
+        print::wrote(file.as_slice())?;
     }
     match ended {
         Err(Failure::Undecided(reports)) if proof.broken_off => Err(Failure::Interrupted(reports)),

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use flexure::check::{Along, Assumed, Findings};
-use flexure::files::{Problem, Reading, create_folder, prepare};
+use flexure::files::{Problem, Reading, create_folder, prepare, prepare_for};
 use flexure::report::{joint_table, response_figure, usage_table, write_figure};
 use serde::Serialize;
 
@@ -40,19 +40,8 @@ pub fn check(
 ) -> Result<(), Failure> {
     figure.map_or(Ok(()), prepare)?;
     let mut verdicts: Vec<_> = files.iter().map(|file| verdict(file, reading, json)).collect();
-    if let Some(folder) = figure {
-        let mut drawn: Vec<String> = Vec::new();
-        for verdict in &mut verdicts {
-            let Some(Findings { robot_name, rows, .. }) = &verdict.content else { continue };
-            create_folder(folder)?;
-            let figure = response_figure(robot_name, rows);
-            // Robots of one name have a figure each.
-            let same = drawn.iter().filter(|name| *name == robot_name).count();
-            let number = if same == 0 { String::new() } else { format!("-{}", same + 1) };
-            drawn.push(robot_name.clone());
-            verdict.files =
-                write_figure(folder, &format!("{robot_name}{number}.response"), &figure)?.to_vec();
-        }
+    if let Some(folder) = figure.filter(|_| verdicts.iter().all(|verdict| verdict.content.is_some())) {
+        draw(&mut verdicts, folder)?;
     }
     if json {
         print::json(&verdicts)?;
@@ -73,6 +62,26 @@ pub fn check(
             "each file's problems are listed above",
         )),
     }
+}
+
+/// Draws how the joints of each robot answer over frequency; robots of one name have numbers behind it.
+fn draw(verdicts: &mut [Verdict], folder: &Path) -> Result<(), Failure> {
+    let mut names: Vec<String> = Vec::new();
+    for Findings { robot_name, .. } in verdicts.iter().filter_map(|verdict| verdict.content.as_ref()) {
+        let numbered = (2..).map(|number| format!("{robot_name}-{number}"));
+        let mut candidates = std::iter::once(robot_name.clone()).chain(numbered);
+        names.extend(candidates.find(|name| !names.contains(name)));
+    }
+    let name = |name: &String| format!("{}.response", name.replace(['/', '\\'], "_"));
+    let files =
+        names.iter().flat_map(|robot| ["svg", "png"].map(|ending| format!("{}.{ending}", name(robot))));
+    prepare_for(folder, files)?;
+    create_folder(folder)?;
+    for (verdict, robot) in verdicts.iter_mut().zip(&names) {
+        let Some(Findings { robot_name, rows, .. }) = &verdict.content else { continue };
+        verdict.files = write_figure(folder, &name(robot), &response_figure(robot_name, rows))?.to_vec();
+    }
+    Ok(())
 }
 
 /// What is in a file, on the terminal.
@@ -108,7 +117,7 @@ fn show(verdict: &Verdict) -> Result<(), Failure> {
     if let Some(sampled) = sampled {
         print::line(&sampled.line())?;
     }
-    verdict.files.iter().try_for_each(|file| print::line(&format!("wrote {}", file.display())))
+    print::wrote(&verdict.files)
 }
 
 fn counted(n: usize, what: &str) -> String {

@@ -47,9 +47,7 @@ pub fn compare(options: &Compare, reading: Reading<'_>, json: bool) -> Result<()
         print::json(&Outcome { leaderboard: &leaderboard, files })?;
     } else {
         print::line(&leaderboard_table(&leaderboard, print::columns()))?;
-        for file in &files {
-            print::line(&format!("wrote {}", file.display()))?;
-        }
+        print::wrote(&files)?;
     }
     hopeless(&leaderboard)
 }

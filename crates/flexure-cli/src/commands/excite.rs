@@ -63,7 +63,7 @@ pub fn excite(options: &Excite, outside: Outside, json: bool) -> Result<(), Fail
             "simulated with these encoders and exact torques, without delay and without friction: the loop that moves the robot may need\n\
              other gains",
         )?;
-        print::line(&format!("wrote {}", out.display()))?;
+        print::wrote(&[out])?;
     }
     if found.objections.is_empty() {
         return Ok(());

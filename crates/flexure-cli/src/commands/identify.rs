@@ -109,7 +109,7 @@ fn tell(found: &Identified, out: Option<&PathBuf>) -> Result<(), Failure> {
         significant(found.condition, 3)
     ))?;
     match out {
-        Some(out) => print::line(&format!("wrote {}", out.display())),
+        Some(out) => print::wrote(&[out]),
         None => Ok(()),
     }
 }

@@ -46,7 +46,7 @@ pub fn import(options: &Import, json: bool) -> Result<(), Failure> {
     if files.is_empty() {
         return print::text(&robot.toml);
     }
-    files.iter().try_for_each(|file| print::line(&format!("wrote {}", file.display())))
+    print::wrote(&files)
 }
 
 /// What is to be said of the scenario that was written at `path` before anybody runs it.

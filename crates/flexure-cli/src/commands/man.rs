@@ -39,7 +39,7 @@ pub fn man(folder: Option<&Path>, json: bool) -> Result<(), Failure> {
     if json {
         return print::json(&Pages { page, files });
     }
-    files.iter().try_for_each(|file| print::line(&format!("wrote {}", file.display())))
+    print::wrote(&files)
 }
 
 /// The page of a command, as troff.

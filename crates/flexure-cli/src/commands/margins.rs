@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use flexure::compare::{Entrant, check_budget, entrants};
 use flexure::files::number::significant;
-use flexure::files::{Problems, Reading, prepare};
+use flexure::files::{Problems, Reading, prepare_for};
 use flexure::margins::{Margins as Found, margins as margins_of};
 use flexure::progress::{PartProgress, Progress as Progressing};
-use flexure::report::{margins_table, write_margins};
+use flexure::report::{margins_names, margins_table, write_margins};
 use flexure::scenario::{Scenario, load_scenario_with};
 use flexure::tune::tune;
 use serde::Serialize;
@@ -32,7 +32,9 @@ pub fn margins(options: &Margins, reading: Reading<'_>, json: bool) -> Result<()
     let chosen = if options.controllers.is_empty() { Vec::new() } else { entrants(&options.controllers)? };
     let scenario = load_scenario_with(&options.scenario, reading)?;
     say(&scenario.warnings);
-    options.out.as_deref().map_or(Ok(()), prepare)?;
+    if let Some(folder) = &options.out {
+        prepare_for(folder, margins_names(&scenario, chosen.len().max(1)))?;
+    }
     let (loops, is_whole) = {
         let each = [options.budget as f64, RUNS];
         let weights = if chosen.is_empty() { vec![RUNS] } else { each.repeat(chosen.len()) };
@@ -53,7 +55,7 @@ pub fn margins(options: &Margins, reading: Reading<'_>, json: bool) -> Result<()
         }
         print::line(&margins_table(&loops, print::columns()))?;
         loops.iter().try_for_each(show)?;
-        files.iter().try_for_each(|file| print::line(&format!("wrote {}", file.display())))?;
+        print::wrote(&files)?;
     }
     if !is_whole {
         return Err(Failure::interrupted(words.to_owned(), "what is not there was not measured"));

@@ -13,6 +13,7 @@ mod log;
 mod man;
 mod margins;
 mod model;
+mod objections;
 pub mod print;
 mod replay;
 mod reproduce;

@@ -1,6 +1,7 @@
 //! Printing on stdout.
 
 use std::io::{self, BufWriter, Write};
+use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 use flexure::report::WIDTH;
@@ -79,6 +80,11 @@ pub fn line(text: &str) -> Result<(), Failure> {
         Some(width) => Ok(writeln!(io::stdout(), "{}", wrapped(text, width))?),
         None => Ok(writeln!(io::stdout(), "{text}")?),
     }
+}
+
+/// Which files were written, a line each.
+pub fn wrote<P: AsRef<Path>>(files: &[P]) -> Result<(), Failure> {
+    files.iter().try_for_each(|file| line(&format!("wrote {}", file.as_ref().display())))
 }
 
 /// Columns that a table may take: those of the terminal; elsewhere those that it is made for.

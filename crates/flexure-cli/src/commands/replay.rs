@@ -48,8 +48,5 @@ pub fn replay(options: &Replay, reading: Reading<'_>, json: bool) -> Result<(), 
         duration(found.horizon),
         found.diverged_at.map_or(String::new(), |t| format!("; it diverged at {}", duration(t)))
     ))?;
-    for file in &files {
-        print::line(&format!("wrote {}", file.display()))?;
-    }
-    Ok(())
+    print::wrote(&files)
 }

@@ -12,8 +12,9 @@ use flexure::reproduce::{
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::objections::objections;
 use super::print;
-use super::run::{Outcome, objections};
+use super::run::Outcome;
 use crate::failure::Failure;
 use crate::progress::Progress;
 

@@ -4,16 +4,16 @@ use std::path::{Path, PathBuf};
 
 use flexure::feasible;
 use flexure::files::number::short;
-use flexure::files::{Problem, Reading, prepare};
-use flexure::imperfections::Imperfection;
+use flexure::files::{Problem, Reading, prepare_for};
 use flexure::prove::standing::outside_of_proofs;
-use flexure::report::{summary_table, unseen, write_view};
+use flexure::report::{summary_table, view_name, write_view};
 use flexure::reproduce::{Experiment, trace_file, write_experiment};
 use flexure::sampled::{Sampled, not_looked_at};
 use flexure::scenario::{Scenario, load_scenario_with};
-use flexure::simulate::{Cause, Excerpt, FaultLog, Following, Summary, preload};
+use flexure::simulate::{Excerpt, FaultLog, Following, Summary, preload};
 use serde::Serialize;
 
+use super::objections::objections;
 use super::print;
 use crate::args::Traced;
 use crate::failure::{Failure, say};
@@ -99,12 +99,13 @@ pub fn told(
     traced: &Traced,
     json: bool,
 ) -> Result<(), Failure> {
-    free(&scenarios, traced)?;
+    let files = scenarios
+        .iter()
+        .flat_map(|scenario| ["csv", "svg", "png"].map(|ending| format!("{}.{ending}", scenario.name)));
+    let view = traced.view.then(|| view_name(scenarios.iter()));
+    prepare_for(&traced.output.out, files.chain(view))?;
     let mut finished: Vec<Finished> = Vec::new();
     for scenario in scenarios {
-        if traced.view {
-            say(unseen(&scenario.robot).as_slice());
-        }
         finished.push(run_of(scenario, traced)?);
         if finished.iter().any(|run| run.experiment.run.broken_off.is_some()) {
             break;
@@ -119,9 +120,7 @@ pub fn told(
         for run in &finished {
             in_words(run)?;
         }
-        if let Some(page) = page {
-            print::line(&format!("wrote {}", page.display()))?;
-        }
+        print::wrote(page.as_slice())?;
     }
     let mut answers = Vec::new();
     for Finished { experiment, answers: own, .. } in finished {
@@ -138,31 +137,6 @@ pub fn told(
     if answers.is_empty() { Ok(()) } else { Err(Failure::No(answers)) }
 }
 
-/// Bytes of a file's name, at most, on every system in use.
-const LONGEST_NAME: usize = 255;
-
-/// Whether all that is to be written can be: no folder has the name, and none is too long. A run may take an hour.
-fn free(scenarios: &[Scenario], traced: &Traced) -> Result<(), Failure> {
-    let names: Vec<&str> = scenarios.iter().map(|scenario| scenario.name.as_str()).collect();
-    let page = traced.view.then(|| format!("{}.view.html", names.join("-and-")));
-    let files = names.iter().flat_map(|name| ["csv", "svg", "png"].map(|ending| format!("{name}.{ending}")));
-    for file in files.chain(page) {
-        let is_long = file.len() > LONGEST_NAME;
-        let path = traced.output.out.join(file);
-        let objection = if is_long {
-            "has a name that is too long"
-        } else if path.is_dir() {
-            "is not a regular file"
-        } else {
-            continue;
-        };
-        let message = format!("{} {objection}", path.display());
-        let help = "files are called as the scenario: give it another name, or another --out";
-        return Err(Failure::input("write", message, help));
-    }
-    Ok(())
-}
-
 /// Runs a scenario and writes its trace and its figure.
 fn run_of(scenario: Scenario, traced: &Traced) -> Result<Finished, Failure> {
     let Traced { output, columns, every, view: _ } = traced;
@@ -172,7 +146,6 @@ fn run_of(scenario: Scenario, traced: &Traced) -> Result<Finished, Failure> {
     say(&preload(&scenario)?);
     say(&feasible::slowed(&scenario)?);
     let beyond = feasible::exceeded(&scenario, &feasible::usage(&scenario)?);
-    prepare(&output.out)?;
     let mut trace = trace_file(&output.out, &scenario, excerpt)?;
     let experiment = {
         let progress = Progress::of_one(&scenario.name);
@@ -194,10 +167,12 @@ fn run_of(scenario: Scenario, traced: &Traced) -> Result<Finished, Failure> {
 fn page(finished: &[Finished], folder: &Path) -> Result<PathBuf, Failure> {
     let words: Vec<String> = finished.iter().map(Finished::verdict).collect();
     let viewed = finished.iter().zip(&words).map(|(finished, words)| {
-        let good = finished.answers.is_empty() && finished.experiment.run.broken_off.is_none();
+        let good = finished.experiment.run.broken_off.is_none().then_some(finished.answers.is_empty());
         finished.experiment.viewed(good, words)
     });
-    Ok(write_view(folder, &viewed.collect::<Vec<_>>())?)
+    let (path, warnings) = write_view(folder, &viewed.collect::<Vec<_>>())?;
+    say(&warnings);
+    Ok(path)
 }
 
 impl Finished {
@@ -260,10 +235,7 @@ fn in_words(Finished { experiment, files, .. }: &Finished) -> Result<(), Failure
     if broken_off.is_none() {
         print::line(&verdict(&experiment.run.summary.following))?;
     }
-    for file in files {
-        print::line(&format!("wrote {}", file.display()))?;
-    }
-    Ok(())
+    print::wrote(files)
 }
 
 /// That a run was broken off, and when.
@@ -314,98 +286,4 @@ fn verdict(following: &Following) -> String {
     let answer = if following.follows { "yes" } else { "no" };
     let accepted = following.accepted.words().into_iter().map(|words| format!("\n  {words}"));
     format!("follows its reference: {answer}; accepted are{}", accepted.collect::<String>())
-}
-
-/// What to say of a loop that diverged, that is not stable as it is sampled, or that does not follow its reference.
-pub fn objections(experiment: &Experiment) -> Vec<Problem> {
-    if let Some(problem) = diverged(experiment) {
-        return vec![problem];
-    }
-    let Experiment { scenario, sampled, .. } = experiment;
-    // Why comes before what.
-    let unstable = sampled.as_ref().and_then(|sampled| sampled.problem(scenario));
-    unstable.into_iter().chain(lost(experiment)).collect()
-}
-
-/// Reasons that are told; the others are in the JSON.
-const TOLD: usize = 4;
-
-/// What to say of a loop that does not follow its reference.
-fn lost(experiment: &Experiment) -> Option<Problem> {
-    let Experiment { scenario, run, .. } = experiment;
-    let reasons = &run.summary.following.reasons;
-    let told: Vec<_> = reasons.iter().take(TOLD).map(|reason| reason.words.as_str()).collect();
-    let more = match reasons.len().saturating_sub(TOLD) {
-        0 => String::new(),
-        more => format!(";\nand {more} more: `flexure run --json` has all of them"),
-    };
-    let message = format!("{}: the loop does not follow: {}{more}", scenario.name, told.join(";\n"));
-    (!told.is_empty()).then(|| scenario.places.problem("reference", "lost", message, of_lost(experiment)))
-}
-
-/// What a loop may be lost by.
-fn of_lost(Experiment { scenario, run, .. }: &Experiment) -> String {
-    let lies = |imperfection: &Imperfection| ["dropout", "freeze", "jump"].contains(&imperfection.kind());
-    if let Some(first) = run.faults.as_ref().and_then(|faults| faults.stops.first()) {
-        let joint = first.joint.and_then(|joint| scenario.robot.joints.get(joint as usize));
-        let at = match (first.side, joint) {
-            (Some(side), Some(joint)) => format!(", {side} side of joint {}", joint.name),
-            _ => String::new(),
-        };
-        return format!(
-            "the guard stopped the robot at t = {} s: {}{at}; the columns `phase` and `fault` of the trace and `faults` of \
-             `flexure run --json` tell the rest",
-            short(first.time, 4),
-            first.cause
-        );
-    }
-    if scenario.guard.is_none() && scenario.imperfections.iter().any(lies) {
-        return "readings fail in this loop and nothing looks at them: add [guard]".to_owned();
-    }
-    "what is accepted stands in [accept], or follows from the robot's limits and the reference; slower references and smooth starts \
-     take less"
-        .to_owned()
-}
-
-/// What to say of a loop that diverged.
-fn diverged(experiment: &Experiment) -> Option<Problem> {
-    let Experiment { scenario, run, sampled, .. } = experiment;
-    run.divergence.map(|divergence| {
-        let code = match divergence.cause {
-            Cause::Unbounded => "diverged",
-            Cause::Torque => "no-torque",
-            Cause::Unsolvable => "unsolvable",
-        };
-        let unstable = sampled.as_ref().filter(|sampled| !sampled.stable);
-        let hint = unstable
-            .and_then(Sampled::help)
-            .unwrap_or_else(|| of_large_signals(experiment, divergence.cause));
-        let message = match unstable {
-            Some(sampled) => format!("{}: {divergence}; {}", scenario.name, sampled.line()),
-            None => format!("{}: {divergence}", scenario.name),
-        };
-        scenario.places.problem("control_period", code, message, hint + "; outputs end where the loop does")
-    })
-}
-
-/// What may be wrong where small errors shrink.
-fn of_large_signals(Experiment { scenario, sampled, .. }: &Experiment, cause: Cause) -> String {
-    let small = match sampled {
-        Some(_) => {
-            "small errors shrink where the loop was looked at: it is the large ones, or what stands between law and robot; "
-        }
-        None => "",
-    };
-    let join = match scenario.smooth_start {
-        Some(_) => "",
-        None => "join the reference smoothly with [reference.smooth_start]; ",
-    };
-    let look = match cause {
-        Cause::Unbounded => "look at limits, delays and noise",
-        Cause::Torque => return "a sensor that drops out reads NaN: add [guard]".to_owned(),
-        Cause::Unsolvable => {
-            "check that the reference has four continuous derivatives; a shorter control_period, slower gains"
-        }
-    };
-    format!("{small}{join}{look}")
 }

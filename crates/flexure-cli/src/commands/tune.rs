@@ -53,9 +53,7 @@ pub fn tune(options: &Tune, reading: Reading<'_>, json: bool) -> Result<(), Fail
         print::json(&Outcome { design: &found, file })?;
     } else {
         show(&found, scenario)?;
-        if let Some(file) = file {
-            print::line(&format!("wrote {}", file.display()))?;
-        }
+        print::wrote(file.as_slice())?;
     }
     if found.broken_off {
         let words = if found.feasible {

@@ -119,6 +119,17 @@ fn joints_are_drawn_over_frequency() {
     // Of a scenario its robot; of a bad file nothing.
     let json = place.run(&["check", "pendulum-tanh", "--figure", "there", "--json"]).done().json();
     assert_eq!(json[0]["files"][0], "there/pendulum-1dof.response.svg");
-    place.run(&["check", "none.toml", "--figure", "elsewhere"]).refused(&["none.toml"]);
+    place.run(&["check", "none.toml", "panda", "--figure", "elsewhere"]).refused(&["none.toml"]);
     assert!(!place.path().join("elsewhere").exists());
+    // Robots of one name have a figure each, wherever their names would lead.
+    for file in ["a.toml", "b.toml"] {
+        place.write(file, ROBOT.replace("name = \"quanser-2dof\"", "name = \"../x\""));
+    }
+    place.run(&["check", "a.toml", "b.toml", "--figure", "two"]).done();
+    assert_eq!(place.names("two").len(), 4, "{:?}", place.names("two"));
+    std::fs::create_dir_all(place.path().join("taken/panda.response.png")).unwrap();
+    place
+        .run(&["check", "panda", "--figure", "taken"])
+        .refused(&["panda.response.png is not a regular file"]);
+    assert_eq!(place.names("taken"), ["panda.response.png"]);
 }

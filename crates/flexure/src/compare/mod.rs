@@ -23,6 +23,7 @@ use crate::tune::{has_random_points, tune_each};
 
 pub use entrant::{Entrant, entrants};
 pub use leaderboard::{Leaderboard, Loss, TaskScores, is_vcbc};
+pub(crate) use ranking::median;
 pub use ranking::{Spread, Standing, TIE, ranks, standings};
 pub use score::{CHATTERS, Score, SeedScore, TunedGain};
 pub use task::{Task, tasks};

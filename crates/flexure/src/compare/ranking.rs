@@ -144,7 +144,8 @@ fn standing(tasks: &[TaskScores], by_seed: &[Vec<f64>], law: usize) -> Standing 
     }
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
+/// Of at least one value.
+pub(crate) fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     let half = values.len() / 2;
     if values.len() % 2 == 1 { values[half] } else { 0.5 * (values[half - 1] + values[half]) }

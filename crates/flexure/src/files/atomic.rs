@@ -28,6 +28,12 @@ pub enum WriteError {
         /// File that was to be written.
         path: PathBuf,
     },
+    /// No file can be called so.
+    #[error("{} has a name that is too long", path.display())]
+    LongName {
+        /// File that was to be written.
+        path: PathBuf,
+    },
     /// There is such a file, and it shall stay.
     #[error("{} exists", path.display())]
     Exists {
@@ -49,13 +55,18 @@ impl Diagnostic for WriteError {
     fn code<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
         Some(Box::new(match self {
             Self::Exists { .. } => "error[exists]",
-            Self::Folder { .. } | Self::NotAFile { .. } | Self::Content { .. } => "error[write]",
+            Self::Folder { .. } | Self::NotAFile { .. } | Self::LongName { .. } | Self::Content { .. } => {
+                "error[write]"
+            }
         }))
     }
 
     fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
         Some(Box::new(match self {
             Self::Folder { .. } => "name a folder in which files can be created",
+            Self::LongName { .. } => {
+                "outputs are called as their scenarios and robots: give them shorter names"
+            }
             Self::NotAFile { .. } => "name a file that does not exist yet, or one to replace",
             Self::Exists { .. } => "name another place, or replace what is there with --force",
             Self::Content { .. } => "is the disk full, or the file in use?",
@@ -205,6 +216,27 @@ pub fn prepare(folder: &Path) -> Result<(), WriteError> {
     tempfile::tempfile_in(place)
         .map(drop)
         .map_err(|cause| WriteError::Folder { folder: folder.into(), cause })
+}
+
+/// Bytes of a file's name, at most, on every system in use.
+const LONGEST_NAME: usize = 255;
+
+/// As [`prepare`], and that files of these names can be written there: none is that of a folder or a device, or too long.
+///
+/// # Errors
+/// If they cannot.
+pub fn prepare_for(folder: &Path, names: impl IntoIterator<Item = String>) -> Result<(), WriteError> {
+    prepare(folder)?;
+    for name in names {
+        let path = folder.join(&name);
+        if name.len() > LONGEST_NAME {
+            return Err(WriteError::LongName { path });
+        }
+        if fs::metadata(&path).is_ok_and(|what| !what.is_file()) {
+            return Err(WriteError::NotAFile { path });
+        }
+    }
+    Ok(())
 }
 
 /// Creates `folder` if it is missing, and removes temporary files from it that runs left there which were killed.

@@ -31,7 +31,9 @@ pub(crate) mod table;
 pub(crate) mod traced;
 mod unfinished;
 
-pub use atomic::{Pending, WriteError, create_folder, folder_of, prepare, write_atomic, write_together};
+pub use atomic::{
+    Pending, WriteError, create_folder, folder_of, prepare, prepare_for, write_atomic, write_together,
+};
 pub use base::{Outside, Reading};
 pub use builtin::{ROBOTS, SCENARIOS, TASKS};
 pub use bundle::Bundle;

@@ -52,13 +52,9 @@ pub fn short(value: f64, digits: usize) -> String {
     format!("{digits}{power}")
 }
 
-/// An angle in rad in the unit in which it is short: mrad, or µrad below a tenth of that.
-pub fn small_angle(radians: f64) -> String {
-    if radians.abs() < 1e-4 {
-        format!("{} µrad", engineering(1e6 * radians))
-    } else {
-        format!("{} mrad", engineering(1e3 * radians))
-    }
+/// A small number in thousandths, or millionths where it is below a tenth of that, and the prefix that says which.
+pub fn small(value: f64) -> (String, &'static str) {
+    if value.abs() < 1e-4 { (engineering(1e6 * value), "µ") } else { (engineering(1e3 * value), "m") }
 }
 
 /// The largest number of `digits` significant digits, or nearly, that is not above `value`, which is positive.
@@ -98,7 +94,7 @@ fn shift(mantissa: &str, places: i32) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{duration, engineering, power_of_ten, rounded_down, significant, small_angle};
+    use super::{duration, engineering, power_of_ten, rounded_down, significant, small};
 
     #[test]
     fn three_digits_and_powers_in_steps_of_three() {
@@ -175,8 +171,11 @@ mod tests {
     }
 
     #[test]
-    fn small_angles_are_in_the_unit_that_is_short() {
-        let words = [0.0206, 1e-4, 5.12e-6, 9.39e-7, 0.0].map(small_angle);
+    fn small_numbers_are_in_the_unit_that_is_short() {
+        let words = [0.0206, 1e-4, 5.12e-6, 9.39e-7, 0.0].map(|value| {
+            let (number, prefix) = small(value);
+            format!("{number} {prefix}rad")
+        });
         assert_eq!(words, ["20.6 mrad", "0.100 mrad", "5.12 µrad", "0.939 µrad", "0 µrad"]);
     }
 }

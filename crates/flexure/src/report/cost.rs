@@ -5,7 +5,7 @@ use super::scatter::{Item, Scatter, legend};
 use super::scene::Scene;
 use super::score_map::factor;
 use super::sheet::{MARGIN, page};
-use crate::compare::{Leaderboard, Score, is_vcbc};
+use crate::compare::{Leaderboard, Score, is_vcbc, median};
 
 const WIDTH: f64 = 1200.0;
 const HEIGHT: f64 = 460.0;
@@ -51,11 +51,6 @@ fn medians(board: &Leaderboard, law: &str) -> Option<[f64; 2]> {
         Some([score.rms_torque / task.needed_torque, factor(task, score)?])
     });
     let scores: Vec<[f64; 2]> = scores.filter(|score| score.iter().all(|x| x.is_finite())).collect();
-    let median = |of: usize| {
-        let mut values: Vec<f64> = scores.iter().map(|score| score[of]).collect();
-        values.sort_by(f64::total_cmp);
-        let middle = values.len() / 2;
-        if values.len() % 2 == 1 { values[middle] } else { 0.5 * (values[middle - 1] + values[middle]) }
-    };
-    (!scores.is_empty()).then(|| [median(0), median(1)])
+    let of = |side: usize| median(scores.iter().map(|score| score[side]).collect());
+    (!scores.is_empty()).then(|| [of(0), of(1)])
 }

@@ -13,6 +13,7 @@ use super::scene::Scene;
 use super::sheet::{MARGIN, line_legend, page};
 use super::sketch::Sketch;
 use super::style::{INK, LIMIT, Stroke, hue};
+use crate::robot::JointKind;
 use crate::units;
 
 /// What is written above the panels.
@@ -58,9 +59,10 @@ impl FigureOptions {
 /// Joints up to which all are drawn in the same panels.
 const FEW: usize = 3;
 
-/// The figure of a run: [`four_panel`] of three joints or fewer, [`joint_panels`] of more.
+/// The figure of a run: [`four_panel`] of three joints or fewer that all turn, [`joint_panels`] of others.
 pub fn run_figure(run: &Sketch, options: &FigureOptions) -> Scene {
-    if run.joints("q_l") > FEW { joint_panels(run, options) } else { four_panel(run, options) }
+    let slides = options.joints.iter().any(|joint| joint.kind == JointKind::Prismatic);
+    if run.joints("q_l") > FEW || slides { joint_panels(run, options) } else { four_panel(run, options) }
 }
 
 const WIDTH: f64 = 1200.0;

@@ -13,7 +13,7 @@ use super::style::{INK, LIMIT, MUTED, Stroke, bold, letters};
 use super::ticks;
 use crate::files::number::{power_of_ten, significant};
 use crate::simulate::SETTLED;
-use crate::units;
+use crate::units::{self, of_joints};
 
 const WIDTH: f64 = 1200.0;
 /// Height of a row, and of the frames in it [px].
@@ -39,7 +39,7 @@ pub fn joint_panels(run: &Sketch, options: &FigureOptions) -> Scene {
     let happenings = options.happenings(run);
     let (mut scene, under_title) = page(WIDTH, &options.title, &options.subtitle);
     let mut marked = Marked { limit: true, settled: true };
-    let entries = legend(marked, options.settled, &happenings);
+    let entries = legend(marked, options, &happenings);
     let top = under_title + line_legend(&mut scene.clone(), under_title, &entries) + HEADING - 14.0;
     marked = Marked { limit: false, settled: false };
     scene.height = top + ROW * joints as f64 + BELOW;
@@ -71,7 +71,7 @@ pub fn joint_panels(run: &Sketch, options: &FigureOptions) -> Scene {
         let (torques, unit, limits) = share(drawn(&[("u_m", side(LINK))], joint), &marks);
         marked.limit |= row.linear(&mut scene, place(2), "", &torques, unit, &limits);
     }
-    line_legend(&mut scene, under_title, &legend(marked, options.settled, &happenings));
+    line_legend(&mut scene, under_title, &legend(marked, options, &happenings));
     scene
 }
 
@@ -219,7 +219,7 @@ struct Marked {
     settled: bool,
 }
 
-fn legend(marked: Marked, settled: Option<f64>, happenings: &[Happening]) -> Vec<(String, Stroke)> {
+fn legend(marked: Marked, options: &FigureOptions, happenings: &[Happening]) -> Vec<(String, Stroke)> {
     let entry = |name: &str, stroke: Stroke| (name.to_owned(), stroke);
     let mut entries = vec![
         entry("link side", side(LINK)),
@@ -227,8 +227,10 @@ fn legend(marked: Marked, settled: Option<f64>, happenings: &[Happening]) -> Vec
         entry("reference", Stroke::reference()),
     ];
     if marked.settled {
-        let when = if settled.is_some() { "1 mrad, and settled below it" } else { "1 mrad" };
-        entries.push(entry(when, DOTTED));
+        let within =
+            format!("1 {}", of_joints(units::ANGLE, "m", options.joints.iter().map(|joint| joint.kind)));
+        let when = if options.settled.is_some() { ", and settled below it" } else { "" };
+        entries.push((within + when, DOTTED));
     }
     if marked.limit {
         entries.push(entry("limit", LIMIT));

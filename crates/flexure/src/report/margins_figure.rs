@@ -2,9 +2,9 @@
 
 use super::axes::{Axes, Axis};
 use super::range::Range;
-use super::scene::{Anchor, Lettering, Scene, Shape};
+use super::scene::{Anchor, Lettering, Scene};
 use super::sheet::{MARGIN, line_legend, page};
-use super::style::{HOLDS, INK, MUTED, STOPPED, Stroke, bold, letters};
+use super::style::{Color, HOLDS, INK, MUTED, STOPPED, Stroke, bold, letters};
 use super::ticks;
 use crate::files::number::significant;
 use crate::margins::{Edge, Margins};
@@ -152,14 +152,12 @@ impl Row {
 }
 
 /// A bar between two places of an axis, as high as the frame.
-fn bar(scene: &mut Scene, axes: &Axes, [from, to]: [f64; 2], fill: super::style::Color) {
-    if to <= from {
-        return;
+fn bar(scene: &mut Scene, axes: &Axes, [from, to]: [f64; 2], fill: Color) {
+    if to > from {
+        let [left, right] = [from, to].map(|x| axes.place(x, 0.0)[0]);
+        let [_, top, _, height] = axes.frame;
+        scene.rectangle([left, top, right - left, height], fill, Stroke::solid(fill, 0.0));
     }
-    let [left, right] = [from, to].map(|x| axes.place(x, 0.0)[0]);
-    let [_, top, _, height] = axes.frame;
-    let corners = vec![[left, top], [right, top], [right, top + height], [left, top + height]];
-    scene.shapes.push(Shape::Polygon { corners, fill, rim: Stroke::solid(fill, 0.0) });
 }
 
 #[cfg(test)]

@@ -5,14 +5,16 @@ use maud::{Markup, html as markup};
 use super::html::{AssumedNumber, assumptions};
 use super::kit::{Page, Section, Verdict, figure};
 use super::margins_figure::margins_figure;
+use crate::files::Problem;
 use crate::files::number::{NONE, significant};
 use crate::margins::{Edge, Margins};
+use crate::scenario::Scenario;
 
 /// The page: for each loop what it bears, as a picture, then all numbers. The same margins give the same page, byte for byte.
-pub fn margins_page(loops: &[Margins], assumed: &[AssumedNumber]) -> String {
+pub fn margins_page(loops: &[Margins], scenario: &Scenario, assumed: &[AssumedNumber]) -> String {
     let title =
         loops.first().map_or_else(|| "Margins".to_owned(), |first| format!("{}: margins", first.name));
-    let verdict = verdict(loops);
+    let verdict = verdict(loops, scenario);
     let caption = markup! {
         "Bars end where the loop was seen to hold last, red begins where it did not. Each change is made alone, from the scenario as it is, by \
          steps and bisection to 1 %: where a loop holds again farther out was not looked for."
@@ -31,33 +33,40 @@ pub fn margins_page(loops: &[Margins], assumed: &[AssumedNumber]) -> String {
     Page { title: &title, verdict: Some(&verdict), lead, sections, provenance }.html()
 }
 
-/// What the first loop bears, in a sentence; it is good if every loop holds as it is.
-fn verdict(loops: &[Margins]) -> Verdict {
-    let holds = |margins: &Margins| {
-        margins.reasons.is_empty() && margins.sampled.as_ref().is_none_or(|sampled| sampled.stable)
-    };
-    let words = loops.iter().map(|margins| {
-        if !holds(margins) {
-            let why = margins.reasons.first().cloned().or_else(|| margins.sampled.as_ref().map(crate::sampled::Sampled::line));
-            return format!("{} does not hold as it is: {}.", margins.law(), why.unwrap_or_default());
-        }
-        let upto = |edge: &Edge, unit: &str, scale: f64| {
-            edge.holds().map_or_else(|| format!("no {unit}"), |holds| format!("{} {unit}", significant(scale * holds, 3)))
-        };
-        let between = |low: &Edge, high: &Edge| {
-            let number = |edge: &Edge| edge.holds().map_or(NONE.to_owned(), |holds| significant(holds, 3));
-            format!("{} to {}", number(low), number(high))
-        };
-        format!(
-            "{} holds with {} of delay more, {} times its torque, {} times its stiffness, and {} of noise more.",
-            margins.law(),
-            upto(&margins.delay, "ms", 1e3),
-            between(&margins.gain_low, &margins.gain_high),
-            between(&margins.stiffness_low, &margins.stiffness_high),
-            upto(&margins.noise, "mrad", 1e3)
-        )
+/// What the loops bear, a sentence each; it is good if nothing is to be said against any of them.
+fn verdict(loops: &[Margins], scenario: &Scenario) -> Verdict {
+    let objections: Vec<Option<Problem>> = loops.iter().map(|margins| margins.objection(scenario)).collect();
+    let words = loops.iter().zip(&objections).map(|(margins, objection)| match objection {
+        Some(problem) => format!("{problem}."),
+        None => borne(margins),
     });
-    Verdict { good: loops.iter().all(holds), words: words.collect::<Vec<_>>().join(" ") }
+    let words = words.collect::<Vec<_>>().join(" ");
+    Verdict { good: objections.iter().all(Option::is_none), words }
+}
+
+/// What a loop bears.
+fn borne(margins: &Margins) -> String {
+    let number = |edge: &Edge, scale: f64| match edge {
+        Edge::Between { holds, .. } => significant(scale * holds, 3),
+        Edge::Beyond { holds } | Edge::Open { holds } => {
+            format!("{} and more", significant(scale * holds, 3))
+        }
+        Edge::Nowhere => NONE.to_owned(),
+    };
+    let least = |edge: &Edge| match edge {
+        Edge::Beyond { holds } | Edge::Open { holds } => format!("{} and less", significant(*holds, 3)),
+        edge => number(edge, 1.0),
+    };
+    format!(
+        "{} holds with {} ms of delay more, {} to {} times its torque, {} to {} times its stiffness, and {} mrad of noise more.",
+        margins.law(),
+        number(&margins.delay, 1e3),
+        least(&margins.gain_low),
+        number(&margins.gain_high, 1.0),
+        least(&margins.stiffness_low),
+        number(&margins.stiffness_high, 1.0),
+        number(&margins.noise, 1e3)
+    )
 }
 
 fn numbers(loops: &[Margins]) -> Markup {

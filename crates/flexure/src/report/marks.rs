@@ -2,7 +2,7 @@
 
 use super::axes::Axes;
 use super::range::Range;
-use super::scene::{Scene, Shape};
+use super::scene::Scene;
 use super::style::{Color, PUSHED, STOPPED, Stroke};
 use crate::imperfections::Push;
 use crate::robot::{JointKind, Robot};
@@ -109,10 +109,7 @@ pub(super) fn shade(scene: &mut Scene, axes: &Axes, happenings: &[Happening]) {
     for Happening { from, to, what } in happenings.iter().filter(|span| span.to >= low && span.from <= high) {
         let [left, right] = [from, to].map(|t| axes.place(t.clamp(low, high), 0.0)[0]);
         let right = right.max(left + NARROWEST);
-        scene.shapes.push(Shape::Polygon {
-            corners: vec![[left, top], [right, top], [right, top + height], [left, top + height]],
-            fill: what.color(),
-            rim: Stroke::solid(what.color(), 0.0),
-        });
+        let color = what.color();
+        scene.rectangle([left, top, right - left, height], color, Stroke::solid(color, 0.0));
     }
 }

@@ -65,7 +65,9 @@ pub use margins_page::margins_page;
 pub use margins_table::margins_table;
 pub(crate) use marks::pushes;
 pub use marks::{Happening, JointMarks, What};
-pub use outputs::{write_certificate, write_figure, write_leaderboard, write_margins, write_view};
+pub use outputs::{
+    margins_names, view_name, write_certificate, write_figure, write_leaderboard, write_margins, write_view,
+};
 pub use proof_table::{certificate_table, proof_table};
 pub use raster::RasterError;
 pub use replay::{replay_figure, replay_table, write_replay};
@@ -75,4 +77,4 @@ pub use score_map::score_map;
 pub use sketch::Sketch;
 pub use sweep_table::sweep_table;
 pub use table::{joint_table, summary_table, usage_table};
-pub use view::{Film, Viewed, unseen, view};
+pub use view::{Film, Viewed, view};

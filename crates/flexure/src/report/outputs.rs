@@ -4,7 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::compare::{Leaderboard, Task};
-use crate::files::{Unfinished, WriteError, create_folder, write_atomic};
+use crate::files::{Problem, Unfinished, WriteError, create_folder, write_atomic};
 use crate::margins::Margins;
 use crate::prove::engine::Certificate;
 use crate::report::{
@@ -54,29 +54,50 @@ pub fn write_margins(
     loops: &[Margins],
 ) -> Result<Vec<PathBuf>, WriteError> {
     create_folder(folder)?;
-    let name = format!("{}.margins", scenario.name);
-    let mut paths = vec![folder.join(format!("{name}.html"))];
-    let page = margins_page(loops, &assumptions([scenario].into_iter()));
+    let [page_name, ..] = &margins_names(scenario, loops.len())[..] else { return Ok(Vec::new()) };
+    let mut paths = vec![folder.join(page_name)];
+    let page = margins_page(loops, scenario, &assumptions([scenario].into_iter()));
     write_atomic(&paths[0], |out| out.write_all(page.as_bytes()))?;
     for (i, margins) in loops.iter().enumerate() {
-        let name = if loops.len() == 1 { name.clone() } else { format!("{name}-{}", i + 1) };
-        paths.extend(write_figure(folder, &name, &margins_figure(margins))?);
+        paths.extend(write_figure(
+            folder,
+            &margins_name(scenario, i, loops.len()),
+            &margins_figure(margins),
+        )?);
     }
     Ok(paths)
 }
 
+/// What the files of the margins of so many loops are called, the page first.
+pub fn margins_names(scenario: &Scenario, loops: usize) -> Vec<String> {
+    let figure =
+        |i: usize| ["svg", "png"].map(|ending| format!("{}.{ending}", margins_name(scenario, i, loops)));
+    std::iter::once(format!("{}.margins.html", scenario.name)).chain((0..loops).flat_map(figure)).collect()
+}
+
+/// What the figure of one of so many loops is called.
+fn margins_name(scenario: &Scenario, i: usize, loops: usize) -> String {
+    let number = if loops == 1 { String::new() } else { format!("-{}", i + 1) };
+    format!("{}.margins{number}", scenario.name)
+}
+
 /// Writes the page of a run in motion, or of two side by side, as `NAME.view.html` or `NAME-and-NAME.view.html` into `folder`, which is created
-/// if missing; returns its path.
+/// if missing; returns its path, and warnings of robots whose links it has in another way than their URDFs say.
 ///
 /// # Errors
 /// As [`view`], and if it cannot be written; it is never half written.
-pub fn write_view(folder: &Path, runs: &[Viewed<'_>]) -> Result<PathBuf, Unfinished> {
-    let page = view(runs)?;
+pub fn write_view(folder: &Path, runs: &[Viewed<'_>]) -> Result<(PathBuf, Vec<Problem>), Unfinished> {
+    let (page, warnings) = view(runs)?;
     create_folder(folder)?;
-    let names: Vec<&str> = runs.iter().map(|run| run.scenario.name.as_str()).collect();
-    let path = folder.join(format!("{}.view.html", names.join("-and-")));
+    let path = folder.join(view_name(runs.iter().map(|run| run.scenario)));
     write_atomic(&path, |out| out.write_all(page.as_bytes()))?;
-    Ok(path)
+    Ok((path, warnings))
+}
+
+/// What the page of runs of these scenarios is called.
+pub fn view_name<'a>(scenarios: impl Iterator<Item = &'a Scenario>) -> String {
+    let names: Vec<&str> = scenarios.map(|scenario| scenario.name.as_str()).collect();
+    format!("{}.view.html", names.join("-and-"))
 }
 
 /// Writes the scores as CSV: a row a task and law; errors in rad, torques in N m, nothing for numbers that there are not.

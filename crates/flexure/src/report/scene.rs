@@ -95,6 +95,12 @@ impl Scene {
         self.shapes.push(Shape::Text(Text { at, content, lettering, anchor, upwards: true }));
     }
 
+    /// A filled rectangle: left, top, width and height, with a rim.
+    pub(super) fn rectangle(&mut self, [x, y, width, height]: [f64; 4], fill: Color, rim: Stroke) {
+        let corners = vec![[x, y], [x + width, y], [x + width, y + height], [x, y + height]];
+        self.shapes.push(Shape::Polygon { corners, fill, rim });
+    }
+
     /// The drawing as SVG, scalable to any width; text stays text.
     pub fn svg(&self) -> String {
         svg::svg(self)

@@ -1,6 +1,6 @@
 //! Laws on tasks as a map: how many times the best law's error each has.
 
-use super::scene::{Anchor, Lettering, Scene, Shape};
+use super::scene::{Anchor, Lettering, Scene};
 use super::sheet::{MARGIN, page};
 use super::style::{Color, GRID, INK, MUTED, PAPER_INK, SHADES, Stroke, WHITE, bold, letters};
 use super::text;
@@ -68,7 +68,7 @@ fn draw(scene: &mut Scene, [x, y, width, height]: [f64; 4], factor: Option<f64>)
             (SHADES[shade], on(shade), number(factor))
         }
     };
-    rectangle(scene, [x, y, width, height], fill);
+    scene.rectangle([x, y, width, height], fill, Stroke::solid(GRID, 1.0));
     scene.text([x + 0.5 * width, y + 0.5 * height + 4.7], &words, letters(13.0, ink), Anchor::Middle);
 }
 
@@ -80,11 +80,6 @@ fn number(factor: f64) -> String {
 /// What is written on a shade.
 fn on(shade: usize) -> Color {
     if shade < 2 { PAPER_INK[0] } else { PAPER_INK[1] }
-}
-
-fn rectangle(scene: &mut Scene, [x, y, width, height]: [f64; 4], fill: Color) {
-    let corners = vec![[x, y], [x + width, y], [x + width, y + height], [x, y + height]];
-    scene.shapes.push(Shape::Polygon { corners, fill, rim: Stroke::solid(GRID, 1.0) });
 }
 
 /// The legend: each shade with the factors that it is for. Returns its height.
@@ -103,7 +98,7 @@ fn shades(scene: &mut Scene, top: f64) -> f64 {
             ),
             _ => format!("more than {}", significant(from, 3)),
         };
-        rectangle(scene, [x, top - 14.0, SAMPLE, 16.0], SHADES[shade]);
+        scene.rectangle([x, top - 14.0, SAMPLE, 16.0], SHADES[shade], Stroke::solid(GRID, 1.0));
         scene.text([x + SAMPLE + 6.0, top - 1.0], &words, WORDS, Anchor::Start);
         x += SAMPLE + 6.0 + text::width(&words, WORDS) + 22.0;
         from = *upto;

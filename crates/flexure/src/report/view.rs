@@ -3,14 +3,14 @@
 //! The page itself is written in JavaScript, in the folder `viewer` of the repository, and is here as it was built there; this puts the runs into it.
 
 mod document;
+mod events;
 mod film;
 mod shapes;
 
 pub use film::Film;
-pub use shapes::unseen;
 
 use super::sketch::Sketch;
-use crate::files::Problems;
+use crate::files::{Problem, Problems};
 use crate::scenario::Scenario;
 use crate::simulate::Run;
 use document::Document;
@@ -32,23 +32,23 @@ pub struct Viewed<'a> {
     pub film: &'a Film,
     /// What figures show of it: it knows when the robot was stopped.
     pub sketch: &'a Sketch,
-    /// Whether that is good.
-    pub good: bool,
+    /// Whether that is good; none of a run that was broken off.
+    pub good: Option<bool>,
     /// What came of it in a sentence.
     pub words: &'a str,
 }
 
-/// The page that shows `runs`, one or two, side by side.
+/// The page that shows `runs`, one or two, side by side, with warnings of robots whose links it has in another way than their URDFs say.
 ///
 /// # Errors
 /// As [`Scenario::open`].
 ///
 /// # Panics
 /// Never: what is written as JSON has no keys but names.
-pub fn view(runs: &[Viewed<'_>]) -> Result<String, Problems> {
-    let document =
-        serde_json::to_string(&Document::new(runs)?).expect("a document of names, numbers and lists");
+pub fn view(runs: &[Viewed<'_>]) -> Result<(String, Vec<Problem>), Problems> {
+    let (document, warnings) = Document::new(runs)?;
+    let document = serde_json::to_string(&document).expect("a document of names, numbers and lists");
     // No text of a file ends the element that it stands in.
     let document = document.replace('<', "\\u003c");
-    Ok(PAGE.replacen(NOTHING, &format!(r#"id="flexure-runs">{document}<"#), 1))
+    Ok((PAGE.replacen(NOTHING, &format!(r#"id="flexure-runs">{document}<"#), 1), warnings))
 }

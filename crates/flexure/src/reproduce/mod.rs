@@ -6,7 +6,7 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-use crate::files::number::{engineering, small_angle};
+use crate::files::number::{engineering, small};
 use crate::files::{Problem, Problems, Unfinished};
 use crate::progress::{PartProgress, Progress};
 use crate::prove::question::{Direct, Proof, Question, Region, certified_rate, prove};
@@ -64,7 +64,7 @@ impl Experiment {
     ) -> Result<Self, Problems> {
         let signals = scenario.signals()?;
         let (mut sketch, mut watch) = (Sketch::new(&signals), LimitWatch::new(&scenario.robot, &signals));
-        let mut film = Film::new(&scenario.robot, &signals);
+        let mut film = Film::new(&scenario, &signals);
         let mut all: Vec<&mut dyn Sink> = vec![&mut sketch, &mut watch, &mut film];
         for sink in sinks {
             all.push(&mut **sink);
@@ -197,10 +197,10 @@ pub fn report(experiments: &[Experiment], certificates: &[Certified]) -> Result<
         .filter(|e| SHOWN.contains(&e.scenario.name.as_str()))
         .map(|e| (e, e.run.summary.in_words()))
         .collect();
-    let viewed: Vec<Viewed<'_>> = shown.iter().map(|(e, words)| e.viewed(true, words)).collect();
+    let viewed: Vec<Viewed<'_>> = shown.iter().map(|(e, words)| e.viewed(Some(e.is_good()), words)).collect();
     Ok(RunsReport {
         title: "Virtual-contraction control of a flexible-joint robot".to_owned(),
-        motion: if viewed.is_empty() { None } else { Some(view(&viewed)?) },
+        motion: if viewed.is_empty() { None } else { Some(view(&viewed)?.0) },
         verdict: Some(verdict),
         introduction: INTRODUCTION.to_owned(),
         runs: experiments.iter().map(run_report).collect(),
@@ -225,17 +225,18 @@ fn verdict_of(experiments: &[Experiment], certificates: &[Certified]) -> Verdict
     let largest = |runs: &[&Experiment], of: fn(&Summary) -> f64| {
         runs.iter().map(|experiment| of(&experiment.run.summary)).fold(0.0, f64::max)
     };
-    let follow = smooth.iter().filter(|experiment| experiment.run.summary.following.follows).count();
+    let follow = smooth.iter().filter(|experiment| experiment.is_good()).count();
     let rates = certificates.iter().filter_map(|certified| {
         let rate = certified.summary().contraction_rate?;
         Some(format!("{} {} 1/s", certified.scenario.controller.phi().unwrap_or_default(), engineering(rate)))
     });
     let rates: Vec<String> = rates.collect();
+    let (error, prefix) = small(largest(&smooth, |summary| summary.max_abs_e_l));
     let words = format!(
-        "{follow} of {} runs that join the reference smoothly follow it: link errors of {} at most, torques of {} N m. The {} from rest \
+        "{follow} of {} runs that join the reference smoothly follow it: link errors of {} {prefix}rad at most, torques of {} N m. The {} from rest \
          off it take up to {} N m. Proved contraction rates for position errors of up to 3 rad, in continuous time: {}.",
         smooth.len(),
-        small_angle(largest(&smooth, |summary| summary.max_abs_e_l)),
+        error,
         engineering(largest(&smooth, |summary| summary.max_abs_u_m)),
         from_rest.len(),
         engineering(largest(&from_rest, |summary| summary.max_abs_u_m)),
@@ -245,8 +246,16 @@ fn verdict_of(experiments: &[Experiment], certificates: &[Certified]) -> Verdict
 }
 
 impl Experiment {
-    /// For its animation: whether it is good, and what came of it in a sentence.
-    pub fn viewed<'a>(&'a self, good: bool, words: &'a str) -> Viewed<'a> {
+    /// Whether it follows its reference, in a loop that is stable as it is sampled.
+    pub fn is_good(&self) -> bool {
+        let Run { summary, divergence, .. } = &self.run;
+        divergence.is_none()
+            && summary.following.follows
+            && self.sampled.as_ref().is_none_or(|loop_| loop_.stable)
+    }
+
+    /// For its animation: whether it is good, if that is known, and what came of it in a sentence.
+    pub fn viewed<'a>(&'a self, good: Option<bool>, words: &'a str) -> Viewed<'a> {
         Viewed {
             scenario: &self.scenario,
             run: &self.run,
@@ -283,16 +292,21 @@ fn run_report(experiment: &Experiment) -> RunReport {
         summary: experiment.run.summary.clone(),
         figure_svg: experiment.figure.svg(),
         description: outcome(&experiment.run.summary),
-        warning: experiment.scenario.smooth_start.is_none().then(|| from_rest(&experiment.run.summary)),
+        warning: experiment.scenario.smooth_start.is_none().then(|| from_rest(experiment)),
     }
 }
 
 /// What is to be minded of a run from rest off a reference that moves.
-fn from_rest(summary: &Summary) -> String {
+fn from_rest(Experiment { scenario, run, .. }: &Experiment) -> String {
+    let is_limited = scenario.drive_limits().is_some() || scenario.guard.is_some();
     format!(
-        "the arm starts at rest and its reference already moves. The law answers at once, with {} N m, which no motor of this size gives: \
-         such starts show what the formulas do, not what a robot could.",
-        engineering(summary.max_abs_u_m)
+        "the arm starts at rest and its reference already moves. The law answers at once, with up to {} N m: {}.",
+        engineering(run.summary.max_abs_u_m),
+        if is_limited {
+            "what its drives and its guard let through"
+        } else {
+            "nothing limits torques here, and such a start shows what the formulas do, not what a drive could"
+        }
     )
 }
 

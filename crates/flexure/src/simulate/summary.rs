@@ -2,8 +2,10 @@
 
 use serde::Serialize;
 
-use crate::files::number::{engineering, small_angle};
+use crate::files::number::{engineering, small};
+use crate::robot::JointKind;
 use crate::simulate::following::Following;
+use crate::units::{self, Unit, of_joints};
 
 /// The figures of one closed-loop run: the contract of `run --json` and `reproduce --json`.
 ///
@@ -64,18 +66,24 @@ pub struct Summary {
     pub steps: u64,
     /// Wall-clock time of the simulation in s.
     pub wall_seconds: f64,
+    /// How the joints move, which says in what the numbers above are.
+    #[serde(skip)]
+    pub kinds: Vec<JointKind>,
 }
 
 impl Summary {
     /// How far the links are off, whether and when they settle, and what that takes of the motors.
     pub fn in_words(&self) -> String {
+        let unit = |unit: Unit, prefix: &str| of_joints(unit, prefix, self.kinds.iter().copied());
+        let (milli, torque) = (unit(units::ANGLE, "m"), unit(units::TORQUE, ""));
         let settled = match self.settling_time {
-            Some(0.0) => "always within 1 mrad".to_owned(),
-            Some(time) => format!("within 1 mrad after {} s", engineering(time)),
-            None => "not within 1 mrad at the end".to_owned(),
+            Some(0.0) => format!("always within 1 {milli}"),
+            Some(time) => format!("within 1 {milli} after {} s", engineering(time)),
+            None => format!("not within 1 {milli} at the end"),
         };
         let off = if self.max_abs_e_l.is_finite() {
-            format!("links are at most {} off their reference, {settled}", small_angle(self.max_abs_e_l))
+            let (error, prefix) = small(self.max_abs_e_l);
+            format!("links are at most {error} {} off their reference, {settled}", unit(units::ANGLE, prefix))
         } else {
             "links leave their reference".to_owned()
         };
@@ -85,7 +93,7 @@ impl Summary {
             stops => format!("; the guard stopped the robot {stops} times"),
         };
         format!(
-            "{off}; largest motor torque {} N m, root mean square {} N m{stops}",
+            "{off}; largest motor torque {} {torque}, root mean square {} {torque}{stops}",
             engineering(self.max_abs_u_m),
             engineering(self.rms_u_m)
         )

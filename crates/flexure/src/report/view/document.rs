@@ -5,20 +5,18 @@ use base64::prelude::BASE64_STANDARD;
 use serde::Serialize;
 
 use super::Viewed;
-use super::shapes::{Shape, Shaped, shapes};
-use crate::files::Problems;
+use super::events::{Event, events};
+use super::shapes::{Shape, Shaped, Shapes, shapes};
 use crate::files::number::short;
+use crate::files::{Problem, Problems};
 use crate::imperfections::Push;
-use crate::robot::{Body, MovingJoint, Placed, Robot, kind_in_words};
+use crate::robot::{Body, MovingJoint, Placed, kind_in_words};
 use crate::scenario::Scenario;
-use crate::simulate::{Stopped, acting_limits};
+use crate::simulate::acting_limits;
 use crate::units;
 
 /// The version of the format.
 const FORMAT: u32 = 1;
-
-/// The part of a torque limit from which a torque counts as at it: limits act on numbers that are rounded.
-const AT_LIMIT: f64 = 0.9999;
 
 #[derive(Serialize)]
 pub(super) struct Document {
@@ -41,7 +39,8 @@ struct Run {
 
 #[derive(Serialize)]
 struct Verdict {
-    good: bool,
+    /// None where that is not known.
+    good: Option<bool>,
     words: String,
 }
 
@@ -105,27 +104,24 @@ struct Pushed {
     words: String,
 }
 
-#[derive(Serialize)]
-struct Event {
-    t: f64,
-    kind: &'static str,
-    joint: Option<usize>,
-    words: String,
-}
-
 impl Document {
+    /// With warnings of robots whose links are not as their URDFs say.
+    ///
     /// # Errors
     /// As [`Scenario::open`](crate::Scenario::open).
-    pub(super) fn new(runs: &[Viewed<'_>]) -> Result<Self, Problems> {
-        Ok(Self {
-            format: FORMAT,
-            program: format!("flexure {}", env!("CARGO_PKG_VERSION")),
-            runs: runs.iter().map(run).collect::<Result<_, _>>()?,
-        })
+    pub(super) fn new(viewed: &[Viewed<'_>]) -> Result<(Self, Vec<Problem>), Problems> {
+        let (mut runs, mut warnings) = (Vec::new(), Vec::new());
+        for viewed in viewed {
+            let (robot, warning) = pictured(viewed.scenario);
+            runs.push(run(viewed, robot)?);
+            warnings.extend(warning);
+        }
+        let program = format!("flexure {}", env!("CARGO_PKG_VERSION"));
+        Ok((Self { format: FORMAT, program, runs }, warnings))
     }
 }
 
-fn run(viewed: &Viewed<'_>) -> Result<Run, Problems> {
+fn run(viewed: &Viewed<'_>, robot: Pictured) -> Result<Run, Problems> {
     let Viewed { scenario, film, good, words, .. } = *viewed;
     let t = film.times();
     let [q_l, q_m, q_ld, e_l, u_m] = ["q_l", "q_m", "q_ld", "e_l", "u_m"].map(|prefix| film.signal(prefix));
@@ -136,7 +132,7 @@ fn run(viewed: &Viewed<'_>) -> Result<Run, Problems> {
         name: scenario.name.clone(),
         law: scenario.controller.in_words(),
         verdict: Verdict { good, words: words.to_owned() },
-        robot: pictured(&scenario.robot),
+        robot,
         samples: t.len(),
         columns: Columns {
             t: Column::of(&t),
@@ -149,7 +145,7 @@ fn run(viewed: &Viewed<'_>) -> Result<Run, Problems> {
             external: (!pushes.is_empty()).then(|| columns(&external)),
         },
         pushes,
-        events: events(viewed, &t, &u_m),
+        events: events(viewed),
     })
 }
 
@@ -178,25 +174,29 @@ impl Column {
     }
 }
 
-fn pictured(robot: &Robot) -> Pictured {
+/// The robot, and a warning if its links are not as its URDF says.
+fn pictured(scenario: &Scenario) -> (Pictured, Option<Problem>) {
+    let robot = &scenario.robot;
     let limits = &robot.limits;
     let of =
         |limits: &[f64]| limits.iter().map(|&limit| Some(limit).filter(|limit| limit.is_finite())).collect();
-    let (base_shapes, shapes) = shapes(robot);
-    let bodies = robot.links.placed().into_iter().zip(&robot.joints).zip(shapes);
-    Pictured {
+    let Shapes { base, bodies, warning } = shapes(robot);
+    let bodies = robot.links.placed().into_iter().zip(&robot.joints).zip(bodies);
+    let pictured = Pictured {
         name: robot.name.clone(),
         bodies: bodies.map(|((placed, joint), shapes)| body(placed, &joint.name, shapes)).collect(),
-        base_shapes,
+        base_shapes: base,
         gravity: robot.gravity,
         limits: Limits {
-            torque: of(&limits.torque),
+            // Of all that limit torques the first that acts.
+            torque: of(&acting_limits(scenario)),
             deflection: of(&limits.deflection),
             lower: of(&limits.lower),
             upper: of(&limits.upper),
             velocity: of(&limits.velocity),
         },
-    }
+    };
+    (pictured, warning)
 }
 
 fn body(Placed { body, tip }: Placed, joint: &str, Shaped { shapes, tip: seen }: Shaped) -> PicturedBody {
@@ -234,60 +234,4 @@ fn pushes(scenario: &Scenario) -> Vec<Pushed> {
         pushed.map(of_joint).collect::<Vec<_>>()
     };
     pushes.flat_map(of_push).collect()
-}
-
-/// Stops of the guard and how they end, torques that reach their limits, and where the loop ends before its time, in the order of time.
-fn events(viewed: &Viewed<'_>, t: &[f64], u_m: &[Vec<f64>]) -> Vec<Event> {
-    let Viewed { scenario, run, sketch, .. } = *viewed;
-    let name = |joint: usize| scenario.robot.joints.get(joint).map_or("the controller", |joint| &joint.name);
-    let end = t.last().copied().unwrap_or(0.0);
-    // The guard's own log has its last stops alone, with their causes.
-    let cause_at = |t: f64| {
-        let near = |stop: &&Stopped| (stop.time - t).abs() < 0.5 * scenario.control_period;
-        run.faults.iter().flat_map(|faults| &faults.stops).find(near)
-    };
-    let stops = sketch.stops().map(|stop| {
-        let why = cause_at(stop.low);
-        let joint = why.and_then(|why| why.joint).map(|joint| joint as usize);
-        let at = why
-            .and_then(|why| why.side)
-            .zip(joint)
-            .map_or(String::new(), |(side, joint)| format!(", {side} side of {}", name(joint)));
-        let why = why.map_or(String::new(), |why| format!(": {}", cause(why.cause)));
-        Event { t: stop.low, kind: "stop", joint, words: format!("the guard stops the robot{why}{at}") }
-    });
-    let ended = sketch.stops().filter(|stop| stop.high < end).map(|stop| Event {
-        t: stop.high,
-        kind: "rejoin",
-        joint: None,
-        words: "the guard lets the robot go on".to_owned(),
-    });
-    let limits = acting_limits(scenario);
-    let reached = u_m.iter().zip(&limits).enumerate().filter_map(|(joint, (torques, limit))| {
-        let first = torques.iter().position(|torque| torque.abs() >= AT_LIMIT * limit)?;
-        let words = format!("the torque of {} is at its limit", name(joint));
-        Some(Event { t: t[first], kind: "limit", joint: Some(joint), words })
-    });
-    let diverged = run.divergence.map(|divergence| Event {
-        t: divergence.time,
-        kind: "diverged",
-        joint: None,
-        words: divergence.to_string(),
-    });
-    let broken_off = run.broken_off.map(|t| Event {
-        t,
-        kind: "fault",
-        joint: None,
-        words: "the run was broken off".to_owned(),
-    });
-    let all = stops.chain(ended).chain(reached).chain(diverged).chain(broken_off);
-    // What ends a run comes after its last instant: it is shown there.
-    let mut events: Vec<Event> = all.map(|event| Event { t: event.t.min(end), ..event }).collect();
-    events.sort_by(|a, b| a.t.total_cmp(&b.t));
-    events
-}
-
-/// Why a guard stops a robot, for who does not know its words.
-fn cause(name: &str) -> String {
-    if name == "not-finite" { "a reading is no number".to_owned() } else { name.replace('-', " ") }
 }

@@ -2,14 +2,17 @@
 
 use std::ops::ControlFlow;
 
-use crate::robot::Robot;
-use crate::simulate::{Signal, Sink, of_joints};
+use crate::scenario::Scenario;
+use crate::simulate::{Signal, Sink, acting_limits, of_joints};
 
 /// There are at least half as many frames, if the run has them, and never more.
 const MOST: usize = 4096;
 
-/// Signals of each joint that are kept, by their names in traces.
+/// Signals of each joint that are kept, by their names in traces; torques last.
 const KEPT: [&str; 5] = ["q_l", "q_m", "q_ld", "e_l", "u_m"];
+
+/// The part of a torque limit from which a torque counts as at it: limits act on numbers that are rounded.
+const AT_LIMIT: f64 = 0.9999;
 
 /// Instants of a run at equal distances, the first and the last among them, in memory that does not grow with its duration. As a [`Sink`] of
 /// the run it takes every instant up to 4096, then every second, every fourth…
@@ -17,7 +20,7 @@ const KEPT: [&str; 5] = ["q_l", "q_m", "q_ld", "e_l", "u_m"];
 /// ```
 /// use flexure::report::Film;
 /// let scenario = flexure::Scenario::load("pendulum-tanh")?;
-/// let mut film = Film::new(&scenario.robot, &scenario.signals()?);
+/// let mut film = Film::new(&scenario, &scenario.signals()?);
 /// let run = flexure::simulate::run_into(&scenario, &mut [&mut film], &flexure::progress::unwatched)?;
 /// assert!((2049..=4097).contains(&film.frames()));
 /// # Ok::<(), flexure::Problems>(())
@@ -29,20 +32,29 @@ pub struct Film {
     columns: Vec<usize>,
     /// Numbers of the columns at each kept instant.
     rows: Vec<Vec<f64>>,
-    /// The last instant, unless it is the last row.
-    last: Option<Vec<f64>>,
+    /// Those of the last instant.
+    last: Vec<f64>,
     /// Instants from one row to the next.
     every: usize,
     seen: usize,
+    /// Torque limit of each joint, infinite without one [N m], and when it was first reached, at whatever instant \[s\].
+    limits: Vec<(f64, Option<f64>)>,
 }
 
 impl Film {
-    /// Of nothing yet, for runs of `robot` that have these signals.
-    pub fn new(robot: &Robot, signals: &[Signal]) -> Self {
+    /// Of nothing yet, for runs of `scenario`, which have these signals.
+    pub fn new(scenario: &Scenario, signals: &[Signal]) -> Self {
         let time = signals.iter().position(|signal| signal.name == "t");
         let kept = KEPT.iter().flat_map(|prefix| of_joints(signals, prefix));
-        let columns = time.into_iter().chain(kept).collect();
-        Self { joints: robot.joint_count(), columns, rows: Vec::new(), last: None, every: 1, seen: 0 }
+        Self {
+            joints: scenario.robot.joint_count(),
+            columns: time.into_iter().chain(kept).collect(),
+            rows: Vec::new(),
+            last: Vec::new(),
+            every: 1,
+            seen: 0,
+            limits: acting_limits(scenario).into_iter().map(|limit| (limit, None)).collect(),
+        }
     }
 
     /// How many instants it has.
@@ -50,8 +62,19 @@ impl Film {
         self.rows().count()
     }
 
+    /// When it ends \[s\].
+    pub(super) fn end(&self) -> f64 {
+        self.last.first().copied().unwrap_or(0.0)
+    }
+
+    /// The joints whose torque reached its limit, and when it did first \[s\].
+    pub(super) fn at_limit(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.limits.iter().enumerate().filter_map(|(joint, (_, first))| Some((joint, (*first)?)))
+    }
+
     fn rows(&self) -> impl Iterator<Item = &Vec<f64>> {
-        self.rows.iter().chain(&self.last)
+        let is_kept = self.seen == 0 || (self.seen - 1).is_multiple_of(self.every);
+        self.rows.iter().chain(Some(&self.last).filter(|_| !is_kept))
     }
 
     /// The time of each frame \[s\].
@@ -72,8 +95,15 @@ impl Film {
 
 impl Sink for Film {
     fn take(&mut self, row: &[f64]) -> ControlFlow<()> {
-        let kept: Vec<f64> = self.columns.iter().map(|&column| row[column]).collect();
-        self.last = if self.seen.is_multiple_of(self.every) {
+        self.last.clear();
+        self.last.extend(self.columns.iter().map(|&column| row[column]));
+        let (t, torques) = (self.last.first(), self.last.iter().rev().take(self.joints).rev());
+        for ((limit, first), torque) in self.limits.iter_mut().zip(torques) {
+            if first.is_none() && torque.abs() >= AT_LIMIT * *limit {
+                *first = t.copied();
+            }
+        }
+        if self.seen.is_multiple_of(self.every) {
             if self.rows.len() == MOST {
                 let mut place = 0;
                 self.rows.retain(|_| {
@@ -82,11 +112,8 @@ impl Sink for Film {
                 });
                 self.every *= 2;
             }
-            self.rows.push(kept);
-            None
-        } else {
-            Some(kept)
-        };
+            self.rows.push(self.last.clone());
+        }
         self.seen += 1;
         ControlFlow::Continue(())
     }
@@ -102,7 +129,7 @@ mod tests {
     fn times(instants: usize) -> Vec<f64> {
         let scenario = load_scenario("pendulum-tanh").unwrap();
         let signals = scenario.signals().unwrap();
-        let mut film = Film::new(&scenario.robot, &signals);
+        let mut film = Film::new(&scenario, &signals);
         let mut row = vec![0.0; signals.len()];
         for k in 0..instants {
             row[0] = k as f64;

@@ -5,8 +5,8 @@ use base64::prelude::BASE64_STANDARD;
 use flexure_core::linalg::Vector;
 use serde::Serialize;
 
+use crate::files::Problem;
 use crate::files::base::Base;
-use crate::files::{Problem, suggest};
 use crate::robot::Robot;
 use crate::robot::links::rigid::Pose;
 use crate::robot::looks::{LinkLook, Looks};
@@ -51,15 +51,27 @@ pub(super) struct Shaped {
     pub tip: Option<[f64; 3]>,
 }
 
+/// What a robot looks like.
+pub(super) struct Shapes {
+    pub base: Vec<Shape>,
+    pub bodies: Vec<Shaped>,
+    /// That it does not look as its URDF says, if so.
+    pub warning: Option<Problem>,
+}
+
 /// The shapes of the base and of each body; of none if a link is told to look like something that cannot be shown: half a robot would be
 /// worse than one that is made up.
-pub(super) fn shapes(robot: &Robot) -> (Vec<Shape>, Vec<Shaped>) {
+pub(super) fn shapes(robot: &Robot) -> Shapes {
     let mut base = Vec::new();
     let mut bodies: Vec<Shaped> = robot.joints.iter().map(|_| Shaped::default()).collect();
     let mut points: Vec<Vec<Vector<f64, 3>>> = robot.joints.iter().map(|_| Vec::new()).collect();
-    let found: Option<Vec<_>> =
-        robot.looks.links.iter().map(|link| Some((link, parts(link, &robot.looks)?))).collect();
-    let Some(mut found) = found else { return (base, bodies) };
+    let mut found = Vec::new();
+    for link in &robot.looks.links {
+        match parts(link, &robot.looks) {
+            Some(parts) => found.push((link, parts)),
+            None => return Shapes { base, bodies, warning: unseen(robot, link) },
+        }
+    }
     lighten(found.iter_mut().flat_map(|(_, parts)| parts));
     for (link, parts) in found {
         let Some(body) = link.body else {
@@ -72,26 +84,22 @@ pub(super) fn shapes(robot: &Robot) -> (Vec<Shape>, Vec<Shaped>) {
     for (body, points) in bodies.iter_mut().zip(points) {
         body.tip = tip(&points);
     }
-    (base, bodies)
+    Shapes { base, bodies, warning: None }
 }
 
-/// A warning that links are drawn in another way than their file says, if they are; not of built-in robots, which have no meshes to be found.
-pub fn unseen(robot: &Robot) -> Option<Problem> {
+/// That a link cannot be shown; not of built-in robots, which have no meshes to be found.
+fn unseen(robot: &Robot, link: &LinkLook) -> Option<Problem> {
     if robot.looks.base.as_ref().is_some_and(Base::is_built_in) {
         return None;
     }
-    let link = robot.looks.links.iter().find(|link| parts(link, &robot.looks).is_none())?;
     let mesh = |part: &Part| match &part.form {
         Form::Mesh(file, _) => Some(file.clone()),
         _ => None,
     };
-    let file = link.look.visual.iter().chain(&link.look.collision).find_map(mesh).unwrap_or_default();
-    let message = format!(
-        "{}: the picture has links from joint to joint: {} cannot be shown",
-        robot.name,
-        suggest::quoted(&file)
-    );
-    let help = "shown are STL files of at most 32 MB below the folder of the URDF, with --allow-outside also where its packages are";
+    let file = link.look.visual.iter().chain(&link.look.collision).find_map(mesh)?;
+    let message =
+        format!("{}: the page draws links from joint to joint, because {file:?} cannot be shown", robot.name);
+    let help = "shown are STL files of at most 32 MB in the folder of the URDF or below, with --allow-outside also where its packages are";
     Some(Problem::new("unseen", message, help).warning())
 }
 

@@ -1,5 +1,6 @@
 //! A trace like that of a closed loop: a torque peak of a few milliseconds, then decaying errors on a sine.
 
+use flexure::robot::JointKind;
 use flexure::simulate::Following;
 use flexure::simulate::Summary;
 use flexure::simulate::Trace;
@@ -69,6 +70,7 @@ pub fn summary(name: &str) -> Summary {
         energy_drift: 3.2e-9,
         steps: 10_000,
         wall_seconds: 0.123,
+        kinds: vec![JointKind::Revolute; 2],
     }
 }
 

@@ -4,7 +4,7 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use flexure::Scenario;
 use flexure::files::Outside;
-use flexure::report::{unseen, view};
+use flexure::report::{Viewed, view};
 use flexure::reproduce::Experiment;
 use flexure::scenario::{load_scenario, load_scenario_with};
 use flexure::simulate::Trace;
@@ -20,6 +20,13 @@ fn run(name: &str, change: impl Fn(&mut Scenario)) -> (Experiment, Trace) {
     let experiment =
         Experiment::new(scenario, &mut [&mut trace], &flexure::progress::unwatched).expect("a run");
     (experiment, trace)
+}
+
+/// The page, of robots that look as their files say, or of built-in ones.
+fn page(runs: &[Viewed<'_>]) -> String {
+    let (page, warnings) = view(runs).expect("a page");
+    assert!(warnings.is_empty(), "{warnings:?}");
+    page
 }
 
 /// What the page is given.
@@ -43,7 +50,7 @@ fn single(values: &[f64]) -> Vec<f32> {
 #[test]
 fn columns_are_those_of_the_trace_and_springs_those_of_the_robot() {
     let (experiment, trace) = run("panda-tanh-smooth", |_| {});
-    let document = document(&view(&[experiment.viewed(true, "well")]).expect("a page"));
+    let document = document(&page(&[experiment.viewed(Some(true), "well")]));
     let run = &document["runs"][0];
     assert_eq!((&run["name"], &run["law"]), (&"panda-tanh-smooth".into(), &"v-CBC with φ = tanh".into()));
     assert_eq!(run["samples"], 501);
@@ -70,7 +77,7 @@ fn columns_are_those_of_the_trace_and_springs_those_of_the_robot() {
 #[test]
 fn pushes_and_stops_are_told_when_they_happen() {
     let (experiment, trace) = run("two-link-everything", |scenario| scenario.duration = 8.0);
-    let document = document(&view(&[experiment.viewed(true, "well")]).expect("a page"));
+    let document = document(&page(&[experiment.viewed(Some(true), "well")]));
     let run = &document["runs"][0];
     let push = &run["pushes"][0];
     let [from, to] = ["from", "to"].map(|key| push[key].as_f64().expect("a time"));
@@ -90,7 +97,7 @@ fn pushes_and_stops_are_told_when_they_happen() {
 #[test]
 fn what_diverges_ends_in_an_event() {
     let (experiment, _) = run("two-link-tanh", |scenario| scenario.control_period = 0.01);
-    let document = document(&view(&[experiment.viewed(false, "lost")]).expect("a page"));
+    let document = document(&page(&[experiment.viewed(Some(false), "lost")]));
     let events = document["runs"][0]["events"].as_array().expect("a list");
     assert!(events.iter().any(|event| event["kind"] == "diverged"), "{events:?}");
     assert_eq!(document["runs"][0]["verdict"]["good"], false);
@@ -100,7 +107,7 @@ fn what_diverges_ends_in_an_event() {
 fn no_name_ends_the_place_that_it_stands_in() {
     let evil = "</script><script>alert(1)</script><!--";
     let (experiment, _) = run("pendulum-tanh", |scenario| evil.clone_into(&mut scenario.name));
-    let page = view(&[experiment.viewed(true, evil)]).expect("a page");
+    let page = page(&[experiment.viewed(Some(true), evil)]);
     assert_eq!(document(&page)["runs"][0]["name"], evil);
     assert!(!page.contains("alert(1)</script>"));
     let (_, rest) = page.split_once("flexure-runs\">").expect("its place");
@@ -111,7 +118,7 @@ fn no_name_ends_the_place_that_it_stands_in() {
 fn two_runs_stand_beside_each_other() {
     let (one, _) = run("pendulum-tanh", |_| {});
     let (other, _) = run("two-link-tanh-smooth", |_| {});
-    let document = document(&view(&[one.viewed(true, "a"), other.viewed(false, "b")]).expect("a page"));
+    let document = document(&page(&[one.viewed(Some(true), "a"), other.viewed(Some(false), "b")]));
     let names: Vec<&Value> =
         document["runs"].as_array().expect("a list").iter().map(|run| &run["name"]).collect();
     assert_eq!(names, ["pendulum-tanh", "two-link-tanh-smooth"]);
@@ -172,17 +179,20 @@ fn package<T>(outside: Outside, of: impl Fn(Scenario) -> T) -> T {
     of(load_scenario_with(path.to_str().expect("UTF-8"), outside).unwrap_or_else(|p| panic!("{p}")))
 }
 
-/// The robot of the page.
-fn arm(outside: Outside) -> Value {
+/// The robot of the page, and warnings.
+fn arm(outside: Outside) -> (Value, Vec<String>) {
     package(outside, |scenario| {
         let experiment = Experiment::new(scenario, &mut [], &flexure::progress::unwatched).expect("a run");
-        document(&view(&[experiment.viewed(true, "well")]).expect("a page"))["runs"][0]["robot"].clone()
+        let (page, warnings) = view(&[experiment.viewed(Some(true), "well")]).expect("a page");
+        let warnings = warnings.iter().map(ToString::to_string).collect();
+        (document(&page)["runs"][0]["robot"].clone(), warnings)
     })
 }
 
 #[test]
 fn links_look_as_their_urdf_says() {
-    let robot = arm(Outside::Allowed);
+    let (robot, warnings) = arm(Outside::Allowed);
+    assert!(warnings.is_empty(), "{warnings:?}");
     assert_eq!(
         (&robot["base_shapes"][0]["kind"], &robot["base_shapes"][0]["size"][2]),
         (&"box".into(), &0.1.into())
@@ -207,18 +217,29 @@ fn links_look_as_their_urdf_says() {
 /// The mesh is outside of the folder of the file that names it: it is not opened, and no part of the robot is shown without the rest.
 #[test]
 fn meshes_outside_are_not_opened() {
-    let robot = arm(Outside::Refused);
+    let (robot, warnings) = arm(Outside::Refused);
+    let told = warnings.join("\n");
+    assert!(told.contains("arm_description/meshes/thigh.dae") && told.contains("joint to joint"), "{told}");
     assert_eq!(robot["base_shapes"], serde_json::json!([]));
     assert_eq!(robot["bodies"][0]["shapes"], serde_json::json!([]));
 }
 
-/// A page with links that are made up says so before.
 #[test]
-fn what_cannot_be_shown_is_told() {
-    let told =
-        |outside| package(outside, |scenario| unseen(&scenario.robot).map(|problem| problem.to_string()));
-    assert_eq!(told(Outside::Allowed), None);
-    assert!(unseen(&load_scenario("panda-tanh-smooth").expect("built in").robot).is_none());
-    let told = told(Outside::Refused).expect("a warning");
-    assert!(told.contains("thigh.dae") && told.contains("joint to joint"), "{told}");
+fn what_is_not_known_of_a_run_is_not_said() {
+    let (experiment, _) = run("pendulum-tanh", |_| {});
+    assert!(
+        document(&page(&[experiment.viewed(None, "broken off")]))["runs"][0]["verdict"]["good"].is_null()
+    );
+}
+
+/// Limits are those that act: a guard's are tighter than the drives', and `unlimited` takes all away.
+#[test]
+fn limits_are_those_that_act() {
+    let torque = |unlimited| {
+        let (experiment, _) = run("planar-2r-tanh", |scenario| scenario.plant.unlimited = unlimited);
+        document(&page(&[experiment.viewed(Some(true), "well")]))["runs"][0]["robot"]["limits"]["torque"]
+            .clone()
+    };
+    assert!(torque(false)[0].is_number());
+    assert!(torque(true)[0].is_null());
 }
