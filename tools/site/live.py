@@ -27,7 +27,7 @@ SHOWS = [
     Show(
         "panda",
         "A seven-joint arm in motion",
-        "run panda-tanh-smooth --view",
+        "run panda-tanh-smooth --view --out DIR",
         "panda-tanh-smooth.view.html",
         "panda-tanh-smooth.png",
         "Links and motors in three dimensions, deflection of the joints magnified, and charts of every joint under the same clock.",
@@ -35,7 +35,7 @@ SHOWS = [
     Show(
         "pair",
         "Two laws side by side",
-        "run --view two-link-linear-smooth two-link-tanh-smooth",
+        "run --view two-link-linear-smooth two-link-tanh-smooth --out DIR",
         "two-link-linear-smooth-and-two-link-tanh-smooth.view.html",
         "two-link-tanh-smooth.png",
         "The two-link arm under a linear and a tanh shaping function: the same motion, the same moment, one view.",
@@ -43,15 +43,31 @@ SHOWS = [
     Show(
         "reproduce",
         "The experiments of the paper",
-        "reproduce",
+        "reproduce --out DIR",
         "report.html",
         "two-link-tanh.png",
         "One self-contained report: tables, figures, certified rates, every assumed number and every slip of the paper.",
     ),
     Show(
+        "certify",
+        "What is proved of a loop",
+        "certify two-link-tanh --error-box 3 --page DIR --out DIR/two-link-tanh.certificate.json",
+        "two-link-tanh.certify.html",
+        "two-link-tanh.certify.png",
+        "The region of the proof, the level that is not left, how fast errors shrink, and the run inside.",
+    ),
+    Show(
+        "tune",
+        "Gains that were found",
+        "tune two-link-hardware --budget 10 --page DIR --out DIR/two-link-hardware-tuned.toml",
+        "two-link-hardware.tune.html",
+        "two-link-hardware.tune.png",
+        "What the loop takes of each limit, what each gain trades, and what the loop bears.",
+    ),
+    Show(
         "margins",
         "How much a loop bears",
-        "margins pendulum-tanh",
+        "margins pendulum-tanh --page DIR",
         "pendulum-tanh.margins.html",
         "pendulum-tanh.margins.png",
         "Delay, torque gain, stiffness error and noise, each raised until the loop no longer follows.",
@@ -59,7 +75,7 @@ SHOWS = [
     Show(
         "compare",
         "Control laws compared",
-        "compare task-ideal-tracking task-soft --budget 1 --seeds 1",
+        "compare task-ideal-tracking task-soft --budget 1 --seeds 1 --out DIR",
         "compare.html",
         "compare-map.png",
         "Every law on two tasks, with almost no search for gains: how the page looks, not who is best. "
@@ -85,7 +101,7 @@ def make(out):
     for show in SHOWS:
         folder = out / show.folder
         done = subprocess.run(
-            [runs, *show.words.split(), "--out", folder], cwd=out, capture_output=True, text=True, stdin=subprocess.DEVNULL
+            [runs, *show.words.replace("DIR", str(folder)).split()], cwd=out, capture_output=True, text=True, stdin=subprocess.DEVNULL
         )
         if done.returncode not in (0, 1):
             said = (done.stderr.strip().splitlines() or ["nothing said"])[0]

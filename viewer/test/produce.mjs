@@ -17,23 +17,37 @@ export const COMMANDS = [
   { folder: 'everything', words: 'run two-link-everything --view', codes: [0, 1], pages: ['two-link-everything.view.html'] },
   { folder: 'pair', words: 'run --view two-link-linear-smooth two-link-tanh-smooth', pages: ['two-link-linear-smooth-and-two-link-tanh-smooth.view.html'] },
   { folder: 'diverging', words: 'run two-link-tanh --set control_period=0.01 --view', codes: [1], pages: ['two-link-tanh.view.html'] },
-  { folder: 'margins', words: 'margins pendulum-tanh', pages: ['pendulum-tanh.margins.html'] },
+  { folder: 'margins', words: 'margins pendulum-tanh --page OUT', pages: ['pendulum-tanh.margins.html'] },
+  { folder: 'proved', words: 'certify two-link-tanh --page OUT --out OUT/two-link-tanh.certificate.json', pages: ['two-link-tanh.certify.html'] },
+  { folder: 'ideal', words: 'certify panda-tanh-smooth --disturbance 0.05 --page OUT --out OUT/panda.certificate.json', pages: ['panda-tanh-smooth.certify.html'] },
+  { folder: 'refuted', words: 'certify two-link-tanh --rate 99 --page OUT --out OUT/none.json', codes: [1], pages: ['two-link-tanh.certify.html'] },
+  { folder: 'tuned', words: 'tune two-link-hardware --budget 10 --page OUT --out OUT/tuned.toml', pages: ['two-link-hardware.tune.html'] },
+  { folder: 'swept', words: 'sweep test/soft-springs.toml --page OUT --out OUT/rows', pages: ['soft-springs.sweep.html'] },
+  { folder: 'identified', words: 'identify quanser-2dof --log OUT/../reproduce/two-link-tanh-smooth.csv --page OUT', after: 'reproduce', codes: [0, 1], pages: ['quanser-2dof.identify.html'] },
   { folder: 'compare', words: 'compare task-ideal-tracking task-soft task-payload --budget 1 --seeds 1', pages: ['compare.html'] },
 ];
 
+/** The words of a command with its folder for OUT, which goes behind `--out` where it is not said. */
+function said(words, out) {
+  const whole = words.split(' ').map(word => word.replace('OUT', out));
+  return words.includes('OUT') ? whole : [...whole, '--out', out];
+}
+
 function run(words, out) {
   return new Promise(resolve => {
-    execFile(PROGRAM, [...words.split(' '), '--out', out], { timeout: 120_000, maxBuffer: 2 ** 26 }, (error, _, said) => resolve({ code: error ? error.code ?? error.signal : 0, said }));
+    execFile(PROGRAM, said(words, out), { cwd: fileURLToPath(new URL('..', import.meta.url)), timeout: 120_000, maxBuffer: 2 ** 26 }, (error, _, said) => resolve({ code: error ? error.code ?? error.signal : 0, said }));
   });
 }
 
 /** Runs the commands, two at a time; each with its exit code and what it said on standard error. */
 export async function produce(folder) {
-  const left = [...COMMANDS], done = [];
-  const work = async () => {
+  const done = [];
+  const work = async left => {
     for (let next = left.shift(); next; next = left.shift()) done.push({ codes: [0], ...next, ...await run(next.words, join(folder, next.folder)) });
   };
-  await Promise.all([work(), work()]);
+  const first = COMMANDS.filter(({ after }) => !after), then = COMMANDS.filter(({ after }) => after);
+  await Promise.all([work(first), work(first)]);
+  await work(then);
   return done;
 }
 

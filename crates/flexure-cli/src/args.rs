@@ -7,8 +7,9 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use flexure::compare::{BUDGET, SEEDS};
 use flexure::excite::{BUDGET as EXCITE_BUDGET, RESOLUTION};
-use flexure::files::Change;
+use flexure::files::{Change, WriteError, prepare_for};
 use flexure::replay::HORIZON;
+use flexure::report::{page_names, stem};
 use flexure::robot::DriveClass;
 
 /// Model, design, simulate and compare controllers for robots with elastic joints.
@@ -185,6 +186,22 @@ pub struct Traced {
     pub view: bool,
 }
 
+/// Where the page of an answer goes.
+#[derive(Debug, Args)]
+pub struct Paged {
+    /// Write a page with the answer as a picture and in numbers into this folder, too; created if missing.
+    #[arg(long, value_name = "FOLDER")]
+    pub page: Option<PathBuf>,
+}
+
+impl Paged {
+    /// That a page about `name` with so many figures can be written, if one is asked for: said before the work, not after.
+    pub fn prepare(&self, name: &str, command: &str, figures: usize) -> Result<(), WriteError> {
+        let names = || page_names(&stem(name, command), figures);
+        self.page.as_deref().map_or(Ok(()), |folder| prepare_for(folder, names()))
+    }
+}
+
 #[derive(Debug, Args)]
 pub struct Import {
     /// URDF file.
@@ -247,6 +264,8 @@ pub struct Certify {
     /// Certificate file; default out/NAME.certificate.json.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub paged: Paged,
 }
 
 #[derive(Debug, Args)]
@@ -286,6 +305,8 @@ pub struct Tune {
     /// Scenario file to write; default NAME-tuned.toml beside the scenario.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub paged: Paged,
 }
 
 #[derive(Debug, Args)]
@@ -301,6 +322,8 @@ pub struct Sweep {
     /// Folder of the rows; created if missing; default out/SWEEP.
     #[arg(long, value_name = "FOLDER")]
     pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub paged: Paged,
 }
 
 #[derive(Debug, Subcommand)]
@@ -319,6 +342,8 @@ pub enum OfFolder {
     Show {
         /// Folder of a sweep.
         folder: PathBuf,
+        #[command(flatten)]
+        paged: Paged,
     },
 }
 
@@ -335,9 +360,8 @@ pub struct Margins {
     /// With --controllers: seed of the search.
     #[arg(long, default_value_t = 0, requires = "controllers")]
     pub seed: u64,
-    /// Write a page and a figure into this folder, too; created if missing.
-    #[arg(long, value_name = "FOLDER")]
-    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub paged: Paged,
 }
 
 #[derive(Debug, Args)]
@@ -412,6 +436,8 @@ pub struct Identify {
     /// Robot file to write, with the numbers found and everything else as it is.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub paged: Paged,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

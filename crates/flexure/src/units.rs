@@ -67,6 +67,11 @@ pub fn of_joints(unit: Unit, prefix: &str, kinds: impl Iterator<Item = JointKind
     }
 }
 
+/// A unit in ASCII with raised digits.
+pub fn raised(plain: &str) -> String {
+    plain.replace("^2", "²").replace("^3", "³").replace("^4", "⁴")
+}
+
 /// Plain numbers.
 pub const NONE: Unit = Unit::new("", 0);
 /// Times and durations.
@@ -219,7 +224,7 @@ mod tests {
     fn both_spellings_are_the_same_unit() {
         for (unit, _) in ALL.into_iter().flat_map(|(unit, r)| [(unit, r), (unit.of(JointKind::Prismatic), r)])
         {
-            let raised = unit.plain.replace("^2", "²").replace("^3", "³").replace("^4", "⁴");
+            let raised = raised(unit.plain);
             assert_eq!(unit.raised, raised);
         }
     }

@@ -6,7 +6,7 @@ use flexure::files::{Problem, Reading, folder_of, prepare, spare};
 use flexure::prove::question::{Direct, Question, Region, prove_watched};
 use flexure::prove::standing::{Standing, outside_of_proofs};
 use flexure::prove::summary::ProofSummary;
-use flexure::report::{proof_table, write_certificate};
+use flexure::report::{proof_table, proof_verdict, write_certificate, write_certified};
 use flexure::sampled::probe;
 use flexure::scenario::{Scenario, load_scenario_with};
 use serde::Serialize;
@@ -23,6 +23,9 @@ struct Outcome {
     summary: ProofSummary,
     /// The certificate; none if nothing was proved.
     file: Option<PathBuf>,
+    /// Its page and figure; not there without `--page`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pages: Vec<PathBuf>,
 }
 
 pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<(), Failure> {
@@ -36,6 +39,7 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
     // Said before minutes of proof, not after.
     spare(&path, "certificate", |text| text.contains("flexure-certificate"), &[])?;
     prepare(folder_of(&path))?;
+    options.paged.prepare(&scenario.name, "certify", 1)?;
     let proof = {
         let progress = Progress::of_one(&scenario.name);
         prove_watched(&scenario, &question, &|fraction| progress.set(0, fraction))?
@@ -49,15 +53,25 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
             Some(path)
         }
     };
-    let ended = ending(&scenario, Standing::of(&scenario, &proof, sampled.as_ref()), options.strict);
+    let standing = Standing::of(&scenario, &proof, sampled.as_ref());
+    let pages = match &options.paged.page {
+        // Of a part of a proof a page would be taken for the whole.
+        Some(folder) if !proof.broken_off => {
+            let verdict = proof_verdict(&standing, &summary, options.strict);
+            write_certified(folder, &scenario, &summary, &verdict, file.as_deref())?
+        }
+        _ => Vec::new(),
+    };
+    let ended = ending(&scenario, standing, options.strict);
     if json {
-        print::json(&Outcome { summary, file })?;
+        print::json(&Outcome { summary, file, pages })?;
     } else {
         if proof.broken_off {
             print::line("broken off: what is here is proved, not all that was asked was looked at")?;
         }
         print::line(&proof_table(&summary, print::columns()))?;
         print::wrote(file.as_slice())?;
+        print::wrote(&pages)?;
     }
     match ended {
         Err(Failure::Undecided(reports)) if proof.broken_off => Err(Failure::Interrupted(reports)),

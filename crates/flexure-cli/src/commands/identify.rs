@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use flexure::files::number::significant;
 use flexure::files::{Outside, Problem, folder_of, prepare, spare, write_atomic};
-use flexure::identify::{Identified, Offset, RobotFile, Settings, identify as identified};
+use flexure::identify::{Identified, RobotFile, Settings, identify as identified};
 use flexure::logs::read_log;
-use flexure::report::identified_table;
+use flexure::report::{identified_table, write_identified};
 use serde::Serialize;
 
 use super::{log, print};
@@ -20,6 +20,9 @@ struct Outcome<'a> {
     found: &'a Identified,
     /// The robot file; none if none was asked for, or the logs know nothing.
     file: Option<&'a Path>,
+    /// Its page and figure; not there without `--page`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pages: Vec<PathBuf>,
 }
 
 pub fn identify(options: &Identify, outside: Outside, json: bool) -> Result<(), Failure> {
@@ -40,6 +43,7 @@ pub fn identify(options: &Identify, outside: Outside, json: bool) -> Result<(), 
         prepare(folder_of(out))?;
         file.fits(out, outside)?;
     }
+    options.paged.prepare(&file.robot.name, "identify", 1)?;
     let settings =
         Settings { hold_out: options.hold_out, accuracy: options.accuracy, gaps: file.gaps.clone() };
     let found = {
@@ -53,12 +57,18 @@ pub fn identify(options: &Identify, outside: Outside, json: bool) -> Result<(), 
         let text = file.completed(&found, &names, out, outside)?;
         write_atomic(out, |to| to.write_all(text.as_bytes()))?;
     }
+    let objection = found.objection();
+    let pages = match &options.paged.page {
+        Some(folder) => write_identified(folder, &found, objection.as_ref(), out.map(PathBuf::as_path))?,
+        None => Vec::new(),
+    };
     if json {
-        print::json(&Outcome { found: &found, file: out.map(PathBuf::as_path) })?;
+        print::json(&Outcome { found: &found, file: out.map(PathBuf::as_path), pages })?;
     } else {
         tell(&found, out)?;
+        print::wrote(&pages)?;
     }
-    ending(&found)
+    objection.map_or(Ok(()), |problem| Err(Failure::No(vec![problem.into()])))
 }
 
 fn name(path: &Path) -> String {
@@ -113,36 +123,3 @@ fn tell(found: &Identified, out: Option<&PathBuf>) -> Result<(), Failure> {
         None => Ok(()),
     }
 }
-
-/// The exit code: 1 if the search did not come to its end, the time at which torques act is not told, or a stiffness or motor
-/// inertia is not known.
-fn ending(found: &Identified) -> Result<(), Failure> {
-    if !found.converged {
-        let message = "the search did not come to its end: no number counts as known, and nothing is written"
-            .to_owned();
-        let hint = "start from better guesses in the robot file, or log both sides; is there play, or something else that the model \
-                    has not?";
-        return Err(Failure::no("unknown", message, hint));
-    }
-    if let Some(offset) = found.offsets.iter().find(|offset| !offset.is_known()) {
-        let message = format!(
-            "{} tells when torques act only to ± {} ms, and {} ms are needed: no number counts as known, and nothing is written",
-            offset.log,
-            significant(1e3 * offset.error, 2),
-            1e3 * Offset::TIMED
-        );
-        return Err(Failure::no("unknown", message, EXCITE));
-    }
-    let missing: Vec<_> =
-        found.missing().iter().map(|(joint, what)| format!("{} of {joint}", what.key)).collect();
-    if !missing.is_empty() {
-        let nothing = if found.knows_something() { "" } else { ": nothing is written" };
-        let message = format!("the logs do not know {}{nothing}", missing.join(", "));
-        return Err(Failure::no("unknown", message, EXCITE));
-    }
-    Ok(())
-}
-
-/// What helps where a log does not know enough.
-const EXCITE: &str = "excite the springs more: `flexure excite` designs such a motion (with --motor-only if links have no encoders); a \
-                      longer log, a finer encoder; --accuracy says how well a number must be known";

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use flexure::compare::{Entrant, check_budget, entrants};
 use flexure::files::number::significant;
-use flexure::files::{Problems, Reading, prepare_for};
+use flexure::files::{Problems, Reading};
 use flexure::margins::{Margins as Found, margins as margins_of};
 use flexure::progress::{PartProgress, Progress as Progressing};
-use flexure::report::{margins_names, margins_table, write_margins};
+use flexure::report::{margins_table, write_margins};
 use flexure::scenario::{Scenario, load_scenario_with};
 use flexure::tune::tune;
 use serde::Serialize;
@@ -24,7 +24,9 @@ const RUNS: f64 = 60.0;
 #[derive(Serialize)]
 struct Outcome {
     loops: Vec<Found>,
-    files: Vec<PathBuf>,
+    /// Their page and figures; not there without `--page`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pages: Vec<PathBuf>,
 }
 
 pub fn margins(options: &Margins, reading: Reading<'_>, json: bool) -> Result<(), Failure> {
@@ -32,30 +34,28 @@ pub fn margins(options: &Margins, reading: Reading<'_>, json: bool) -> Result<()
     let chosen = if options.controllers.is_empty() { Vec::new() } else { entrants(&options.controllers)? };
     let scenario = load_scenario_with(&options.scenario, reading)?;
     say(&scenario.warnings);
-    if let Some(folder) = &options.out {
-        prepare_for(folder, margins_names(&scenario, chosen.len().max(1)))?;
-    }
+    options.paged.prepare(&scenario.name, "margins", chosen.len().max(1))?;
     let (loops, is_whole) = {
         let each = [options.budget as f64, RUNS];
         let weights = if chosen.is_empty() { vec![RUNS] } else { each.repeat(chosen.len()) };
         let progress = Progress::new(&scenario.name, weights);
         measured(&scenario, &chosen, options, &|part, fraction| progress.set(part, fraction))?
     };
-    let files = match &options.out {
+    let pages = match &options.paged.page {
         // Of a part of the search a page would be taken for the whole.
         Some(folder) if is_whole => write_margins(folder, &scenario, &loops)?,
         _ => Vec::new(),
     };
     let words = "broken off: as far as ≥ and ≤ say the loop was seen to hold";
     if json {
-        print::json(&Outcome { loops: loops.clone(), files })?;
+        print::json(&Outcome { loops: loops.clone(), pages })?;
     } else {
         if !is_whole {
             print::line(words)?;
         }
         print::line(&margins_table(&loops, print::columns()))?;
         loops.iter().try_for_each(show)?;
-        print::wrote(&files)?;
+        print::wrote(&pages)?;
     }
     if !is_whole {
         return Err(Failure::interrupted(words.to_owned(), "what is not there was not measured"));

@@ -4,8 +4,8 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use flexure::files::{Reading, Unfinished};
-use flexure::report::sweep_table;
-use flexure::sweep::{Folder, Statistics, Status, Sweep as Many, Told};
+use flexure::report::{sweep_table, write_swept};
+use flexure::sweep::{Folder, Statistics, Sweep as Many, Told};
 use serde::Serialize;
 
 use super::{print, run};
@@ -28,6 +28,9 @@ struct Outcome<'a> {
     shards_there: u64,
     /// Shards that this command computed.
     computed: u64,
+    /// Its page and figure; not there without `--page`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pages: Vec<PathBuf>,
     #[serde(flatten)]
     told: Told<'a>,
 }
@@ -44,9 +47,10 @@ pub fn sweep(options: &Sweep, reading: Reading<'_>, json: bool) -> Result<(), Fa
         }
         return match of {
             OfFolder::Replay { folder, row, traced } => replay(folder, *row, traced, json),
-            OfFolder::Show { folder } => {
+            OfFolder::Show { folder, paged } => {
                 let (folder, sweep) = Folder::open(folder)?;
-                show(&sweep, &folder, 0, json)
+                paged.prepare(sweep.name(), "sweep", 1)?;
+                show(&sweep, &folder, 0, paged.page.as_deref(), json)
             }
         };
     }
@@ -54,6 +58,7 @@ pub fn sweep(options: &Sweep, reading: Reading<'_>, json: bool) -> Result<(), Fa
     say(sweep.warnings());
     let range = shards(options.shards.as_deref(), sweep.shards())?;
     let path = options.out.clone().unwrap_or_else(|| PathBuf::from("out").join(sweep.name()));
+    options.paged.prepare(sweep.name(), "sweep", 1)?;
     let folder = Folder::of(&sweep, &path)?;
     let there = || folder.parts().map(|parts| parts.range(range.clone()).count());
     let before = there()?;
@@ -62,10 +67,11 @@ pub fn sweep(options: &Sweep, reading: Reading<'_>, json: bool) -> Result<(), Fa
         folder.complete(&sweep, range.clone(), &|fraction| progress.set(0, fraction))
     };
     match computed {
-        Ok(computed) => show(&sweep, &folder, computed, json),
+        Ok(computed) => show(&sweep, &folder, computed, options.paged.page.as_deref(), json),
         Err(Unfinished::Problems(problems)) if problems.is_interrupted() => {
             let there = there()?;
-            show(&sweep, &folder, (there - before.min(there)) as u64, json)?;
+            // Of a part that was broken off a page would be taken for the whole.
+            show(&sweep, &folder, (there - before.min(there)) as u64, None, json)?;
             let message = format!("broken off: {there} of {} shards are there", range.end - range.start);
             Err(Failure::interrupted(message, "the same command goes on where it was"))
         }
@@ -97,34 +103,25 @@ fn shards(said: Option<&str>, count: u64) -> Result<Range<u64>, Failure> {
     }
 }
 
-fn show(sweep: &Many, folder: &Folder, computed: u64, json: bool) -> Result<(), Failure> {
+fn show(
+    sweep: &Many,
+    folder: &Folder,
+    computed: u64,
+    page: Option<&Path>,
+    json: bool,
+) -> Result<(), Failure> {
     let statistics = folder.statistics(sweep)?;
+    let pages = page.map_or_else(|| Ok(Vec::new()), |page| write_swept(page, sweep, &statistics))?;
     let there = folder.parts()?.len() as u64;
     if json {
-        return print::json(&outcome(sweep, folder, &statistics, there, computed));
+        return print::json(&outcome(sweep, folder, &statistics, there, computed, pages));
     }
     if statistics.rows > 0 {
         print::line(&sweep_table(sweep, &statistics, print::columns()))?;
     }
-    let statuses: Vec<String> = Status::ALL
-        .iter()
-        .filter_map(|status| {
-            let count = statistics.statuses.get(status.name()).filter(|count| **count > 0)?;
-            Some(format!("{count} {}", words(*status)))
-        })
-        .collect();
-    let statuses = if statuses.is_empty() { String::new() } else { format!(": {}", statuses.join(", ")) };
-    print::line(&format!("{} of {} runs are there{statuses}", statistics.rows, sweep.rows()))?;
-    print::line(&format!("{there} of {} shards in {}", sweep.shards(), folder.path().display()))
-}
-
-fn words(status: Status) -> &'static str {
-    match status {
-        Status::Follows => "follow their reference",
-        Status::Strays => "do not follow",
-        Status::Diverges => "diverge",
-        Status::Refused => "were refused: their numbers do not go together (`flexure sweep replay` says why)",
-    }
+    print::line(&statistics.sentence(sweep))?;
+    print::line(&format!("{there} of {} shards in {}", sweep.shards(), folder.path().display()))?;
+    print::wrote(&pages)
 }
 
 fn outcome<'a>(
@@ -133,6 +130,7 @@ fn outcome<'a>(
     statistics: &'a Statistics,
     there: u64,
     computed: u64,
+    pages: Vec<PathBuf>,
 ) -> Outcome<'a> {
     Outcome {
         name: sweep.name(),
@@ -142,6 +140,7 @@ fn outcome<'a>(
         shards: sweep.shards(),
         shards_there: there,
         computed,
+        pages,
         told: statistics.told(sweep),
     }
 }

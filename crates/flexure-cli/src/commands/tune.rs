@@ -7,7 +7,7 @@ use flexure::feasible;
 use flexure::files::number::short;
 use flexure::files::{Reading, folder_of, prepare, write_atomic};
 use flexure::prove::standing::outside_of_proofs;
-use flexure::report::{constraints_table, gains_table, margins_table, trades_table};
+use flexure::report::{constraints_table, gains_table, margins_table, trades_table, write_tuned};
 use flexure::sampled::{Sampled, not_looked_at};
 use flexure::scenario::Scenario;
 use serde::Serialize;
@@ -23,6 +23,9 @@ struct Outcome<'a> {
     #[serde(flatten)]
     design: &'a Design,
     file: Option<&'a Path>,
+    /// Its page and figures; not there without `--page`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pages: Vec<PathBuf>,
 }
 
 pub fn tune(options: &Tune, reading: Reading<'_>, json: bool) -> Result<(), Failure> {
@@ -40,6 +43,7 @@ pub fn tune(options: &Tune, reading: Reading<'_>, json: bool) -> Result<(), Fail
     spare_out(&out, &inputs)?;
     specified.belongs(&out, reading.outside)?;
     prepare(folder_of(&out))?;
+    options.paged.prepare(&scenario.name, "tune", 1)?;
     let found = {
         let progress = Progress::of_one(&scenario.name);
         design(&specified, &spec, options.budget, options.seed, &|fraction| progress.set(0, fraction))?
@@ -49,11 +53,18 @@ pub fn tune(options: &Tune, reading: Reading<'_>, json: bool) -> Result<(), Fail
         let text = specified.with(&found.controller, &found.comment());
         write_atomic(file, |out| out.write_all(text.as_bytes()))?;
     }
+    let objection = found.objection(scenario, &spec);
+    let pages = match &options.paged.page {
+        // Of a part of the search a page would be taken for the whole.
+        Some(folder) if !found.broken_off => write_tuned(folder, scenario, &found, objection.as_ref(), file)?,
+        _ => Vec::new(),
+    };
     if json {
-        print::json(&Outcome { design: &found, file })?;
+        print::json(&Outcome { design: &found, file, pages })?;
     } else {
         show(&found, scenario)?;
         print::wrote(file.as_slice())?;
+        print::wrote(&pages)?;
     }
     if found.broken_off {
         let words = if found.feasible {
@@ -66,7 +77,7 @@ pub fn tune(options: &Tune, reading: Reading<'_>, json: bool) -> Result<(), Fail
             "without Ctrl-C the search goes on, and margins are measured",
         ));
     }
-    found.objection(scenario, &spec).map_or(Ok(()), |problem| Err(Failure::No(vec![problem.into()])))
+    objection.map_or(Ok(()), |problem| Err(Failure::No(vec![problem.into()])))
 }
 
 /// `NAME-tuned.toml` in the folder of the scenario; of a built-in one, in the current folder.

@@ -119,7 +119,9 @@ fn joints_are_drawn_over_frequency() {
     // Of a scenario its robot; of a bad file nothing.
     let json = place.run(&["check", "pendulum-tanh", "--figure", "there", "--json"]).done().json();
     assert_eq!(json[0]["files"][0], "there/pendulum-1dof.response.svg");
-    place.run(&["check", "none.toml", "panda", "--figure", "elsewhere"]).refused(&["none.toml"]);
+    let one_bad = place.run(&["check", "none.toml", "panda", "--figure", "elsewhere"]);
+    assert_eq!(one_bad.code, Some(2));
+    one_bad.said(&["none.toml"]);
     assert!(!place.path().join("elsewhere").exists());
     // Robots of one name have a figure each, wherever their names would lead.
     for file in ["a.toml", "b.toml"] {

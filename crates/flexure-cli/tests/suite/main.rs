@@ -16,6 +16,7 @@ mod interrupt;
 mod logs;
 mod margins;
 mod outside;
+mod pages;
 mod pinocchio;
 mod pipes;
 mod public_robots;

@@ -54,14 +54,14 @@ fn questions_that_cannot_be_meant_are_refused() {
 fn a_folder_gets_a_page_with_its_picture() {
     let place = Place::new();
     place.write("short.toml", short());
-    let text = place.run(&["margins", "short.toml", "--out", "there"]).done().stdout;
+    let text = place.run(&["margins", "short.toml", "--page", "there"]).done().stdout;
     assert_eq!(place.names("there"), ["short.margins.html", "short.margins.png", "short.margins.svg"]);
     assert!(text.contains("wrote there/short.margins.html"), "{text}");
     let page = place.read("there/short.margins.html");
     assert!(page.contains("✓ good") && page.contains("of delay more"), "{page}");
-    let json = place.run(&["margins", "short.toml", "--out", "there", "--json"]).done().json();
-    assert_eq!(json["files"][0], "there/short.margins.html");
+    let json = place.run(&["margins", "short.toml", "--page", "there", "--json"]).done().json();
+    assert_eq!(json["pages"][0], "there/short.margins.html");
     assert_eq!(place.read("there/short.margins.html"), page);
     place.write("file", "");
-    place.run(&["margins", "short.toml", "--out", "file"]).refused(&["file"]);
+    place.run(&["margins", "short.toml", "--page", "file"]).refused(&["file"]);
 }

@@ -3,6 +3,8 @@
 use serde::Serialize;
 
 use super::parameters::Parameter;
+use crate::files::Problem;
+use crate::files::number::significant;
 
 /// What `flexure identify` finds. Errors are three standard deviations.
 #[derive(Clone, Debug, Serialize)]
@@ -83,6 +85,10 @@ pub struct Offset {
     pub error: f64,
 }
 
+/// What helps where a log does not know enough.
+const EXCITE: &str = "excite the springs more: `flexure excite` designs such a motion (with --motor-only if links have no encoders); a \
+                      longer log, a finer encoder; --accuracy says how well a number must be known";
+
 impl Offset {
     /// Largest error (three standard deviations) of the time at which torques act for anything to count as known \[s\]: a log that does
     /// not tell that within a few samples has no motion in it that a spring or a motor would show.
@@ -103,6 +109,32 @@ impl Identified {
             .map(|(joint, parameter)| (self.joints[joint].name.as_str(), self.estimate(joint, parameter)))
             .filter(|(_, estimate)| !estimate.known)
             .collect()
+    }
+
+    /// What is to be said if the search did not come to its end, the time at which torques act is not told, or a stiffness or motor inertia is
+    /// not known.
+    pub fn objection(&self) -> Option<Problem> {
+        if !self.converged {
+            let message =
+                "the search did not come to its end: no number counts as known, and nothing is written";
+            let help = "start from better guesses in the robot file, or log both sides; is there play, or something else that the model \
+                        has not?";
+            return Some(Problem::new("unknown", message, help));
+        }
+        if let Some(offset) = self.offsets.iter().find(|offset| !offset.is_known()) {
+            let message = format!(
+                "{} tells when torques act only to ± {} ms, and {} ms are needed: no number counts as known, and nothing is written",
+                offset.log,
+                significant(1e3 * offset.error, 2),
+                1e3 * Offset::TIMED
+            );
+            return Some(Problem::new("unknown", message, EXCITE));
+        }
+        let missing: Vec<_> =
+            self.missing().iter().map(|(joint, what)| format!("{} of {joint}", what.key)).collect();
+        let nothing = if self.knows_something() { "" } else { ": nothing is written" };
+        let message = || format!("the logs do not know {}{nothing}", missing.join(", "));
+        (!missing.is_empty()).then(|| Problem::new("unknown", message(), EXCITE))
     }
 
     /// Whether the logs know any number.

@@ -1,6 +1,6 @@
 //! What to say of a proof that is none, or not of everything that was asked.
 
-use crate::files::number::short;
+use crate::files::number::{engineering, short};
 use crate::files::{INTERRUPTED, Problem};
 use crate::prove::along::Limit;
 use crate::prove::engine::verdict::Verdict;
@@ -56,10 +56,10 @@ impl Proof {
             },
             Verdict::Refuted(witness) => {
                 let message = format!(
-                    "{}: the closed loop does not contract fast enough: {} has {:.6} 1/s in one direction",
+                    "{}: the closed loop does not contract fast enough: {} has {} 1/s in one direction",
                     scenario.name,
                     witness.block.name(),
-                    witness.rate
+                    engineering(witness.rate)
                 );
                 Some((
                     problem("refuted", message, "ask for less, raise the gains, or name a smaller region"),

@@ -13,8 +13,8 @@ pub struct CertificateReport {
     pub summary: ProofSummary,
     /// Shaping function.
     pub phi: String,
-    /// Name of the certificate file.
-    pub file: String,
+    /// Name of the certificate file, from the folder of the page; none if it is not there.
+    pub file: Option<String>,
 }
 
 /// The table of proofs, with what it means.
@@ -46,9 +46,9 @@ pub(super) fn section(certificates: &[CertificateReport]) -> Markup {
         p.note {
             (super::html::symbols("φ_l … σ_m")) ": contraction rates of the blocks of positions and momenta, links and motors. Check a certificate with "
             code { "flexure verify FILE" } " or " code { "tools/check_certificate.py FILE" } ": "
-            @for (i, certificate) in certificates.iter().enumerate() {
+            @for (i, file) in certificates.iter().filter_map(|certificate| certificate.file.as_ref()).enumerate() {
                 @if i > 0 { ", " }
-                a href=(certificate.file) { (certificate.file) }
+                a href=(file) { (file) }
             }
             "."
         }

@@ -5,8 +5,8 @@ use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 /// The result in a sentence.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Verdict {
-    /// Whether it is good.
-    pub good: bool,
+    /// Whether it is good; none where that was not decided, or is not for the program to say.
+    pub good: Option<bool>,
     /// The result, in numbers.
     pub words: String,
 }
@@ -73,7 +73,11 @@ impl Page<'_> {
 }
 
 fn said(Verdict { good, words }: &Verdict) -> Markup {
-    let (class, mark) = if *good { ("verdict good", "✓ good") } else { ("verdict bad", "✕ bad") };
+    let (class, mark) = match good {
+        Some(true) => ("verdict good", "✓ good"),
+        Some(false) => ("verdict bad", "✕ bad"),
+        None => ("verdict open", "– no verdict"),
+    };
     markup! { p class=(class) { strong { (mark) } " " (words) } }
 }
 
@@ -90,4 +94,28 @@ fn part(Section { id, heading, body, folded }: &Section) -> Markup {
 /// A figure in its frame, with what it shows.
 pub(super) fn figure(svg: &str, caption: &Markup) -> Markup {
     markup! { figure { div.card { (PreEscaped(svg)) } figcaption { (caption) } } }
+}
+
+/// A table of numbers: headings, then rows with what each is of.
+pub(super) fn numbers<R: AsRef<[String]>>(
+    headings: &[&str],
+    rows: impl IntoIterator<Item = (String, R)>,
+) -> Markup {
+    markup! {
+        div.scroll { table.numbers {
+            thead { tr { @for heading in headings { th { (heading) } } } }
+            tbody { @for (name, numbers) in rows { tr {
+                th scope="row" { (name) }
+                @for number in numbers.as_ref() { td { (number) } }
+            } } }
+        } }
+    }
+}
+
+/// How a page was made: the version of the program, and more in sentences.
+pub(super) fn made(sentences: &[String]) -> Markup {
+    markup! { ul {
+        li { "flexure " (env!("CARGO_PKG_VERSION")) }
+        @for sentence in sentences { li { (sentence) } }
+    } }
 }

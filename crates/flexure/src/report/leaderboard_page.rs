@@ -46,7 +46,7 @@ fn verdict(board: &Leaderboard) -> Verdict {
         )
     };
     let Some(first) = board.ranking.first() else {
-        return Verdict { good: false, words: "No law was ranked.".to_owned() };
+        return Verdict { good: Some(false), words: "No law was ranked.".to_owned() };
     };
     let is_other = |standing: &&Standing| is_vcbc(&standing.law) && standing.law != first.law;
     let vcbc = board.ranking.iter().find(|standing| is_vcbc(&standing.law)).filter(is_other);
@@ -56,7 +56,7 @@ fn verdict(board: &Leaderboard) -> Verdict {
         (hopeless > 0).then(|| format!("On {} no law follows.", counted(hopeless, "task"))),
     ];
     let said: Vec<String> = said.into_iter().flatten().collect();
-    Verdict { good: hopeless == 0, words: said.join(" ") }
+    Verdict { good: Some(hopeless == 0), words: said.join(" ") }
 }
 
 fn introduction(board: &Leaderboard) -> Markup {

@@ -3,15 +3,20 @@
 use maud::{Markup, html as markup};
 
 use super::html::{AssumedNumber, assumptions};
-use super::kit::{Page, Section, Verdict, figure};
-use super::margins_figure::margins_figure;
+use super::kit::{self, Page, Section, Verdict, figure, made};
+use super::scene::Scene;
 use crate::files::Problem;
 use crate::files::number::{NONE, significant};
 use crate::margins::{Edge, Margins};
 use crate::scenario::Scenario;
 
-/// The page: for each loop what it bears, as a picture, then all numbers. The same margins give the same page, byte for byte.
-pub fn margins_page(loops: &[Margins], scenario: &Scenario, assumed: &[AssumedNumber]) -> String {
+/// The page, with a figure for each loop: for each what it bears, as a picture, then all numbers. The same margins give the same page, byte for byte.
+pub(super) fn margins_page(
+    loops: &[Margins],
+    figures: &[Scene],
+    scenario: &Scenario,
+    assumed: &[AssumedNumber],
+) -> String {
     let title =
         loops.first().map_or_else(|| "Margins".to_owned(), |first| format!("{}: margins", first.name));
     let verdict = verdict(loops, scenario);
@@ -19,17 +24,16 @@ pub fn margins_page(loops: &[Margins], scenario: &Scenario, assumed: &[AssumedNu
         "Bars end where the loop was seen to hold last, red begins where it did not. Each change is made alone, from the scenario as it is, by \
          steps and bisection to 1 %: where a loop holds again farther out was not looked for."
     };
-    let lead = markup! { @for margins in loops { (figure(&margins_figure(margins).svg(), &caption)) } };
+    let lead = markup! { @for scene in figures { (figure(&scene.svg(), &caption)) } };
     let sections = vec![
         Section::new("numbers", "In numbers", numbers(loops)),
         Section::new("holds", "What holding means", criteria(loops)).folded(),
         Section::new("assumptions", "Assumptions", assumptions(assumed)).folded(),
     ];
     let runs: usize = loops.iter().map(|margins| margins.runs).sum();
-    let provenance = markup! { ul {
-        li { "flexure " (env!("CARGO_PKG_VERSION")) }
-        li { (runs) " runs were simulated. The same build writes the same page, byte for byte, on any number of threads." }
-    } };
+    let provenance = made(&[format!(
+        "{runs} runs were simulated. The same build writes the same page, byte for byte, on any number of threads."
+    )]);
     Page { title: &title, verdict: Some(&verdict), lead, sections, provenance }.html()
 }
 
@@ -41,7 +45,7 @@ fn verdict(loops: &[Margins], scenario: &Scenario) -> Verdict {
         None => borne(margins),
     });
     let words = words.collect::<Vec<_>>().join(" ");
-    Verdict { good: objections.iter().all(Option::is_none), words }
+    Verdict { good: Some(objections.iter().all(Option::is_none)), words }
 }
 
 /// What a loop bears.
@@ -78,21 +82,14 @@ fn numbers(loops: &[Margins]) -> Markup {
     markup! {
         @for margins in loops {
             h3 { (margins.law()) }
-            div.scroll { table.numbers {
-                thead { tr { th { "change" } th { "holds" } th { "does not hold" } } }
-                tbody {
-                    @for (name, edge, scale) in [
-                        ("delay from command to torque added [ms]", &margins.delay, 1e3),
-                        ("torque too small by the factor", &margins.gain_low, 1.0),
-                        ("torque too large by the factor", &margins.gain_high, 1.0),
-                        ("springs softer than the law believes by the factor", &margins.stiffness_low, 1.0),
-                        ("springs stiffer than the law believes by the factor", &margins.stiffness_high, 1.0),
-                        ("white noise added to all positions, standard deviation [mrad]", &margins.noise, 1e3),
-                    ] {
-                        tr { th scope="row" { (name) } @for number in both(edge, scale) { td { (number) } } }
-                    }
-                }
-            } }
+            (kit::numbers(&["change", "holds", "does not hold"], [
+                ("delay from command to torque added [ms]", &margins.delay, 1e3),
+                ("torque too small by the factor", &margins.gain_low, 1.0),
+                ("torque too large by the factor", &margins.gain_high, 1.0),
+                ("springs softer than the law believes by the factor", &margins.stiffness_low, 1.0),
+                ("springs stiffer than the law believes by the factor", &margins.stiffness_high, 1.0),
+                ("white noise added to all positions, standard deviation [mrad]", &margins.noise, 1e3),
+            ].map(|(name, edge, scale)| (name.to_owned(), both(edge, scale)))))
             @if let (Some(error), Some(torque)) = (margins.noise_to_error, margins.noise_to_torque) {
                 p.note {
                     "At a tenth of that noise: " (significant(error, 3)) " rad of link error for each rad of noise, and "

@@ -4,17 +4,23 @@
 
 mod assumptions;
 mod axes;
+mod certificate_figure;
 mod certificates;
+mod certify_page;
 mod columns;
 pub mod comparison;
+mod constraints_figure;
 mod cost;
 mod curve;
 pub mod decimate;
 mod design_table;
+mod error_path;
 mod excitation_table;
 pub mod figure;
 pub mod html;
+mod identified_figure;
 mod identified_table;
+mod identify_page;
 mod joint_panels;
 mod kit;
 mod leaderboard_page;
@@ -27,6 +33,7 @@ mod marker;
 mod marks;
 mod outputs;
 mod panel;
+mod path;
 mod png;
 mod proof_table;
 mod range;
@@ -38,16 +45,21 @@ mod scene;
 mod score_map;
 mod sheet;
 mod sketch;
+mod spread_figure;
 mod style;
 mod svg;
+mod sweep_page;
 mod sweep_table;
 pub mod table;
 mod text;
 mod ticks;
+mod tracks;
+mod tune_page;
 mod view;
 
 pub use assumptions::assumptions;
 pub use certificates::CertificateReport;
+pub use certify_page::proof_verdict;
 pub use columns::WIDTH;
 pub use comparison::comparison;
 pub use cost::cost_figure;
@@ -60,13 +72,12 @@ pub use joint_panels::joint_panels;
 pub use kit::Verdict;
 pub use leaderboard_page::leaderboard_page;
 pub use leaderboard_table::leaderboard_table;
-pub use margins_figure::margins_figure;
-pub use margins_page::margins_page;
 pub use margins_table::margins_table;
 pub(crate) use marks::pushes;
 pub use marks::{Happening, JointMarks, What};
 pub use outputs::{
-    margins_names, view_name, write_certificate, write_figure, write_leaderboard, write_margins, write_view,
+    page_names, stem, view_name, write_certificate, write_certified, write_figure, write_identified,
+    write_leaderboard, write_margins, write_swept, write_tuned, write_view,
 };
 pub use proof_table::{certificate_table, proof_table};
 pub use raster::RasterError;

@@ -1,16 +1,28 @@
-//! Comparisons and certificates as files.
+//! Pages, figures and certificates as files.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::certificate_figure::certificate_figure;
+use super::certify_page::certify_page;
+use super::constraints_figure::constraints_figure;
+use super::identified_figure::identified_figure;
+use super::identify_page::identify_page;
+use super::margins_figure::margins_figure;
+use super::margins_page::margins_page;
+use super::spread_figure::spread_figure;
+use super::sweep_page::sweep_page;
+use super::tune_page::tune_page;
+use super::{Scene, Verdict, Viewed, assumptions, cost_figure, leaderboard_page, score_map, view};
 use crate::compare::{Leaderboard, Task};
-use crate::files::{Problem, Unfinished, WriteError, create_folder, write_atomic};
+use crate::design::Design;
+use crate::files::{Problem, Unfinished, WriteError, create_folder, folder_of, write_atomic};
+use crate::identify::Identified;
 use crate::margins::Margins;
 use crate::prove::engine::Certificate;
-use crate::report::{
-    Scene, Viewed, assumptions, cost_figure, leaderboard_page, margins_figure, margins_page, score_map, view,
-};
+use crate::prove::summary::ProofSummary;
 use crate::scenario::Scenario;
+use crate::sweep::{Statistics, Sweep};
 
 /// Writes a comparison into `folder`, which is created if missing: `compare.html`, its figures and `compare.csv`; returns
 /// the paths.
@@ -44,6 +56,28 @@ pub fn write_figure(folder: &Path, name: &str, figure: &Scene) -> Result<[PathBu
     Ok(paths)
 }
 
+/// What the files of a page with so many figures are called, the page first. `stem` is of what the page is and of which command.
+pub fn page_names(stem: &str, figures: usize) -> Vec<String> {
+    let figure = |i| ["svg", "png"].map(|ending| format!("{}.{ending}", figure_name(stem, i, figures)));
+    std::iter::once(format!("{stem}.html")).chain((0..figures).flat_map(figure)).collect()
+}
+
+/// What one of so many figures of a page is called.
+fn figure_name(stem: &str, i: usize, figures: usize) -> String {
+    if figures == 1 { stem.to_owned() } else { format!("{stem}-{}", i + 1) }
+}
+
+/// Writes a page and its figures into `folder`, which is created if missing; returns their paths.
+fn write_page(folder: &Path, stem: &str, page: &str, figures: &[Scene]) -> Result<Vec<PathBuf>, WriteError> {
+    create_folder(folder)?;
+    let mut paths = vec![folder.join(format!("{stem}.html"))];
+    write_atomic(&paths[0], |out| out.write_all(page.as_bytes()))?;
+    for (i, figure) in figures.iter().enumerate() {
+        paths.extend(write_figure(folder, &figure_name(stem, i, figures.len()), figure)?);
+    }
+    Ok(paths)
+}
+
 /// Writes `NAME.margins.html` and its figures into `folder`, which is created if missing; returns the paths.
 ///
 /// # Errors
@@ -53,32 +87,82 @@ pub fn write_margins(
     scenario: &Scenario,
     loops: &[Margins],
 ) -> Result<Vec<PathBuf>, WriteError> {
-    create_folder(folder)?;
-    let [page_name, ..] = &margins_names(scenario, loops.len())[..] else { return Ok(Vec::new()) };
-    let mut paths = vec![folder.join(page_name)];
-    let page = margins_page(loops, scenario, &assumptions([scenario].into_iter()));
-    write_atomic(&paths[0], |out| out.write_all(page.as_bytes()))?;
-    for (i, margins) in loops.iter().enumerate() {
-        paths.extend(write_figure(
-            folder,
-            &margins_name(scenario, i, loops.len()),
-            &margins_figure(margins),
-        )?);
-    }
-    Ok(paths)
+    let figures: Vec<Scene> = loops.iter().map(margins_figure).collect();
+    let page = margins_page(loops, &figures, scenario, &assumptions([scenario].into_iter()));
+    write_page(folder, &stem(&scenario.name, "margins"), &page, &figures)
 }
 
-/// What the files of the margins of so many loops are called, the page first.
-pub fn margins_names(scenario: &Scenario, loops: usize) -> Vec<String> {
-    let figure =
-        |i: usize| ["svg", "png"].map(|ending| format!("{}.{ending}", margins_name(scenario, i, loops)));
-    std::iter::once(format!("{}.margins.html", scenario.name)).chain((0..loops).flat_map(figure)).collect()
+/// Writes `NAME.certify.html` and its figure into `folder`, which is created if missing; returns the paths.
+///
+/// # Errors
+/// As [`write_margins`].
+pub fn write_certified(
+    folder: &Path,
+    scenario: &Scenario,
+    summary: &ProofSummary,
+    verdict: &Verdict,
+    certificate: Option<&Path>,
+) -> Result<Vec<PathBuf>, WriteError> {
+    let figure = certificate_figure(scenario, summary);
+    let beside = certificate.filter(|path| folder_of(path) == folder).and_then(Path::file_name);
+    let link = beside.map(|name| name.to_string_lossy());
+    let page = certify_page(scenario, summary, verdict, &figure, link.as_deref());
+    write_page(
+        folder,
+        &stem(&scenario.name, "certify"),
+        &page,
+        figure.as_ref().map_or(&[], std::slice::from_ref),
+    )
 }
 
-/// What the figure of one of so many loops is called.
-fn margins_name(scenario: &Scenario, i: usize, loops: usize) -> String {
-    let number = if loops == 1 { String::new() } else { format!("-{}", i + 1) };
-    format!("{}.margins{number}", scenario.name)
+/// Writes `NAME.tune.html` and its figures into `folder`, which is created if missing; returns the paths.
+///
+/// # Errors
+/// As [`write_margins`].
+pub fn write_tuned(
+    folder: &Path,
+    scenario: &Scenario,
+    design: &Design,
+    objection: Option<&Problem>,
+    file: Option<&Path>,
+) -> Result<Vec<PathBuf>, WriteError> {
+    let figures = [constraints_figure(design)];
+    let page = tune_page(scenario, design, objection, &figures[0], file);
+    write_page(folder, &stem(&scenario.name, "tune"), &page, &figures)
+}
+
+/// Writes `ROBOT.identify.html` and its figure into `folder`, which is created if missing; returns the paths.
+///
+/// # Errors
+/// As [`write_margins`].
+pub fn write_identified(
+    folder: &Path,
+    found: &Identified,
+    objection: Option<&Problem>,
+    file: Option<&Path>,
+) -> Result<Vec<PathBuf>, WriteError> {
+    let figures = [identified_figure(found)];
+    let page = identify_page(found, objection, &figures[0], file);
+    write_page(folder, &stem(&found.robot, "identify"), &page, &figures)
+}
+
+/// Writes `NAME.sweep.html` and its figure into `folder`, which is created if missing; returns the paths.
+///
+/// # Errors
+/// As [`write_margins`].
+pub fn write_swept(
+    folder: &Path,
+    sweep: &Sweep,
+    statistics: &Statistics,
+) -> Result<Vec<PathBuf>, WriteError> {
+    let figures = [spread_figure(sweep, statistics)];
+    let page = sweep_page(sweep, statistics, &figures[0]);
+    write_page(folder, &stem(sweep.name(), "sweep"), &page, &figures)
+}
+
+/// What the files of a command's page about `name` are called, without their endings.
+pub fn stem(name: &str, command: &str) -> String {
+    format!("{name}.{command}")
 }
 
 /// Writes the page of a run in motion, or of two side by side, as `NAME.view.html` or `NAME-and-NAME.view.html` into `folder`, which is created

@@ -81,6 +81,19 @@ fn rates(
     laid_out(&table, 1, width)
 }
 
+/// Columns of a line that its label takes.
+const LABEL: usize = 13;
+
+/// What the table does not say, in sentences with labels.
+pub(super) fn statements(summary: &ProofSummary) -> Vec<[String; 2]> {
+    let labelled = |line: String| {
+        let label = line.char_indices().nth(LABEL).map_or(line.len(), |(end, _)| end);
+        let (label, words) = line.split_at(label);
+        [label.trim().to_owned(), words.to_owned()]
+    };
+    lines(summary).into_iter().map(labelled).collect()
+}
+
 fn lines(summary: &ProofSummary) -> Vec<String> {
     let mut lines = Vec::new();
     if let Some(region) = &summary.region {

@@ -242,7 +242,7 @@ fn verdict_of(experiments: &[Experiment], certificates: &[Certified]) -> Verdict
         engineering(largest(&from_rest, |summary| summary.max_abs_u_m)),
         if rates.is_empty() { "none".to_owned() } else { rates.join(", ") }
     );
-    Verdict { good: follow == smooth.len() && rates.len() == certificates.len(), words }
+    Verdict { good: Some(follow == smooth.len() && rates.len() == certificates.len()), words }
 }
 
 impl Experiment {
@@ -278,7 +278,7 @@ fn certificate_report(certified: &Certified) -> CertificateReport {
     CertificateReport {
         summary: certified.summary(),
         phi: scenario.controller.phi().unwrap_or_default().to_owned(),
-        file: certificate_name(&scenario.name),
+        file: Some(certificate_name(&scenario.name)),
     }
 }
 

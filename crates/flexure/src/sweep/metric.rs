@@ -30,6 +30,11 @@ impl Metric {
         Self { name, unit, what, usual: true, of }
     }
 
+    /// Its name with its unit, if it has one.
+    pub(crate) fn titled(&self) -> String {
+        if self.unit == "1" { self.name.to_owned() } else { format!("{} [{}]", self.name, self.unit) }
+    }
+
     const fn on_demand(self) -> Self {
         Self { usual: false, ..self }
     }

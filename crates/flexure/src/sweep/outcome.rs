@@ -38,6 +38,18 @@ impl Status {
         }
     }
 
+    /// What runs of it do, behind their number.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Follows => "follow their reference",
+            Self::Strays => "do not follow",
+            Self::Diverges => "diverge",
+            Self::Refused => {
+                "were refused: their numbers do not go together (`flexure sweep replay` says why)"
+            }
+        }
+    }
+
     fn of(run: &Run) -> Self {
         match (&run.divergence, run.summary.following.follows) {
             (Some(_), _) => Self::Diverges,

@@ -94,6 +94,17 @@ impl Statistics {
         }
     }
 
+    /// How many of the runs of `sweep` these are, and what became of them.
+    pub fn sentence(&self, sweep: &Sweep) -> String {
+        let counts = Status::ALL.iter().filter_map(|status| {
+            let count = self.statuses.get(status.name()).filter(|count| **count > 0)?;
+            Some(format!("{count} {}", status.words()))
+        });
+        let counts = counts.collect::<Vec<_>>().join(", ");
+        let counts = if counts.is_empty() { counts } else { format!(": {counts}") };
+        format!("{} of {} runs are there{counts}", self.rows, sweep.rows())
+    }
+
     /// Of no rows.
     pub fn none(sweep: &Sweep) -> Self {
         let metrics = sweep.metrics().iter().map(|metric| (metric.name.to_owned(), Figures::none()));

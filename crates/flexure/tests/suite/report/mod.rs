@@ -298,7 +298,7 @@ fn report() -> RunsReport {
     };
     RunsReport {
         title: "<script>title</script>".to_owned(),
-        verdict: Some(Verdict { good: true, words: "<u>all well".to_owned() }),
+        verdict: Some(Verdict { good: Some(true), words: "<u>all well".to_owned() }),
         motion: Some("<script>move()</script>".to_owned()),
         introduction: "One.\n\nTwo & three.".to_owned(),
         runs: vec![run("<script>name</script>"), run("linear")],
@@ -306,7 +306,7 @@ fn report() -> RunsReport {
         certificates: vec![CertificateReport {
             summary: proof(),
             phi: "<script>phi</script>".to_owned(),
-            file: "<script>.certificate.json".to_owned(),
+            file: Some("<script>.certificate.json".to_owned()),
         }],
         assumptions: vec![AssumedNumber {
             file: "robots/<script>.toml".to_owned(),

@@ -1,0 +1,144 @@
+//! `--page`: the answer as a page, whose mark says what the exit code says.
+
+use crate::command::{Outcome, Place, altered};
+
+/// What the page says of the answer.
+fn mark(page: &str) -> &'static str {
+    ["✓ good", "✕ bad", "– no verdict"]
+        .into_iter()
+        .find(|mark| page.contains(&format!("<strong>{mark}</strong>")))
+        .unwrap_or_else(|| panic!("no verdict in {page}"))
+}
+
+/// Runs a command for a page, which comes out with its picture, and returns how it ended and the page.
+#[track_caller]
+fn paged(place: &Place, args: &[&str], stem: &str) -> (Outcome, String) {
+    let mut all = args.to_vec();
+    all.extend(["--page", "pages"]);
+    let outcome = place.run(&all);
+    let names = place.names("pages");
+    for ending in ["html", "svg", "png"] {
+        assert!(names.contains(&format!("{stem}.{ending}")), "{names:?} {outcome:?}");
+    }
+    let page = place.read(&format!("pages/{stem}.html"));
+    assert!(outcome.stdout.contains(&format!("wrote pages/{stem}.html")), "{}", outcome.stdout);
+    // Nothing that a reader cannot make anything of, and every picture is in the page.
+    let words: Vec<&str> = page.split(|c: char| !c.is_alphanumeric()).collect();
+    assert!(!words.contains(&"NaN") && !words.contains(&"inf"), "{page}");
+    assert!(page.contains("<svg") && !page.contains("src=\"http"));
+    (outcome, page)
+}
+
+#[test]
+fn a_proof_is_good_only_if_it_is_about_the_loop_in_the_file() {
+    let place = Place::new();
+    let out = ["--out", "pages/c.json"];
+    let certify = |scenario: &str, more: &[&str]| {
+        let args = [&["certify", scenario][..], &out, more].concat();
+        let (outcome, page) = paged(&place, &args, &format!("{scenario}.certify"));
+        (outcome.code, mark(&page), page)
+    };
+    let (code, good, page) = certify("two-link-tanh", &[]);
+    assert_eq!((code, good), (Some(0), "✓ good"));
+    assert!(page.contains("Proved in continuous time") && page.contains("href=\"c.json\""), "{page}");
+    assert!(page.contains("no more limit") || page.contains("invariant"), "{page}");
+    let (code, open, page) = certify("two-link-hardware", &[]);
+    assert_eq!((code, open), (Some(0), "– no verdict"));
+    assert!(page.contains("of the ideal loop only") && page.contains("delay"), "{page}");
+    assert_eq!(certify("two-link-hardware", &["--strict"]).1, "✕ bad");
+    let (code, bad, page) = certify("two-link-tanh", &["--rate", "99"]);
+    assert_eq!((code, bad), (Some(1), "✕ bad"));
+    assert!(page.contains("Refuted: ") && !page.contains("id=\"rates\""), "{page}");
+}
+
+#[test]
+fn a_loop_that_is_unstable_as_sampled_is_bad_whatever_is_proved() {
+    let place = Place::new();
+    place.scenario("slow.toml", &[("control_period = 0.001", "control_period = 0.01")]);
+    let (outcome, page) = paged(&place, &["certify", "slow.toml", "--out", "c.json"], "slow.certify");
+    assert_eq!((outcome.code, mark(&page)), (Some(1), "✕ bad"));
+    assert!(page.contains("Unstable: sampled loop"), "{page}");
+}
+
+#[test]
+fn what_has_no_picture_has_a_page_that_says_why() {
+    let place = Place::new();
+    // The third derivative of a quintic jumps.
+    let quintic = "[reference]\nkind = \"quintic\"\nstart = [0.0, 0.0]\nend = [0.5, 0.5]\nduration = 1.0\n";
+    let scenario = crate::command::SCENARIO;
+    let (from, to) = (scenario.find("[reference]").unwrap(), scenario.find("[controller]").unwrap());
+    place.write("quintic.toml", format!("{}{quintic}{}", &scenario[..from], &scenario[to..]));
+    let outcome = place.run(&["certify", "quintic.toml", "--out", "c.json", "--page", "pages"]);
+    assert_eq!(place.names("pages"), ["quintic.certify.html"], "{outcome:?}");
+    assert!(
+        place.read("pages/quintic.certify.html").contains("There is no picture of this loop"),
+        "{outcome:?}"
+    );
+}
+
+#[test]
+fn tuned_gains_are_good_if_everything_that_is_asked_is_kept() {
+    let place = Place::new();
+    let args = ["tune", "two-link-hardware", "--budget", "3", "--out", "tuned.toml"];
+    let (outcome, page) = paged(&place, &args, "two-link-hardware.tune");
+    assert_eq!((outcome.code, mark(&page)), (Some(0), "✓ good"));
+    assert!(page.contains("What it bears") && page.contains("joint2"), "{page}");
+    place.write("fast.toml", "rate = 1e6\n");
+    let (outcome, page) =
+        paged(&place, &[&args[..], &["--spec", "fast.toml"]].concat(), "two-link-hardware.tune");
+    assert_eq!((outcome.code, mark(&page)), (Some(1), "✕ bad"));
+}
+
+#[test]
+fn identified_numbers_are_good_if_a_law_can_use_them() {
+    let place = Place::new();
+    // A motion that hardly loads the springs.
+    place.run(&["run", "two-link-tanh-smooth", "--set", "duration=2.0", "--out", "."]).done();
+    let args = ["identify", "quanser-2dof", "--log", "two-link-tanh-smooth.csv"];
+    let (outcome, page) = paged(&place, &args, "quanser-2dof.identify");
+    let is_good = outcome.code == Some(0);
+    assert_eq!(mark(&page), if is_good { "✓ good" } else { "✕ bad" }, "{outcome:?}");
+    let json = place.run(&[&args[..], &["--page", "pages", "--json"]].concat()).json();
+    assert_eq!(json["pages"][0], "pages/quanser-2dof.identify.html");
+    assert!(json["joints"][0]["parameters"][0]["unit"].as_str().is_some());
+}
+
+#[test]
+fn a_sweep_is_good_if_all_of_it_is_there_and_follows() {
+    let place = Place::new();
+    let sweep = "scenario = \"pendulum-tanh\"\npoints = 4\ndesign = \"latin-hypercube\"\nshard = 2\n[set]\nduration = 2.0\n[parameters]\n\
+                 \"robot.joints.stiffness\" = { from = 0.9, to = 1.1, relative = true }\n";
+    place.write("calm.toml", sweep);
+    let (_, page) = paged(&place, &["sweep", "calm.toml", "--out", "rows", "--shards", "0"], "calm.sweep");
+    assert_eq!(mark(&page), "– no verdict", "half of the rows");
+    let (_, page) = paged(&place, &["sweep", "calm.toml", "--out", "rows"], "calm.sweep");
+    assert_eq!(mark(&page), "✓ good", "{page}");
+    assert!(page.contains("4 of 4 runs are there: 4 follow their reference."), "{page}");
+    // From the folder alone the same page.
+    let (_, again) = paged(&place, &["sweep", "show", "rows"], "calm.sweep");
+    assert_eq!(page, again);
+    let slow = altered(sweep, &[("duration = 2.0", "duration = 2.0\ncontrol_period = 0.05")]);
+    place.write("wild.toml", slow);
+    let (_, page) = paged(&place, &["sweep", "wild.toml", "--out", "wild"], "wild.sweep");
+    assert_eq!(mark(&page), "– no verdict");
+}
+
+/// Said before the work, with nothing written.
+#[test]
+fn places_that_a_page_cannot_go_to_are_refused() {
+    let place = Place::new();
+    place.write("file", "").write("pages/two-link-tanh.certify.html/x", "");
+    let long = format!("name = \"{}\"\n", "a".repeat(260));
+    place.write("robot.toml", altered(crate::command::ROBOT, &[("name = \"quanser-2dof\"\n", &long)]));
+    place.write("log.csv", "t\n0\n1\n");
+    let certify = ["certify", "two-link-tanh", "--out", "c.json", "--page"];
+    place.run(&[&certify[..], &["file"]].concat()).refused(&["file"]);
+    place.run(&[&certify[..], &["file/below"]].concat()).refused(&["file"]);
+    place.run(&[&certify[..], &["pages"]].concat()).refused(&["not a regular file"]);
+    place
+        .run(&["tune", "two-link-hardware", "--budget", "1", "--out", "t.toml", "--page", "file"])
+        .refused(&["file"]);
+    place.run(&["margins", "pendulum-tanh", "--page", "file"]).refused(&["file"]);
+    place.run(&["sweep", "show", "none", "--page", "file"]).refused(&["none"]);
+    assert_eq!(place.names("."), ["file", "log.csv", "pages", "robot.toml"]);
+}
