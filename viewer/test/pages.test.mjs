@@ -8,6 +8,7 @@ import { pathToFileURL } from 'node:url';
 import { after, before, describe, test } from 'node:test';
 import { chromium } from 'playwright-core';
 import { look } from './look.mjs';
+import { grid, keep, unlike, writing } from './screens.mjs';
 import { COMMANDS, files, produce, runsOf, there as built } from './produce.mjs';
 
 const CHROMIUM = '/usr/bin/chromium', browsed = existsSync(CHROMIUM), there = browsed && built;
@@ -29,6 +30,7 @@ let browser;
 before(async () => { if (there) browser = await chromium.launch({ executablePath: CHROMIUM, args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'] }); });
 after(async () => {
   await browser?.close();
+  keep();
   if (folder) rmSync(folder, { recursive: true });
 });
 
@@ -95,6 +97,8 @@ describe('the pages', { skip: !there, concurrency: 2 }, () => {
         let opened;
         before(async () => { opened = await open(path, screen); });
         after(() => opened.close());
+
+        test('looks as it did', async () => clean(file, unlike(`${file}, ${words}`, await grid(opened.page))));
 
         test('says what came of it, in a number, right after the heading', async () => clean(file, await ask(opened.page, 'unsaid')));
 
@@ -260,6 +264,13 @@ describe('the checks', { skip: !there, concurrency: false }, () => {
   ]) {
     test(`find ${words}`, async () => one(await broken(page, change, {}, opened => ask(opened.page, what, ...(what === 'small' ? [SMALLEST.screen] : []))), expected));
   }
+
+  test('find a page that looks otherwise', { skip: writing }, async () => {
+    const see = change => broken(page, change, {}, async opened => unlike(`${page}, wide, light`, await grid(opened.page)));
+    one(await see(style('.card svg { visibility: hidden }')), /looks otherwise/);
+    one(await see(style('body { background: #000 }')), /looks otherwise/);
+    assert.deepEqual(await see(style('p.verdict { letter-spacing: .1px }')), []);
+  });
 
   test('find a request', async () => one(await broken(page, text => text.replace('</main>', '<img alt="" src="http://127.0.0.1:9/there.png"></main>'), {}, ({ wrong }) => wrong), /a request of http:\/\/127\.0\.0\.1:9\/there\.png/));
 

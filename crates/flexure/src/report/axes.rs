@@ -86,9 +86,12 @@ impl Axes<'_> {
         }
     }
 
-    /// Draws a curve, cut at the frame.
+    /// Draws a curve, cut at the frame; where it swings too fast for a line, as a band with its middle.
     pub(super) fn curve(&self, scene: &mut Scene, curve: &Curve, buckets: usize) {
-        let pieces = curve.pieces(self, buckets);
+        let (pieces, bands) = curve.drawn(self, buckets);
+        for corners in bands {
+            scene.shapes.push(Shape::Band { corners, fill: curve.stroke.color });
+        }
         if !pieces.is_empty() {
             scene.shapes.push(Shape::Curve { pieces, stroke: curve.stroke });
         }

@@ -39,10 +39,6 @@ fn run_stroke() -> Stroke {
     Stroke::solid(hue(0), 2.2)
 }
 
-fn tube_stroke() -> Stroke {
-    Stroke { color: hue(1), width: 2.2, dash: &[2.0, 3.0] }
-}
-
 const DECAY: Stroke = Stroke { color: INK, width: 1.4, dash: &[8.0, 4.0, 2.0, 4.0] };
 
 /// Runs `scenario` as its file says, and draws what `summary` tells of it around that run.
@@ -78,23 +74,40 @@ pub fn certificate_figure(scenario: &Scenario, summary: &ProofSummary) -> Result
 struct Told<'a> {
     /// The region: largest |q̃_i|, links then motors.
     region: Option<&'a [f64]>,
-    /// The level of W that no run leaves, in J, and |q̃_i| there.
-    level: Option<(f64, &'a [f64])>,
-    /// The level of W that runs settle in, in J, and |q̃_i| there.
-    tube: Option<(f64, &'a [f64])>,
+    /// Levels of W.
+    levels: Vec<Level<'a>>,
     /// Bound of W at the start, in J, if that is inside.
     start: Option<f64>,
     /// Rate at which √W decays \[1/s\].
     rate: Option<f64>,
 }
 
+/// A level of W.
+struct Level<'a> {
+    what: &'static str,
+    /// In J.
+    level: f64,
+    /// |q̃_i| there, links then motors.
+    error: &'a [f64],
+    stroke: Stroke,
+}
+
 impl<'a> Told<'a> {
     fn new(summary: &'a ProofSummary) -> Self {
         let region = summary.region.as_ref();
+        let set = |what, stroke| move |(level, error)| Level { what, level, error, stroke };
+        let dotted = |index| Stroke { color: hue(index), width: 2.2, dash: &[2.0, 3.0] };
+        let invariant = region.and_then(|region| region.level.zip(region.error_at_level.as_deref()));
+        let tube = summary.tube.as_ref().map(|tube| (tube.level, tube.error.as_slice()));
+        let within = summary.within.as_ref().and_then(|within| within.settles.zip(within.error.as_deref()));
+        let levels = [
+            invariant.map(set("invariant", LEVEL)),
+            tube.map(set("tube of the disturbance", dotted(1))),
+            within.map(set("where robots within the tolerances settle", dotted(3))),
+        ];
         Self {
             region: region.and_then(|region| region.error.as_deref()),
-            level: region.and_then(|region| region.level.zip(region.error_at_level.as_deref())),
-            tube: summary.tube.as_ref().map(|tube| (tube.level, tube.error.as_slice())),
+            levels: levels.into_iter().flatten().filter(|set| set.level > 0.0).collect(),
             start: summary
                 .start
                 .filter(|start| start.inside && start.level > ROUNDING)
@@ -104,18 +117,18 @@ impl<'a> Told<'a> {
     }
 
     fn legend(&self) -> Vec<(String, Stroke)> {
-        let lines = [
-            Some(("the run".to_owned(), run_stroke())),
-            self.start.zip(self.rate).map(|(_, rate)| {
-                (format!("W(0) e^(−2 · {} t), proved in continuous time", significant(rate, 3)), DECAY)
-            }),
-            self.region.map(|errors| (region_in_words(errors), REGION)),
-            self.level.map(|(level, _)| (format!("W = {} J, invariant", engineering(level)), LEVEL)),
-            self.tube.map(|(level, _)| {
-                (format!("W = {} J, tube of the disturbance", engineering(level)), tube_stroke())
-            }),
-        ];
-        lines.into_iter().flatten().collect()
+        let decay = self.start.zip(self.rate).map(|(_, rate)| {
+            (format!("W(0) e^(−2 · {} t), proved in continuous time", significant(rate, 3)), DECAY)
+        });
+        let region = self.region.map(|errors| (region_in_words(errors), REGION));
+        let levels = self.levels.iter().map(|Level { what, level, stroke, .. }| {
+            (format!("W = {} J, {what}", engineering(*level)), *stroke)
+        });
+        std::iter::once(("the run".to_owned(), run_stroke()))
+            .chain(decay)
+            .chain(region)
+            .chain(levels)
+            .collect()
     }
 }
 
@@ -141,13 +154,7 @@ fn draw_storage(scene: &mut Scene, top: f64, told: &Told, run: &Curve, decay: Op
     let count = buckets(3);
     let time = span(&run.t);
     let run = run.exponents(count);
-    let levels: Vec<(f64, Stroke)> =
-        [told.level.map(|(level, _)| (level, LEVEL)), told.tube.map(|(level, _)| (level, tube_stroke()))]
-            .into_iter()
-            .flatten()
-            .filter(|(level, _)| *level > 0.0)
-            .map(|(level, stroke)| (level.log10(), stroke))
-            .collect();
+    let levels: Vec<(f64, Stroke)> = told.levels.iter().map(|set| (set.level.log10(), set.stroke)).collect();
     let of_run = decades(std::slice::from_ref(&run));
     let range = levels.iter().fold(of_run, |range, (level, _)| Range {
         low: range.low.min(level - 0.5),
@@ -170,8 +177,8 @@ struct Plane {
     run: Curve,
     /// Largest error of the region either way.
     region: Option<Point>,
-    level: Option<Point>,
-    tube: Option<Point>,
+    /// The same of levels.
+    levels: Vec<(Point, Stroke)>,
 }
 
 impl Plane {
@@ -181,8 +188,7 @@ impl Plane {
         Self {
             run: Curve { t: e_l, values: e_m, stroke: run_stroke() },
             region: told.region.and_then(of),
-            level: told.level.and_then(|(_, errors)| of(errors)),
-            tube: told.tube.and_then(|(_, errors)| of(errors)),
+            levels: told.levels.iter().filter_map(|set| Some((of(set.error)?, set.stroke))).collect(),
         }
     }
 
@@ -204,10 +210,9 @@ impl Plane {
         };
         axes.draw(scene);
         let region = self.region.map(|[a, b]| rectangle(a, b));
-        let level = self.level.map(|[a, b]| ellipse(a, b, LEVEL));
-        let tube = self.tube.map(|[a, b]| ellipse(a, b, tube_stroke()));
-        for curve in [region, level, tube].iter().flatten().chain([&self.run]) {
-            axes.curve(scene, curve, curve.t.len());
+        let levels = self.levels.iter().map(|([a, b], stroke)| ellipse(*a, *b, *stroke));
+        for curve in region.into_iter().chain(levels).chain([self.run.clone()]) {
+            axes.curve(scene, &curve, curve.t.len());
         }
         if let (Some(&e_l), Some(&e_m)) = (self.run.t.first(), self.run.values.first()) {
             let rim = Stroke::solid(hue(0), 2.0);
@@ -218,7 +223,7 @@ impl Plane {
     /// Symmetric, with everything in it, but for a run that goes far beyond what is proved, and a region far beyond its level set.
     fn range(&self, side: usize) -> Range {
         let run = if side == 0 { &self.run.t } else { &self.run.values };
-        let inner = [self.level, self.tube].iter().flatten().map(|point| point[side]).fold(0.0, f64::max);
+        let inner = self.levels.iter().map(|(point, _)| point[side]).fold(0.0, f64::max);
         let region =
             self.region.map(|point| point[side]).filter(|region| inner == 0.0 || *region <= FAR * inner);
         let proved = region.unwrap_or(0.0).max(inner);

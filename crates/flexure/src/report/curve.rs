@@ -1,7 +1,8 @@
 //! From samples to points of a figure: decimated, cut at the frame, to tenths of a pixel.
 
 use super::axes::Axes;
-use super::decimate::{decimate, envelope};
+use super::chatter::{Shown, shown};
+use super::decimate::envelope;
 use super::range::Range;
 use super::scene::Point;
 use super::style::Stroke;
@@ -42,28 +43,49 @@ impl Curve {
         self
     }
 
-    /// The lines to draw in a frame [px].
-    pub(super) fn pieces(&self, axes: &Axes, buckets: usize) -> Vec<Vec<Point>> {
+    /// What to draw in a frame [px]: lines, and shapes of bands.
+    pub(super) fn drawn(&self, axes: &Axes, buckets: usize) -> (Vec<Vec<Point>>, Vec<Vec<Point>>) {
+        let Shown { line, bands } = shown(&self.t, &self.values, buckets);
         let [left, top, width, height] = axes.frame;
-        // A diverging run reaches 1e300: far outside is far enough, and finite.
-        let far = 1e5 * height;
-        let points: Vec<Point> = decimate(&self.t, &self.values, buckets)
-            .into_iter()
-            .map(|(t, value)| {
-                let [x, y] = axes.place(t, value);
-                [(x - left).clamp(-far, far), (y - top).clamp(-far, far)]
-            })
-            .collect();
-        let mut pen = Pen::default();
-        for pair in points.windows(2) {
-            let inside = cut([pair[0], pair[1]], height).map(swap).and_then(|s| cut(s, width)).map(swap);
-            if let Some(ends) = inside {
-                let [from, to] = ends.map(|[x, y]| [tenths(left + x), tenths(top + y)]);
-                pen.line(from, to);
-            }
-        }
-        pen.pieces
+        let inside = |t: f64, value: f64| {
+            let [x, y] = axes.place(t, value);
+            [tenths(x.clamp(left, left + width)), tenths(y.clamp(top, top + height))]
+        };
+        let shape = |band: &Vec<(f64, f64, f64)>| {
+            let above = band.iter().map(|&(t, _, high)| inside(t, high));
+            let below = band.iter().rev().map(|&(t, low, _)| inside(t, low));
+            above.chain(below).collect()
+        };
+        (pieces(&line, axes), bands.iter().map(shape).collect())
     }
+
+    /// Whether some of it is drawn as a band.
+    pub(super) fn swings(&self, buckets: usize) -> bool {
+        !shown(&self.t, &self.values, buckets).bands.is_empty()
+    }
+}
+
+/// The lines through `points` that lie in a frame [px].
+fn pieces(points: &[(f64, f64)], axes: &Axes) -> Vec<Vec<Point>> {
+    let [left, top, width, height] = axes.frame;
+    // A diverging run reaches 1e300: far outside is far enough, and finite.
+    let far = 1e5 * height;
+    let points: Vec<Point> = points
+        .iter()
+        .map(|&(t, value)| {
+            let [x, y] = axes.place(t, value);
+            [(x - left).clamp(-far, far), (y - top).clamp(-far, far)]
+        })
+        .collect();
+    let mut pen = Pen::default();
+    for pair in points.windows(2) {
+        let inside = cut([pair[0], pair[1]], height).map(swap).and_then(|s| cut(s, width)).map(swap);
+        if let Some(ends) = inside {
+            let [from, to] = ends.map(|[x, y]| [tenths(left + x), tenths(top + y)]);
+            pen.line(from, to);
+        }
+    }
+    pen.pieces
 }
 
 type Segment = [Point; 2];
@@ -121,7 +143,7 @@ mod tests {
         let axis = || Axis { range: Range { low: 0.0, high: 1.0 }, ticks: Vec::new(), label: "" };
         let axes = Axes { frame: [20.0, 30.0, 10.0, 10.0], left: 0.0, x: axis(), y: axis() };
         let t: Vec<f64> = (0..values.len()).map(|k| k as f64 / (values.len() - 1) as f64).collect();
-        Curve::new(&t, values, Stroke::reference()).pieces(&axes, 100)
+        Curve::new(&t, values, Stroke::reference()).drawn(&axes, 100).0
     }
 
     #[test]

@@ -49,7 +49,7 @@ pub fn bucket_size(samples: usize, buckets: usize) -> usize {
 }
 
 /// Indices of the smallest and the largest value.
-fn extremes(values: &[f64]) -> (usize, usize) {
+pub(super) fn extremes(values: &[f64]) -> (usize, usize) {
     let mut low = 0;
     let mut high = 0;
     for (index, &value) in values.iter().enumerate() {

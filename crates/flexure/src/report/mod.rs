@@ -7,6 +7,7 @@ mod axes;
 mod certificate_figure;
 mod certificates;
 mod certify_page;
+mod chatter;
 mod columns;
 pub mod comparison;
 mod constraints_figure;

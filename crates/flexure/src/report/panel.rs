@@ -78,12 +78,15 @@ impl Panel {
     pub(super) fn draw(&self, scene: &mut Scene, [x, y]: Point, width: f64, view: &View) {
         scene.text([x + 14.0, y + 20.0], self.title, bold(15.0, INK), Anchor::Start);
         let place = [x, y + HEADING, width, AXES];
+        let swings =
+            self.scale == Scale::Linear && self.curves.iter().any(|curve| curve.swings(view.buckets));
+        let bands = swings.then(|| "bands from the least to the largest value".to_owned());
         let note = match self.scale {
             Scale::Linear => self.linear(scene, place, view),
             Scale::Decades => Some(self.decades(scene, place, view)),
         };
         let end = view.diverged.map(|t| format!("not finite after {}", duration(t)));
-        let note = [end, note].into_iter().flatten().collect::<Vec<_>>().join("; ");
+        let note = [end, note, bands].into_iter().flatten().collect::<Vec<_>>().join("; ");
         if !note.is_empty() {
             scene.text([x + 14.0, y + 39.0], &note, letters(12.0, MUTED), Anchor::Start);
         }

@@ -8,7 +8,7 @@ use ttf_parser::OutlineBuilder;
 
 use super::png;
 use super::scene::{Point, Scene, Shape};
-use super::style::{self, Stroke};
+use super::style::{self, OPACITY, Stroke};
 use super::text;
 
 /// Width of every picture \[px\].
@@ -66,6 +66,11 @@ impl Canvas {
                 self.fill(path.as_ref(), *fill);
                 self.stroke(path, rim);
             }
+            Shape::Band { corners, fill } => {
+                let mut pen = pen(&[corners]);
+                pen.close();
+                self.cover(pen.finish().as_ref(), *fill, OPACITY);
+            }
             Shape::Circle { center: [x, y], radius, fill, rim } => {
                 let path = PathBuilder::from_circle(*x as f32, *y as f32, *radius as f32);
                 self.fill(path.as_ref(), *fill);
@@ -80,8 +85,14 @@ impl Canvas {
     }
 
     fn fill(&mut self, path: Option<&Path>, color: style::Color) {
+        self.cover(path, color, 1.0);
+    }
+
+    fn cover(&mut self, path: Option<&Path>, color: style::Color, opacity: f32) {
         if let Some(path) = path {
-            self.pixels.fill_path(path, &paint(color), FillRule::Winding, self.page, None);
+            let mut paint = paint(color);
+            paint.shader.apply_opacity(opacity);
+            self.pixels.fill_path(path, &paint, FillRule::Winding, self.page, None);
         }
     }
 

@@ -35,6 +35,11 @@ pub(super) enum Shape {
         fill: Color,
         rim: Stroke,
     },
+    /// A shape with straight sides through which one sees what is behind it.
+    Band {
+        corners: Vec<Point>,
+        fill: Color,
+    },
     /// A filled circle.
     Circle {
         center: Point,

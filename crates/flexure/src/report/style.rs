@@ -57,6 +57,8 @@ pub(super) const SHADES: [Color; 6] = [
 pub(super) const PAPER_INK: [Color; 2] = [Color::hex(0xfefefe), Color::hex(0x10212b)];
 /// Where a loop holds.
 pub(super) const HOLDS: Color = Color::hex(0x3f9b6b);
+/// How much bands hide of what is behind them.
+pub(super) const OPACITY: f32 = 0.3;
 /// A limit.
 pub(super) const LIMIT: Stroke =
     Stroke { color: Color::hex(0xb3261e), width: 1.2, dash: &[7.0, 3.0, 1.5, 3.0] };

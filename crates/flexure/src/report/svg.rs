@@ -3,7 +3,7 @@
 use std::fmt::{self, Display, Formatter};
 
 use super::scene::{Anchor, Point, Scene, Shape, Text};
-use super::style::{FONT, Stroke, WHITE, in_the_dark};
+use super::style::{FONT, OPACITY, Stroke, WHITE, in_the_dark};
 
 /// The drawing; text stays text.
 pub(super) fn svg(scene: &Scene) -> String {
@@ -44,6 +44,11 @@ impl Display for Shape {
                 let corners: Vec<String> =
                     corners.iter().map(|&[x, y]| format!("{} {}", Px(x), Px(y))).collect();
                 write!(f, "<path fill=\"{fill}\"{} d=\"M{}Z\"/>", lines(rim, 1.0), corners.join("L"))
+            }
+            Self::Band { corners, fill } => {
+                write!(f, "<path transform=\"scale(.1)\" fill=\"{fill}\" fill-opacity=\"{OPACITY}\" d=\"")?;
+                steps(f, corners)?;
+                f.write_str("Z\"/>")
             }
             Self::Circle { center: [x, y], radius, fill, rim } => {
                 let [x, y, radius] = [x, y, radius].map(|&x| Px(x));
