@@ -3,7 +3,7 @@
 
 import { execFile } from 'node:child_process';
 import { existsSync, readdirSync } from 'node:fs';
-import { basename, join, relative, sep } from 'node:path';
+import { basename, dirname, join, relative, sep } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 
 /** The program: what FLEXURE names, else what `cargo build --release` leaves. */
@@ -19,17 +19,17 @@ export const COMMANDS = [
   { folder: 'diverging', words: 'run two-link-tanh --set control_period=0.01 --view', codes: [1], pages: ['two-link-tanh.view.html'] },
   { folder: 'margins', words: 'margins pendulum-tanh --page OUT', pages: ['pendulum-tanh.margins.html'] },
   { folder: 'proved', words: 'certify two-link-tanh --page OUT --out OUT/two-link-tanh.certificate.json', pages: ['two-link-tanh.certify.html'] },
-  { folder: 'ideal', words: 'certify panda-tanh-smooth --disturbance 0.05 --page OUT --out OUT/panda.certificate.json', pages: ['panda-tanh-smooth.certify.html'] },
+  { folder: 'undecided', words: 'certify panda-tanh-smooth --disturbance 0.05 --page OUT --out OUT/panda.certificate.json', codes: [3], pages: ['panda-tanh-smooth.certify.html'] },
   { folder: 'refuted', words: 'certify two-link-tanh --rate 99 --page OUT --out OUT/none.json', codes: [1], pages: ['two-link-tanh.certify.html'] },
   { folder: 'tuned', words: 'tune two-link-hardware --budget 10 --page OUT --out OUT/tuned.toml', pages: ['two-link-hardware.tune.html'] },
   { folder: 'swept', words: 'sweep test/soft-springs.toml --page OUT --out OUT/rows', pages: ['soft-springs.sweep.html'] },
-  { folder: 'identified', words: 'identify quanser-2dof --log OUT/../reproduce/two-link-tanh-smooth.csv --page OUT', after: 'reproduce', codes: [0, 1], pages: ['quanser-2dof.identify.html'] },
+  { folder: 'identified', words: 'identify quanser-2dof --log ALL/reproduce/two-link-tanh-smooth.csv --page OUT', after: 'reproduce', codes: [0, 1], pages: ['quanser-2dof.identify.html'] },
   { folder: 'compare', words: 'compare task-ideal-tracking task-soft task-payload --budget 1 --seeds 1', pages: ['compare.html'] },
 ];
 
-/** The words of a command with its folder for OUT, which goes behind `--out` where it is not said. */
+/** The words of a command with its folder for OUT, which goes behind `--out` where it is not said, and the one that all folders are in for ALL. */
 function said(words, out) {
-  const whole = words.split(' ').map(word => word.replace('OUT', out));
+  const whole = words.split(' ').map(word => word.replace('OUT', out).replace('ALL', dirname(out)));
   return words.includes('OUT') ? whole : [...whole, '--out', out];
 }
 

@@ -75,15 +75,15 @@ struct Told<'a> {
     /// The region: largest |q̃_i|, links then motors.
     region: Option<&'a [f64]>,
     /// Levels of W.
-    levels: Vec<Level<'a>>,
+    levels: Vec<Set<'a>>,
     /// Bound of W at the start, in J, if that is inside.
     start: Option<f64>,
     /// Rate at which √W decays \[1/s\].
     rate: Option<f64>,
 }
 
-/// A level of W.
-struct Level<'a> {
+/// The states up to a level of W.
+struct Set<'a> {
     what: &'static str,
     /// In J.
     level: f64,
@@ -95,7 +95,7 @@ struct Level<'a> {
 impl<'a> Told<'a> {
     fn new(summary: &'a ProofSummary) -> Self {
         let region = summary.region.as_ref();
-        let set = |what, stroke| move |(level, error)| Level { what, level, error, stroke };
+        let set = |what, stroke| move |(level, error)| Set { what, level, error, stroke };
         let dotted = |index| Stroke { color: hue(index), width: 2.2, dash: &[2.0, 3.0] };
         let invariant = region.and_then(|region| region.level.zip(region.error_at_level.as_deref()));
         let tube = summary.tube.as_ref().map(|tube| (tube.level, tube.error.as_slice()));
@@ -121,7 +121,7 @@ impl<'a> Told<'a> {
             (format!("W(0) e^(−2 · {} t), proved in continuous time", significant(rate, 3)), DECAY)
         });
         let region = self.region.map(|errors| (region_in_words(errors), REGION));
-        let levels = self.levels.iter().map(|Level { what, level, stroke, .. }| {
+        let levels = self.levels.iter().map(|Set { what, level, stroke, .. }| {
             (format!("W = {} J, {what}", engineering(*level)), *stroke)
         });
         std::iter::once(("the run".to_owned(), run_stroke()))

@@ -2,6 +2,7 @@
 
 use maud::{Markup, html as markup};
 
+use super::table::proved_rate;
 use crate::files::number::{NONE, engineering, short, significant};
 use crate::prove::engine::certificate::StructureName;
 use crate::prove::summary::ProofSummary;
@@ -57,7 +58,11 @@ pub(super) fn section(certificates: &[CertificateReport]) -> Markup {
 
 fn row(certificate: &CertificateReport) -> Markup {
     let CertificateReport { summary, phi, .. } = certificate;
-    let rate = |rate: Option<f64>| rate.map_or(NONE.to_owned(), |rate| significant(rate, 6));
+    let rate = |rate: Option<f64>| match rate {
+        Some(rate) if rate >= 1e-3 => significant(rate, 6),
+        rate => proved_rate(rate),
+    };
+    let rough = |rate: f64| if rate.abs() < 1e-3 { proved_rate(Some(rate.abs())) } else { engineering(rate) };
     let blocks = summary.blocks;
     let region = summary.region.as_ref().and_then(|region| region.error.as_ref());
     let largest = region.map(|errors| errors.iter().copied().fold(0.0, f64::max));
@@ -68,9 +73,9 @@ fn row(certificate: &CertificateReport) -> Markup {
             td { (largest.map_or("any".to_owned(), |error| short(error, 3))) }
             td { (rate(summary.contraction_rate)) }
             td { (rate(summary.convergence_rate)) }
-            td { (engineering(summary.paper_rate)) }
+            td { (rough(summary.paper_rate)) }
             @for block in [blocks.map(|b| b.phi_l), blocks.map(|b| b.phi_m), blocks.map(|b| b.sigma_l), blocks.map(|b| b.sigma_m)] {
-                td { (block.map_or(NONE.to_owned(), engineering)) }
+                td { (block.map_or(NONE.to_owned(), rough)) }
             }
             td { (structures(summary)) }
             td { (rate(direct)) }

@@ -7,18 +7,25 @@ use super::html::symbols;
 use super::kit::{Page, Section, Verdict, figure, made};
 use super::proof_table::statements;
 use super::scene::Scene;
+use super::table::proved_rate;
 use crate::files::Problems;
-use crate::files::number::{short, significant};
+use crate::files::number::short;
 use crate::prove::standing::Standing;
 use crate::prove::summary::ProofSummary;
 use crate::sampled::Sampled;
 use crate::scenario::Scenario;
 
-/// What a proof comes to in a sentence: good if it is about the loop in the file, bad if it is wrong, if that loop is unstable, or if a `strict`
+/// What a proof comes to in a sentence: good if it is about the loop in the file and its start, bad if it is wrong, if that loop is unstable, or if a `strict`
 /// question gets a proof of another loop; else no verdict.
 pub fn proof_verdict(standing: &Standing<'_>, summary: &ProofSummary, strict: bool) -> Verdict {
     let proved = rates(summary);
     match standing {
+        Standing::Proved if summary.start.is_some_and(|start| !start.inside) => Verdict {
+            good: None,
+            words: format!(
+                "Proved in continuous time, but the start of this file is not known to be inside: {proved}"
+            ),
+        },
         Standing::Proved => Verdict {
             good: Some(true),
             words: match &summary.sampled {
@@ -57,16 +64,19 @@ fn held(sampled: &Sampled) -> String {
 
 /// The rates that are proved, and where.
 fn rates(summary: &ProofSummary) -> String {
-    let number = |rate: Option<f64>| rate.map_or_else(String::new, |rate| significant(rate, 4));
-    let errors = summary.region.as_ref().and_then(|region| region.error.as_ref());
-    let place = errors.map_or_else(
-        || "of any size".to_owned(),
-        |errors| format!("of up to {} rad", short(errors.iter().copied().fold(0.0, f64::max), 3)),
+    let largest = |errors: &Vec<f64>| short(errors.iter().copied().fold(0.0, f64::max), 3);
+    let region = summary.region.as_ref();
+    let errors = region.and_then(|region| region.level).map_or_else(
+        || "errors of any size".to_owned(),
+        |level| format!("errors that start with W ≤ {} J", short(level, 3)),
     );
+    let place = region.and_then(|region| region.error.as_ref()).map_or_else(String::new, |errors| {
+        format!(" where position errors are up to {} rad", largest(errors))
+    });
     format!(
-        "position errors {place} shrink at {} 1/s or faster, and any two solutions of the virtual system come together at {} 1/s or faster.",
-        number(summary.convergence_rate),
-        number(summary.contraction_rate)
+        "{errors} shrink at {} 1/s or faster, and any two solutions of the virtual system come together at {} 1/s or faster{place}.",
+        proved_rate(summary.convergence_rate),
+        proved_rate(summary.contraction_rate)
     )
 }
 

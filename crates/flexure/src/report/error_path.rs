@@ -97,13 +97,14 @@ mod tests {
     use super::ErrorPath;
     use crate::prove::along::start_level;
     use crate::prove::question::{Question, prove};
-    use crate::scenario::load_scenario;
+    use crate::scenario::{Hold, load_scenario};
 
     /// The bound over intervals holds W, and the law in continuous time shrinks it as is proved, at every instant of the run: that is the
     /// theorem, and the sum above has nothing of its proof.
     #[test]
     fn storage_shrinks_as_is_proved() {
-        let scenario = load_scenario("two-link-tanh").unwrap();
+        let mut scenario = load_scenario("two-link-tanh").unwrap();
+        scenario.hold = Hold::Continuous;
         let path = ErrorPath::of(&scenario).unwrap();
         let (t, storage) = path.storage();
         let bound = start_level(&scenario).unwrap();
