@@ -3,16 +3,6 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::certificate_figure::certificate_figure;
-use super::certify_page::certify_page;
-use super::constraints_figure::constraints_figure;
-use super::identified_figure::identified_figure;
-use super::identify_page::identify_page;
-use super::margins_figure::margins_figure;
-use super::margins_page::margins_page;
-use super::spread_figure::spread_figure;
-use super::sweep_page::sweep_page;
-use super::tune_page::tune_page;
 use super::{Scene, Verdict, Viewed, assumptions, cost_figure, leaderboard_page, score_map, view};
 use crate::compare::{Leaderboard, Task};
 use crate::design::Design;
@@ -21,6 +11,16 @@ use crate::identify::Identified;
 use crate::margins::Margins;
 use crate::prove::engine::Certificate;
 use crate::prove::summary::ProofSummary;
+use crate::report::figures::certificate::certificate_figure;
+use crate::report::figures::constraints::constraints_figure;
+use crate::report::figures::identified::identified_figure;
+use crate::report::figures::margins::margins_figure;
+use crate::report::figures::spread::spread_figure;
+use crate::report::pages::certify::certify_page;
+use crate::report::pages::identify::identify_page;
+use crate::report::pages::margins::margins_page;
+use crate::report::pages::sweep::sweep_page;
+use crate::report::pages::tune::tune_page;
 use crate::scenario::Scenario;
 use crate::sweep::{Statistics, Sweep};
 

@@ -4,17 +4,17 @@ use std::path::{Path, PathBuf};
 
 use comfy_table::{Cell, Row};
 
-use super::curve::Curve;
-use super::figure::{FigureOptions, buckets, four, over};
 use super::outputs::write_figure;
-use super::panel::{Panel, Scale, View, span};
-use super::range::Range;
-use super::scene::Scene;
-use super::style::{INK, Stroke};
-use super::table::{headed, right};
 use crate::files::number::{NONE, duration, engineering};
 use crate::files::{WriteError, create_folder};
 use crate::replay::{JointResiduals, Replay, Residual};
+use crate::report::draw::curve::Curve;
+use crate::report::draw::panel::{Panel, Scale, View, span};
+use crate::report::draw::range::Range;
+use crate::report::draw::scene::Scene;
+use crate::report::draw::style::{INK, Stroke};
+use crate::report::figures::run::{FigureOptions, buckets, four, over};
+use crate::report::tables::summary::{headed, right};
 use crate::simulate::{Trace, write_trace};
 use crate::units;
 

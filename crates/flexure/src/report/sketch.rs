@@ -2,10 +2,10 @@
 
 use std::ops::ControlFlow;
 
-use super::curve::Curve;
-use super::decimate::Thinned;
-use super::range::Range;
-use super::style::Stroke;
+use crate::report::draw::curve::Curve;
+use crate::report::draw::decimate::Thinned;
+use crate::report::draw::range::Range;
+use crate::report::draw::style::Stroke;
 use crate::simulate::{Signal, Sink, Trace, of_joints};
 
 /// The signals that are drawn: one number per joint each.

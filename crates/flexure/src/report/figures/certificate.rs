@@ -1,0 +1,246 @@
+//! A proof as a picture: the storage W along the run of the file, and for each joint the plane of its errors with the region, the level set, the
+//! tube and the run in them.
+
+use super::error_path::ErrorPath;
+use crate::files::Problems;
+use crate::files::number::{engineering, power_of_ten, short, significant};
+use crate::prove::summary::ProofSummary;
+use crate::report::draw::axes::{Axes, Axis, BOTTOM};
+use crate::report::draw::curve::Curve;
+use crate::report::draw::panel::{LEFT, TIME, buckets, over_time, span};
+use crate::report::draw::range::{Range, decades};
+use crate::report::draw::scene::{Anchor, Point, Scene, Shape};
+use crate::report::draw::sheet::{MARGIN, line_legend, page};
+use crate::report::draw::style::{HOLDS, INK, MUTED, Stroke, WHITE, bold, hue};
+use crate::report::draw::ticks;
+use crate::robot::JointKind;
+use crate::scenario::Scenario;
+use crate::units;
+
+const WIDTH: f64 = 1200.0;
+/// Height of W over time [px].
+const STORAGE: f64 = 380.0;
+/// Planes in a row, and the height of one [px].
+const COLUMNS: usize = 4;
+const PLANE: f64 = 330.0;
+/// So many times what is proved is shown of a run that leaves it.
+const OUTSIDE: f64 = 3.0;
+/// Up to so much W is the rounding of a start on the reference \[J\]: nothing decays from there.
+const ROUNDING: f64 = 1e-15;
+/// The region is shown where it is no more than so many times the level set.
+const FAR: f64 = 2.5;
+/// Decades of W below its largest that are shown.
+const DECADES: f64 = 25.0;
+
+const REGION: Stroke = Stroke { color: MUTED, width: 1.6, dash: &[6.0, 4.0] };
+const LEVEL: Stroke = Stroke::solid(HOLDS, 2.4);
+
+fn run_stroke() -> Stroke {
+    Stroke::solid(hue(0), 2.2)
+}
+
+const DECAY: Stroke = Stroke { color: INK, width: 1.4, dash: &[8.0, 4.0, 2.0, 4.0] };
+
+/// Runs `scenario` as its file says, and draws what `summary` tells of it around that run.
+///
+/// # Errors
+/// If W is not defined or jumps, as with a reference whose third derivative does, and if the loop cannot be run.
+pub fn certificate_figure(scenario: &Scenario, summary: &ProofSummary) -> Result<Scene, Problems> {
+    let path = ErrorPath::of(scenario)?;
+    let (t, values) = path.storage();
+    let run = Curve { t, values, stroke: run_stroke() };
+    let told = Told::new(summary);
+    let decay = told.start.zip(told.rate).map(|(level, rate)| proved_decay(level, rate, &run));
+
+    let subtitle = "the run is that of the file, with all that it has; what is proved is proved of the law in continuous time, with exact measurements \
+                    and without limits of torques";
+    let (mut scene, top) =
+        page(WIDTH, &format!("{}: errors, and what is proved of them", scenario.name), subtitle);
+    let mut top = top + line_legend(&mut scene, top, &told.legend()) + 8.0;
+    draw_storage(&mut scene, top, &told, &run, decay.as_ref());
+    top += STORAGE + 14.0;
+    let joints = scenario.robot.joint_count();
+    let columns = joints.clamp(1, COLUMNS);
+    let width = (WIDTH - MARGIN) / columns as f64;
+    for (i, joint) in scenario.robot.joints.iter().enumerate() {
+        let place = [MARGIN / 2.0 + width * (i % columns) as f64, top + PLANE * (i / columns) as f64];
+        Plane::new(&path, &told, i, joints).draw(&mut scene, place, width, &joint.name, joint.kind);
+    }
+    scene.height = top + PLANE * joints.div_ceil(columns) as f64 + 6.0;
+    Ok(scene)
+}
+
+/// What a proof says of the errors.
+struct Told<'a> {
+    /// The region: largest |q̃_i|, links then motors.
+    region: Option<&'a [f64]>,
+    /// Levels of W.
+    levels: Vec<Set<'a>>,
+    /// Bound of W at the start, in J, if that is inside.
+    start: Option<f64>,
+    /// Rate at which √W decays \[1/s\].
+    rate: Option<f64>,
+}
+
+/// The states up to a level of W.
+struct Set<'a> {
+    what: &'static str,
+    /// In J.
+    level: f64,
+    /// |q̃_i| there, links then motors.
+    error: &'a [f64],
+    stroke: Stroke,
+}
+
+impl<'a> Told<'a> {
+    fn new(summary: &'a ProofSummary) -> Self {
+        let region = summary.region.as_ref();
+        let set = |what, stroke| move |(level, error)| Set { what, level, error, stroke };
+        let dotted = |index| Stroke { color: hue(index), width: 2.2, dash: &[2.0, 3.0] };
+        let invariant = region.and_then(|region| region.level.zip(region.error_at_level.as_deref()));
+        let tube = summary.tube.as_ref().map(|tube| (tube.level, tube.error.as_slice()));
+        let within = summary.within.as_ref().and_then(|within| within.settles.zip(within.error.as_deref()));
+        let levels = [
+            invariant.map(set("invariant", LEVEL)),
+            tube.map(set("tube of the disturbance", dotted(1))),
+            within.map(set("where robots within the tolerances settle", dotted(3))),
+        ];
+        Self {
+            region: region.and_then(|region| region.error.as_deref()),
+            levels: levels.into_iter().flatten().filter(|set| set.level > 0.0).collect(),
+            start: summary
+                .start
+                .filter(|start| start.inside && start.level > ROUNDING)
+                .map(|start| start.level),
+            rate: summary.convergence_rate.filter(|rate| *rate > 0.0),
+        }
+    }
+
+    fn legend(&self) -> Vec<(String, Stroke)> {
+        let decay = self.start.zip(self.rate).map(|(_, rate)| {
+            (format!("W(0) e^(−2 · {} t), proved in continuous time", significant(rate, 3)), DECAY)
+        });
+        let region = self.region.map(|errors| (region_in_words(errors), REGION));
+        let levels = self.levels.iter().map(|Set { what, level, stroke, .. }| {
+            (format!("W = {} J, {what}", engineering(*level)), *stroke)
+        });
+        std::iter::once(("the run".to_owned(), run_stroke()))
+            .chain(decay)
+            .chain(region)
+            .chain(levels)
+            .collect()
+    }
+}
+
+/// How far the region goes, if that is the same in all directions: it may lie outside of a frame.
+fn region_in_words(errors: &[f64]) -> String {
+    match errors {
+        [first, rest @ ..] if rest.iter().all(|error| error.total_cmp(first).is_eq()) => {
+            format!("region of the proof, errors up to {}", short(*first, 3))
+        }
+        _ => "region of the proof".to_owned(),
+    }
+}
+
+/// What W cannot exceed from `level` on, over the time of the run.
+fn proved_decay(level: f64, rate: f64, run: &Curve) -> Curve {
+    let Range { low, high } = span(&run.t);
+    let t: Vec<f64> = (0..=400).map(|k| low + (high - low) * f64::from(k) / 400.0).collect();
+    let values = t.iter().map(|t| level * (-2.0 * rate * (t - low)).exp()).collect();
+    Curve { t, values, stroke: DECAY }
+}
+
+fn draw_storage(scene: &mut Scene, top: f64, told: &Told, run: &Curve, decay: Option<&Curve>) {
+    let count = buckets(3);
+    let time = span(&run.t);
+    let run = run.exponents(count);
+    let levels: Vec<(f64, Stroke)> = told.levels.iter().map(|set| (set.level.log10(), set.stroke)).collect();
+    let of_run = decades(std::slice::from_ref(&run));
+    let range = levels.iter().fold(of_run, |range, (level, _)| Range {
+        low: range.low.min(level - 0.5),
+        high: range.high.max(level + 0.5),
+    });
+    let range = Range { low: range.low.max(range.high - DECADES), ..range };
+    let y = Axis { range, ticks: ticks::decades(range), label: "storage W [J]" };
+    let axes = over_time([MARGIN / 2.0, top, WIDTH - MARGIN, STORAGE], LEFT, time, TIME, y);
+    axes.draw(scene);
+    for (level, stroke) in levels.into_iter().filter(|(level, _)| axes.y.range.contains(*level)) {
+        axes.level(scene, level, stroke);
+    }
+    for curve in decay.map(|decay| decay.exponents(count)).iter().chain([&run]) {
+        axes.curve(scene, curve, count);
+    }
+}
+
+/// The errors of a joint: of the link to the right, of the motor upwards.
+struct Plane {
+    run: Curve,
+    /// Largest error of the region either way.
+    region: Option<Point>,
+    /// The same of levels.
+    levels: Vec<(Point, Stroke)>,
+}
+
+impl Plane {
+    fn new(path: &ErrorPath, told: &Told, joint: usize, joints: usize) -> Self {
+        let (e_l, e_m) = path.of_joint(joint);
+        let of = |errors: &[f64]| Some([*errors.get(joint)?, *errors.get(joints + joint)?]);
+        Self {
+            run: Curve { t: e_l, values: e_m, stroke: run_stroke() },
+            region: told.region.and_then(of),
+            levels: told.levels.iter().filter_map(|set| Some((of(set.error)?, set.stroke))).collect(),
+        }
+    }
+
+    fn draw(&self, scene: &mut Scene, [left, top]: Point, width: f64, name: &str, kind: JointKind) {
+        let unit = units::ANGLE.of(kind).raised;
+        let [x, y] = [0, 1].map(|side| self.range(side));
+        let label = |of: &str, range: Range| match ticks::power(range) {
+            0 => format!("{of} [{unit}]"),
+            power => format!("{of} [{} {unit}]", power_of_ten(power)),
+        };
+        let labels = [label("link error", x), label("motor error", y)];
+        let ticks = |range: Range, most| ticks::even_by(range, most, ticks::power(range));
+        scene.text([left + LEFT, top + 16.0], name, bold(15.0, INK), Anchor::Start);
+        let axes = Axes {
+            frame: [left + LEFT, top + 26.0, width - LEFT - 14.0, PLANE - 26.0 - BOTTOM - 8.0],
+            left: LEFT,
+            x: Axis { range: x, ticks: ticks(x, 4.0), label: &labels[0] },
+            y: Axis { range: y, ticks: ticks(y, 7.0), label: &labels[1] },
+        };
+        axes.draw(scene);
+        let region = self.region.map(|[a, b]| rectangle(a, b));
+        let levels = self.levels.iter().map(|([a, b], stroke)| ellipse(*a, *b, *stroke));
+        for curve in region.into_iter().chain(levels).chain([self.run.clone()]) {
+            axes.curve(scene, &curve, curve.t.len());
+        }
+        if let (Some(&e_l), Some(&e_m)) = (self.run.t.first(), self.run.values.first()) {
+            let rim = Stroke::solid(hue(0), 2.0);
+            scene.shapes.push(Shape::Circle { center: axes.place(e_l, e_m), radius: 4.5, fill: WHITE, rim });
+        }
+    }
+
+    /// Symmetric, with everything in it, but for a run that goes far beyond what is proved, and a region far beyond its level set.
+    fn range(&self, side: usize) -> Range {
+        let run = if side == 0 { &self.run.t } else { &self.run.values };
+        let inner = self.levels.iter().map(|(point, _)| point[side]).fold(0.0, f64::max);
+        let region =
+            self.region.map(|point| point[side]).filter(|region| inner == 0.0 || *region <= FAR * inner);
+        let proved = region.unwrap_or(0.0).max(inner);
+        let farthest = if proved > 0.0 { OUTSIDE * proved } else { f64::INFINITY };
+        let run = run.iter().map(|e| e.abs()).fold(0.0, f64::max).min(farthest);
+        let most = 1.12 * run.max(proved).max(1e-15);
+        Range { low: -most, high: most }
+    }
+}
+
+fn rectangle(a: f64, b: f64) -> Curve {
+    Curve { t: vec![-a, a, a, -a, -a], values: vec![-b, -b, b, b, -b], stroke: REGION }
+}
+
+/// The shadow of a level set of W on a plane of errors: Π is diagonal, and momenta may be 0.
+fn ellipse(a: f64, b: f64, stroke: Stroke) -> Curve {
+    let angles = (0..=120).map(|k| std::f64::consts::TAU * f64::from(k) / 120.0);
+    let (t, values) = angles.map(|angle| (a * angle.cos(), b * angle.sin())).unzip();
+    Curve { t, values, stroke }
+}

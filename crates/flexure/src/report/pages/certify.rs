@@ -1,0 +1,137 @@
+//! The page of a proof.
+
+use maud::{Markup, html as markup};
+
+use super::certificates::{self, CertificateReport};
+use super::kit::{Page, Section, Verdict, figure, made};
+use super::runs::symbols;
+use crate::files::Problems;
+use crate::files::number::short;
+use crate::prove::standing::Standing;
+use crate::prove::summary::ProofSummary;
+use crate::report::draw::scene::Scene;
+use crate::report::tables::proof::statements;
+use crate::report::tables::summary::proved_rate;
+use crate::sampled::Sampled;
+use crate::scenario::Scenario;
+
+/// What a proof comes to in a sentence: good if it is about the loop in the file and its start, bad if it is wrong, if that loop is unstable, or if a `strict`
+/// question gets a proof of another loop; else no verdict.
+pub fn proof_verdict(standing: &Standing<'_>, summary: &ProofSummary, strict: bool) -> Verdict {
+    let proved = rates(summary);
+    match standing {
+        Standing::Proved if summary.start.is_some_and(|start| !start.inside) => Verdict {
+            good: None,
+            words: format!(
+                "Proved in continuous time, but the start of this file is not known to be inside: {proved}"
+            ),
+        },
+        Standing::Proved => Verdict {
+            good: Some(true),
+            words: match &summary.sampled {
+                Some(sampled) => {
+                    format!(
+                        "Proved in continuous time: {proved} Of the loop that holds its torque: {}.",
+                        held(sampled)
+                    )
+                }
+                None => format!("Proved: {proved}"),
+            },
+        },
+        Standing::Ideal(conditions) => Verdict {
+            good: strict.then_some(false),
+            words: format!(
+                "Proved of the ideal loop only: {proved} The loop in the file has, outside of the proof: {}.",
+                conditions.join(", ").replace('_', " ")
+            ),
+        },
+        Standing::Unstable(sampled) => Verdict {
+            good: Some(false),
+            words: format!(
+                "Unstable: {}. What is proved in continuous time is not true of it.",
+                sampled.line()
+            ),
+        },
+        Standing::Refuted(problem) => Verdict { good: Some(false), words: format!("Refuted: {problem}.") },
+        Standing::Undecided(problem) => Verdict { good: None, words: format!("Undecided: {problem}.") },
+    }
+}
+
+/// What the sampled loop does, where it is stable.
+fn held(sampled: &Sampled) -> String {
+    sampled.line().trim_start_matches("sampled loop: ").to_owned()
+}
+
+/// The rates that are proved, and where.
+fn rates(summary: &ProofSummary) -> String {
+    let largest = |errors: &Vec<f64>| short(errors.iter().copied().fold(0.0, f64::max), 3);
+    let region = summary.region.as_ref();
+    let errors = region.and_then(|region| region.level).map_or_else(
+        || "errors of any size".to_owned(),
+        |level| format!("errors that start with W ≤ {} J", short(level, 3)),
+    );
+    let place = region.and_then(|region| region.error.as_ref()).map_or_else(String::new, |errors| {
+        format!(" where position errors are up to {} rad", largest(errors))
+    });
+    format!(
+        "{errors} shrink at {} 1/s or faster, and any two solutions of the virtual system come together at {} 1/s or faster{place}.",
+        proved_rate(summary.convergence_rate),
+        proved_rate(summary.contraction_rate)
+    )
+}
+
+/// The page: what is proved, with the run in it, or why there is no such picture. The certificate is linked if it lies beside the page.
+pub(crate) fn certify_page(
+    scenario: &Scenario,
+    summary: &ProofSummary,
+    verdict: &Verdict,
+    picture: &Result<Scene, Problems>,
+    certificate: Option<&str>,
+) -> String {
+    let caption = markup! {
+        "Above: the storage W of the errors along the run. Below: the position errors of each joint, from the ring on; a level of W is an ellipse there, \
+         and what is outside of the ellipse is outside of the level, while a point inside of it may have momenta that are not. "
+        @if summary.convergence_rate.is_some() {
+            "The decay is proved of the law in continuous time; a loop that holds its torque for a control period, or has imperfections, is left with an \
+             error of its own."
+        }
+    };
+    let lead = match picture {
+        Ok(scene) => figure(&scene.svg(), &caption),
+        Err(problems) => markup! { p { "There is no picture of this loop: " (problems) "." } },
+    };
+    let mut sections = Vec::new();
+    if summary.contraction_rate.is_some() {
+        let report = CertificateReport {
+            summary: summary.clone(),
+            phi: scenario.controller.phi().unwrap_or_default().to_owned(),
+            file: certificate.map(str::to_owned),
+        };
+        sections.push(Section::new("rates", "Proved rates", certificates::section(&[report])));
+    }
+    sections.push(Section::new("statements", "All that is said", said(summary)));
+    let assumed = markup! { ul { @for assumed in &summary.assumptions { li { (assumed) } } } };
+    sections.push(Section::new("assumptions", "Assumptions", assumed).folded());
+    let lines = [
+        "Rounded outwards, from the decimals of the robot and scenario files. The same build writes the same page, byte for byte, on any number of \
+         threads."
+            .to_owned(),
+    ];
+    Page {
+        title: &format!("{}: proof", scenario.name),
+        verdict: Some(verdict),
+        lead,
+        sections,
+        provenance: made(&lines),
+    }
+    .html()
+}
+
+fn said(summary: &ProofSummary) -> Markup {
+    markup! {
+        @if let Some(sampled) = &summary.sampled { p.note { (sampled.line()) } }
+        div.scroll { table { tbody {
+            @for [label, words] in statements(summary).iter().filter(|[label, _]| label != "assumed") { tr { th scope="row" { (label) } td { (symbols(words)) } } }
+        } } }
+    }
+}

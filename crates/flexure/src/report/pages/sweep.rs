@@ -1,0 +1,86 @@
+//! The page of a sweep.
+
+use maud::{Markup, html as markup};
+
+use super::kit::{Page, Section, Verdict, figure, made, numbers};
+use super::runs;
+use crate::files::number::{NONE, engineering};
+use crate::report::assumptions;
+use crate::report::draw::scene::Scene;
+use crate::sweep::{Statistics, Status, Sweep, Values};
+
+/// The page: what became of the runs, how their metrics are spread, and what was changed.
+pub(crate) fn sweep_page(sweep: &Sweep, statistics: &Statistics, picture: &Scene) -> String {
+    let caption = markup! {
+        "Each metric on an axis of its own, logarithmic where its values lie far apart. Runs that were refused have no metrics, runs that diverged have \
+         those of the time until then."
+    };
+    let changed = |key: &str| sweep.parameters().iter().any(|parameter| parameter.key == key);
+    // Of a row: what the sweep changes is not assumed.
+    let scenario = sweep.scenario(0).ok();
+    let mut assumed = assumptions(scenario.iter());
+    assumed.retain(|number| !changed(&number.key));
+    let sections = vec![
+        Section::new("metrics", "Metrics in numbers", metrics(sweep, statistics)),
+        Section::new("what", "What the metrics are", explained(sweep)).folded(),
+        Section::new("parameters", "What was changed", parameters(sweep)),
+        Section::new("assumptions", "Assumptions", runs::assumptions(&assumed)).folded(),
+    ];
+    let lines = [
+        format!("The sweep is {}; identity {}.", sweep.name(), sweep.identity()),
+        "Quantiles are good to half a percent. The same rows give the same page, byte for byte, in whichever parts they were computed.".to_owned(),
+    ];
+    Page {
+        title: &format!("{}: sweep", sweep.name()),
+        verdict: Some(&verdict(sweep, statistics)),
+        lead: figure(&picture.svg(), &caption),
+        sections,
+        provenance: made(&lines),
+    }
+    .html()
+}
+
+/// Good if every run is there and follows; how many may fail is not for the program to say.
+fn verdict(sweep: &Sweep, statistics: &Statistics) -> Verdict {
+    let follow = statistics.statuses.get(Status::Follows.name()).copied().unwrap_or_default();
+    let good = (follow == sweep.rows()).then_some(true);
+    Verdict { good, words: format!("{}.", statistics.sentence(sweep)) }
+}
+
+fn metrics(sweep: &Sweep, statistics: &Statistics) -> Markup {
+    let rows = sweep.metrics().iter().filter_map(|metric| {
+        let figures = statistics.metrics.get(metric.name)?;
+        let mean = (figures.count > 0).then_some(figures.mean);
+        let quantiles = [0.05, 0.5, 0.95].map(|part| figures.quantile(part));
+        let [low, median, high] = quantiles;
+        let numbers = [figures.least, low, median, high, figures.largest, mean, figures.deviation()]
+            .map(|number| number.map_or(NONE.to_owned(), engineering));
+        Some((metric.titled(), std::iter::once(figures.count.to_string()).chain(numbers).collect::<Vec<_>>()))
+    });
+    numbers(&["metric", "runs", "least", "5 %", "median", "95 %", "largest", "mean", "deviation"], rows)
+}
+
+fn explained(sweep: &Sweep) -> Markup {
+    markup! { ul { @for metric in sweep.metrics() { li { code { (metric.name) } ": " (metric.what) } } } }
+}
+
+fn parameters(sweep: &Sweep) -> Markup {
+    let words = |values: &Values| match values {
+        Values::Between { from, to, logarithmic, .. } => {
+            let by = if *logarithmic { ", by equal factors" } else { "" };
+            format!("{} to {}{by}", engineering(*from), engineering(*to))
+        }
+        Values::Listed(values) => {
+            values.iter().map(|(value, _)| value.to_string()).collect::<Vec<_>>().join(", ")
+        }
+    };
+    markup! {
+        div.scroll { table {
+            thead { tr { th { "key" } th { "values" } } }
+            tbody { @for parameter in sweep.parameters() { tr {
+                td { code { (parameter.key) } }
+                td { @if parameter.relative { "what the file says times " } (words(&parameter.values)) }
+            } } }
+        } }
+    }
+}

@@ -1,0 +1,150 @@
+//! The page of tuned gains.
+
+use std::path::Path;
+
+use maud::{Markup, html as markup};
+
+use super::kit::{Page, Section, Verdict, figure, made, numbers};
+use super::runs;
+use crate::design::{Constraint, Design, Effect, Trade};
+use crate::files::Problem;
+use crate::files::number::{NONE, engineering, short, significant};
+use crate::report::assumptions;
+use crate::report::draw::scene::Scene;
+use crate::report::figures::margins::margins_figure;
+use crate::sampled::Sampled;
+use crate::scenario::Scenario;
+
+/// The page: whether gains were found that keep every constraint, what they leave of each, and what speaks for them.
+pub(crate) fn tune_page(
+    scenario: &Scenario,
+    design: &Design,
+    objection: Option<&Problem>,
+    picture: &Scene,
+    file: Option<&Path>,
+) -> String {
+    let caption = markup! {
+        "A bar is the share of its limit that the loop takes, with the gains that were found: the nearer to the line, the less is left. Of a rate, which \
+         shall be large, what is left is what it has more."
+    };
+    let mut sections = vec![
+        Section::new("constraints", "Constraints in numbers", constraints(&design.constraints)),
+        Section::new("gains", "Gains", gains(scenario, design)),
+        Section::new("trades", "What each gain trades", trades(&design.gains)),
+        Section::new("evidence", "What the loop does with them", evidence(scenario, design)),
+    ];
+    if let Some(margins) = &design.evidence.margins {
+        let caption = markup! { "Each change is made alone, from the scenario as it is." };
+        let body = figure(&margins_figure(margins).svg(), &caption);
+        sections.push(Section::new("margins", "What it bears", body));
+    }
+    let assumed = assumptions([scenario].into_iter());
+    sections.push(Section::new("assumptions", "Assumptions", runs::assumptions(&assumed)).folded());
+    let mut lines = vec![format!(
+        "{} loops were run in the search. The same build writes the same page, byte for byte, on any number of threads.",
+        design.runs
+    )];
+    lines.extend(file.map(|file| format!("The scenario with these gains is in {}.", file.display())));
+    Page {
+        title: &format!("{}: tuned gains", design.name),
+        verdict: Some(&verdict(design, objection)),
+        lead: figure(&picture.svg(), &caption),
+        sections,
+        provenance: made(&lines),
+    }
+    .html()
+}
+
+fn verdict(design: &Design, objection: Option<&Problem>) -> Verdict {
+    if let Some(problem) = objection {
+        return Verdict { good: Some(false), words: format!("{problem}.") };
+    }
+    let asked = design.constraints.iter().filter(|constraint| constraint.asked && constraint.limit != 0.0);
+    let closest = asked.min_by(|a, b| a.slack.total_cmp(&b.slack)).map(
+        |Constraint { what, joint, value, limit, unit, .. }| {
+            let of = joint.as_ref().map_or_else(String::new, |joint| format!(" of {joint}"));
+            let amount = |x: f64| format!("{} {unit}", short(x, 3)).trim_end().to_owned();
+            format!(
+                " The one with least left is {what}{of}: {}, where {} is the limit.",
+                amount(*value),
+                amount(*limit)
+            )
+        },
+    );
+    let frail = design.frail().map(|frail| {
+        format!(" The loop is frail: with {frail} it does not hold, which is wished for and was not asked.")
+    });
+    let rms = design.evidence.runs.iter().map(|run| run.rms_e_l).fold(0.0, f64::max);
+    let words = format!(
+        "Gains that keep every constraint that is asked; the rms error is {} mrad.{}{}",
+        significant(1e3 * rms, 3),
+        closest.unwrap_or_default(),
+        frail.unwrap_or_default()
+    );
+    Verdict { good: Some(true), words }
+}
+
+fn constraints(constraints: &[Constraint]) -> Markup {
+    let row = |constraint: &Constraint| {
+        let Constraint { what, joint, value, limit, unit, slack, asked, .. } = constraint;
+        let amount = |x: f64| format!("{} {unit}", short(x, 4)).trim_end().to_owned();
+        let left = match (*slack < 0.0, *asked) {
+            (true, true) => "broken".to_owned(),
+            (true, false) => "not borne, wished for".to_owned(),
+            (false, _) => significant(100.0 * slack, 3),
+        };
+        (what.clone(), [joint.clone().unwrap_or(NONE.to_owned()), amount(*value), amount(*limit), left])
+    };
+    markup! {
+        (numbers(&["constraint", "joint", "value", "limit", "left [%]"], constraints.iter().map(row)))
+        @for constraint in constraints {
+            @if let Some(note) = &constraint.note { p.note { (constraint.what) ": " (note) } }
+        }
+    }
+}
+
+fn gains(scenario: &Scenario, design: &Design) -> Markup {
+    let headings: Vec<&str> =
+        std::iter::once("joint").chain(design.gains.iter().map(|trade| &*trade.gain)).collect();
+    let rows = scenario.robot.joints.iter().enumerate().map(|(i, joint)| {
+        let values =
+            design.gains.iter().map(|trade| trade.values.get(i).map_or(NONE.to_owned(), |&x| engineering(x)));
+        (joint.name.clone(), values.collect::<Vec<_>>())
+    });
+    numbers(&headings, rows)
+}
+
+fn trades(trades: &[Trade]) -> Markup {
+    let factor = |x: f64| if x.is_finite() { format!("×{}", significant(x, 3)) } else { NONE.to_owned() };
+    let row = |trade: &Trade| {
+        let values = match trade.effect {
+            Some(Effect { error, torque, chatter, decay }) => {
+                [Some(error), Some(torque), Some(chatter), decay].map(|x| x.map_or(NONE.to_owned(), factor))
+            }
+            None => ["unstable", NONE, NONE, NONE].map(str::to_owned),
+        };
+        (trade.gain.clone(), values)
+    };
+    markup! {
+        (numbers(
+            &["a quarter more of, in all joints", "rms link error", "largest torque", "torque change a period", "decay as sampled"],
+            trades.iter().map(row)
+        ))
+    }
+}
+
+fn evidence(scenario: &Scenario, design: &Design) -> Markup {
+    let evidence = &design.evidence;
+    let sampled = evidence.sampled.as_ref().map(Sampled::line).or(crate::sampled::not_looked_at(scenario));
+    let proved = evidence.verdict.zip(evidence.rate_certified);
+    let outside = crate::prove::standing::outside_of_proofs(&scenario.beyond_ideal());
+    markup! {
+        ul {
+            @for run in &evidence.runs { li { (run.name) ": " (run.in_words()) } }
+            @if let Some(line) = sampled { li { (line) } }
+            @if let Some((verdict, rate)) = proved {
+                li { "Contraction rate: " (short(rate, 4)) " 1/s, " (verdict) @if let Some(outside) = outside { ": " (outside) } "." }
+            }
+        }
+    }
+}
