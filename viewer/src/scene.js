@@ -24,6 +24,8 @@ export class Panel {
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
     host.append(this.renderer.domElement);
+    // A browser may take a context away and give it back, while nothing moves, too.
+    this.renderer.domElement.addEventListener('webglcontextrestored', () => { this.dirty = true; });
     this.scene = new Scene();
     this.scene.background = new Color();
     this.camera = new PerspectiveCamera(30, 1, 0.01, 100);

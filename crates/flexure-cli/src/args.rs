@@ -1,16 +1,18 @@
 //! The command line's grammar.
 
 use std::num::NonZeroU32;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use flexure::compare::{BUDGET, SEEDS};
 use flexure::excite::{BUDGET as EXCITE_BUDGET, RESOLUTION};
-use flexure::files::{Change, WriteError, prepare_for};
+use flexure::files::{Change, prepare_for};
 use flexure::replay::HORIZON;
 use flexure::report::{page_names, stem};
 use flexure::robot::DriveClass;
+
+use crate::failure::Failure;
 
 /// Model, design, simulate and compare controllers for robots with elastic joints.
 #[derive(Debug, Parser)]
@@ -195,10 +197,28 @@ pub struct Paged {
 }
 
 impl Paged {
-    /// That a page about `name` with so many figures can be written, if one is asked for: said before the work, not after.
-    pub fn prepare(&self, name: &str, command: &str, figures: usize) -> Result<(), WriteError> {
-        let names = || page_names(&stem(name, command), figures);
-        self.page.as_deref().map_or(Ok(()), |folder| prepare_for(folder, names()))
+    /// That a page about `name` with so many figures can be written, if one is asked for, and that it is not in the place of the file `out`:
+    /// said before the work, not after.
+    pub fn prepare(
+        &self,
+        name: &str,
+        command: &str,
+        figures: usize,
+        out: Option<&Path>,
+    ) -> Result<(), Failure> {
+        let Some(folder) = &self.page else { return Ok(()) };
+        let names = page_names(&stem(name, command), figures);
+        let place = |path: &Path| std::path::absolute(path).ok();
+        let taken = |out: &&Path| {
+            std::iter::once(folder.clone())
+                .chain(names.iter().map(|name| folder.join(name)))
+                .any(|path| place(&path) == place(out))
+        };
+        if let Some(out) = out.filter(taken) {
+            let message = format!("{} is what --out writes, and where the page goes", out.display());
+            return Err(Failure::input("usage", message, "give the page a folder of its own"));
+        }
+        Ok(prepare_for(folder, names)?)
     }
 }
 

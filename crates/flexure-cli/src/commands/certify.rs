@@ -39,7 +39,7 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
     // Said before minutes of proof, not after.
     spare(&path, "certificate", |text| text.contains("flexure-certificate"), &[])?;
     prepare(folder_of(&path))?;
-    options.paged.prepare(&scenario.name, "certify", 1)?;
+    options.paged.prepare(&scenario.name, "certify", 1, Some(&path))?;
     let proof = {
         let progress = Progress::of_one(&scenario.name);
         prove_watched(&scenario, &question, &|fraction| progress.set(0, fraction))?
@@ -102,7 +102,7 @@ fn ending(scenario: &Scenario, standing: Standing<'_>, strict: bool) -> Result<(
             let help = "without --strict the proof of the ideal loop is enough";
             scenario.places.problem("controller", "ideal", format!("{}: {outside}", scenario.name), help)
         }
-        Standing::Unstable(sampled) => match sampled.problem(scenario) {
+        Standing::Unstable { sampled, .. } => match sampled.problem(scenario) {
             Some(problem) => problem,
             None => return Ok(()),
         },

@@ -3,13 +3,14 @@
 use std::path::PathBuf;
 
 use flexure::compare::{Entrant, check_budget, entrants};
-use flexure::files::number::significant;
+use flexure::files::number::{short, significant};
 use flexure::files::{Problems, Reading};
 use flexure::margins::{Margins as Found, margins as margins_of};
 use flexure::progress::{PartProgress, Progress as Progressing};
 use flexure::report::{margins_table, write_margins};
 use flexure::scenario::{Scenario, load_scenario_with};
 use flexure::tune::tune;
+use flexure::units;
 use serde::Serialize;
 
 use super::print;
@@ -34,7 +35,7 @@ pub fn margins(options: &Margins, reading: Reading<'_>, json: bool) -> Result<()
     let chosen = if options.controllers.is_empty() { Vec::new() } else { entrants(&options.controllers)? };
     let scenario = load_scenario_with(&options.scenario, reading)?;
     say(&scenario.warnings);
-    options.paged.prepare(&scenario.name, "margins", chosen.len().max(1))?;
+    options.paged.prepare(&scenario.name, "margins", chosen.len().max(1), None)?;
     let (loops, is_whole) = {
         let each = [options.budget as f64, RUNS];
         let weights = if chosen.is_empty() { vec![RUNS] } else { each.repeat(chosen.len()) };
@@ -69,14 +70,17 @@ pub fn margins(options: &Margins, reading: Reading<'_>, json: bool) -> Result<()
 
 /// What the table does not say.
 fn show(found: &Found) -> Result<(), Failure> {
+    let torque = found.unit(units::TORQUE, "");
     print::line(&format!(
-        "{} holds: it follows, with an rms error of at most {} mrad and torques of at most {} N m\n\
-         that change by at most {} N m (rms) a control period; {} runs",
+        "{} holds: it follows, with an rms error of at most {} {} and torques of at most {} {torque}\n\
+         that change by at most {} {torque} (rms) a control period; {} runs of {} s",
         found.law(),
         significant(1e3 * found.allowed_rms_e_l, 3),
+        found.unit(units::ANGLE, "m"),
         significant(found.allowed_max_u_m, 3),
         significant(found.allowed_rms_torque_change, 3),
-        found.runs
+        found.runs,
+        short(found.duration, 4)
     ))?;
     found.sampled.as_ref().map_or(Ok(()), |sampled| print::line(&sampled.line()))
 }

@@ -60,7 +60,7 @@ fn a_loop_that_is_unstable_as_sampled_is_bad_whatever_is_proved() {
     place.scenario("slow.toml", &[("control_period = 0.001", "control_period = 0.01")]);
     let (outcome, page) = paged(&place, &["certify", "slow.toml", "--out", "c.json"], "slow.certify");
     assert_eq!((outcome.code, mark(&page)), (Some(1), "✕ bad"));
-    assert!(page.contains("Unstable: sampled loop"), "{page}");
+    assert!(page.contains("Unstable as sampled: spectral radius"), "{page}");
 }
 
 #[test]
@@ -108,23 +108,90 @@ fn identified_numbers_are_good_if_a_law_can_use_them() {
 }
 
 #[test]
-fn a_sweep_is_good_if_all_of_it_is_there_and_follows() {
+fn a_sweep_is_good_if_all_of_it_is_there_and_follows_in_stable_loops() {
     let place = Place::new();
-    let sweep = "scenario = \"pendulum-tanh\"\npoints = 4\ndesign = \"latin-hypercube\"\nshard = 2\n[set]\nduration = 2.0\n[parameters]\n\
+    let sweep = "scenario = \"pendulum-tanh\"\npoints = 4\ndesign = \"latin-hypercube\"\nshard = 2\n\
+                 metrics = [\"rms_e_l\", \"sampled_rate\"]\n[set]\nduration = 2.0\n[parameters]\n\
                  \"robot.joints.stiffness\" = { from = 0.9, to = 1.1, relative = true }\n";
     place.write("calm.toml", sweep);
     let (_, page) = paged(&place, &["sweep", "calm.toml", "--out", "rows", "--shards", "0"], "calm.sweep");
     assert_eq!(mark(&page), "– no verdict", "half of the rows");
     let (_, page) = paged(&place, &["sweep", "calm.toml", "--out", "rows"], "calm.sweep");
     assert_eq!(mark(&page), "✓ good", "{page}");
-    assert!(page.contains("4 of 4 runs are there: 4 follow their reference."), "{page}");
+    assert!(page.contains("4 of 4 runs are there; follow their reference: 4. Small errors shrink"), "{page}");
     // From the folder alone the same page.
     let (_, again) = paged(&place, &["sweep", "show", "rows"], "calm.sweep");
     assert_eq!(page, again);
-    let slow = altered(sweep, &[("duration = 2.0", "duration = 2.0\ncontrol_period = 0.05")]);
-    place.write("wild.toml", slow);
-    let (_, page) = paged(&place, &["sweep", "wild.toml", "--out", "wild"], "wild.sweep");
+    place.write("blind.toml", altered(sweep, &[(", \"sampled_rate\"", "")]));
+    let (_, page) = paged(&place, &["sweep", "blind.toml", "--out", "blind"], "blind.sweep");
     assert_eq!(mark(&page), "– no verdict");
+    assert!(page.contains("is not among the metrics: sampled_rate"), "{page}");
+    // They follow for as long as the runs are, and are unstable.
+    let slow = [("duration = 2.0", "duration = 0.05\ncontrol_period = 0.012")];
+    place.write("short.toml", altered(sweep, &slow));
+    let (_, page) = paged(&place, &["sweep", "short.toml", "--out", "short"], "short.sweep");
+    assert_eq!(mark(&page), "– no verdict");
+    assert!(page.contains("unstable as sampled"), "{page}");
+}
+
+#[test]
+fn a_loop_that_is_unstable_as_sampled_is_bad_even_if_nothing_was_decided() {
+    let place = Place::new();
+    let slow = [
+        ("control_period = 0.001", "control_period = 0.01"),
+        ("[controller]", "[reference.smooth_start]\nduration = 1.0\n[controller]"),
+    ];
+    place.scenario("slow.toml", &slow);
+    let args = ["certify", "slow.toml", "--out", "c.json", "--disturbance", "1e3"];
+    let (outcome, page) = paged(&place, &args, "slow.certify");
+    assert_eq!((outcome.code, mark(&page)), (Some(1), "✕ bad"), "{outcome:?}");
+}
+
+/// In the place of what `--out` writes a page would end it, and a picture of an older page would be taken for that of the new one.
+#[test]
+fn pages_end_neither_certificates_nor_stay_with_old_pictures() {
+    let place = Place::new();
+    for out in ["same", "./same/two-link-tanh.certify.html"] {
+        place
+            .run(&["certify", "two-link-tanh", "--page", "same", "--out", out])
+            .refused(&["where the page goes"]);
+    }
+    let margins = |more: &[&str]| {
+        let args = ["margins", "pendulum-tanh", "--set", "duration=0.3", "--page", "pages"];
+        place.run(&[&args[..], more].concat())
+    };
+    margins(&["--controllers", "vcbc,pd", "--budget", "1"]);
+    assert!(
+        place.names("pages").contains(&"pendulum-tanh.margins-2.svg".to_owned()),
+        "{:?}",
+        place.names("pages")
+    );
+    margins(&[]);
+    let names = ["html", "png", "svg"].map(|ending| format!("pendulum-tanh.margins.{ending}"));
+    assert_eq!(place.names("pages"), names);
+}
+
+#[test]
+fn joints_that_slide_are_measured_in_metres() {
+    let place = Place::new();
+    let slide = "name = \"slide\"\n[links]\nkind = \"tree\"\n[[links.joint]]\nname = \"rail\"\nkind = \"prismatic\"\nmass = 2.0\n\
+                 axis = [1.0, 0.0, 0.0]\ncom = [0.0, 0.0, 0.0]\ninertia = [0.01, 0.0, 0.0, 0.01, 0.0, 0.01]\n[joints]\nstiffness = [4000.0]\n\
+                 motor_inertia = [1.0]\nlink_damping = [1.0]\nmotor_damping = [4.0]\n";
+    let scenario = "robot = \"slide.toml\"\nduration = 1.0\ncontrol_period = 0.001\n[reference]\nkind = \"sine\"\namplitude = [0.05]\n\
+                    frequency = [2.0]\n[reference.smooth_start]\nduration = 0.5\n[controller]\nkind = \"vcbc\"\nphi = \"tanh\"\n";
+    place.write("slide.toml", slide).write("along.toml", scenario);
+    let certify = ["certify", "along.toml", "--out", "c.json", "--error-box", "0.01", "--disturbance", "0.5"];
+    let pages = [
+        paged(&place, &certify, "along.certify").1,
+        paged(&place, &["margins", "along.toml"], "along.margins").1,
+        paged(&place, &["tune", "along.toml", "--budget", "2", "--out", "t.toml"], "along.tune").1,
+    ];
+    for page in pages {
+        // Assumptions are quoted from the files, with the units of joints that turn.
+        let body = page.split("id=\"assumptions\"").next().unwrap().replace("radius", "");
+        let at = body.find("rad").map(|at| &body[at.saturating_sub(80)..(at + 40).min(body.len())]);
+        assert!(!body.contains(" rad") && !body.contains("mrad"), "{at:?}");
+    }
 }
 
 /// Said before the work, with nothing written.

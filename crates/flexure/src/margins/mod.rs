@@ -10,9 +10,11 @@ use serde::Serialize;
 use crate::feasible;
 use crate::files::{Problem, Problems};
 use crate::progress::{PartProgress, Parts, Progress};
+use crate::robot::JointKind;
 use crate::sampled::{Sampled, probe};
 use crate::scenario::{Hold, Scenario};
 use crate::simulate::{Asking, Criteria, Run, in_turns, measure_watched};
+use crate::units::{Unit, of_joints};
 
 pub use change::Change;
 pub use edge::Edge;
@@ -69,6 +71,11 @@ pub struct Margins {
     pub runs: usize,
     /// Whether small errors shrink in the loop as it is; none if it was not looked at.
     pub sampled: Option<Sampled>,
+    /// Length of each run \[s\].
+    pub duration: f64,
+    /// Which joints turn, which slide.
+    #[serde(skip)]
+    pub kinds: Vec<JointKind>,
     /// Whether it was broken off: edges may be [open](Edge::Open), and what is measured last is not there.
     #[serde(skip)]
     pub broken_off: bool,
@@ -187,6 +194,8 @@ pub fn margins(scenario: &Scenario, progress: Progress<'_>) -> Result<Margins, P
         noise_to_error: per_noise(|run| run.summary.rms_e_l),
         noise_to_torque: per_noise(|run| run.summary.rms_torque_change),
         runs,
+        duration: scenario.duration,
+        kinds: scenario.robot.kinds(),
         sampled: if broken_off { None } else { probe(&scenario)? },
         broken_off,
     })
@@ -274,6 +283,16 @@ impl Allowed {
 }
 
 impl Margins {
+    /// Whether small errors grow in the loop as it is: what follows then follows in so short a run.
+    pub fn is_unstable(&self) -> bool {
+        self.sampled.as_ref().is_some_and(|sampled| !sampled.stable)
+    }
+
+    /// A unit of joints with a prefix, as this robot's turn or slide.
+    pub fn unit(&self, unit: Unit, prefix: &str) -> String {
+        of_joints(unit, prefix, self.kinds.iter().copied())
+    }
+
     /// The law in words.
     pub fn law(&self) -> String {
         self.phi.as_ref().map_or_else(|| self.controller.clone(), |phi| format!("{} {phi}", self.controller))

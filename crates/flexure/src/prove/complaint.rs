@@ -50,7 +50,14 @@ impl Proof {
                          stands without it",
                         scenario.name, undecided.spent
                     );
-                    Some((problem("undecided", message, "raise --budget, or lower --speed"), false))
+                    Some((
+                        problem(
+                            "undecided",
+                            message,
+                            "lower --speed, or name a smaller region; raise --budget if that many boxes were looked at",
+                        ),
+                        false,
+                    ))
                 }
                 _ => self.limits(scenario).or_else(|| self.tolerances(scenario)),
             },

@@ -12,8 +12,13 @@ pub enum Standing<'a> {
     Proved,
     /// It is proved of the ideal loop; the one in the file has these too.
     Ideal(Vec<&'static str>),
-    /// It is proved in continuous time, but the loop that holds its torque for a control period is unstable.
-    Unstable(&'a Sampled),
+    /// The loop that holds its torque for a control period is unstable, whatever is proved in continuous time.
+    Unstable {
+        /// That loop.
+        sampled: &'a Sampled,
+        /// Whether everything that was asked is proved in continuous time.
+        proved: bool,
+    },
     /// It is wrong.
     Refuted(Problem),
     /// It was not found.
@@ -25,8 +30,8 @@ impl<'a> Standing<'a> {
     pub fn of(scenario: &Scenario, proof: &Proof, sampled: Option<&'a Sampled>) -> Self {
         match (proof.complaint(scenario), sampled.filter(|sampled| !sampled.stable)) {
             (Some((problem, true)), _) => Self::Refuted(problem),
-            (Some((problem, false)), _) => Self::Undecided(problem),
-            (None, Some(sampled)) => Self::Unstable(sampled),
+            (open, Some(sampled)) => Self::Unstable { sampled, proved: open.is_none() },
+            (Some((problem, false)), None) => Self::Undecided(problem),
             (None, None) => match scenario.beyond_ideal() {
                 nothing if nothing.is_empty() => Self::Proved,
                 conditions => Self::Ideal(conditions),
@@ -39,7 +44,8 @@ impl<'a> Standing<'a> {
         match self {
             Self::Proved => "proved",
             Self::Ideal(_) => "proved (ideal loop)",
-            Self::Unstable(_) => "proved for continuous time; unstable as sampled",
+            Self::Unstable { proved: true, .. } => "proved for continuous time; unstable as sampled",
+            Self::Unstable { proved: false, .. } => "undecided for continuous time; unstable as sampled",
             Self::Refuted(_) => "refuted",
             Self::Undecided(_) => "undecided",
         }

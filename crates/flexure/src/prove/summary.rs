@@ -14,14 +14,19 @@ use crate::prove::question::{Proof, inside};
 use crate::prove::sampling;
 use crate::prove::standing::Standing;
 use crate::prove::within::{Closer, Open, Within};
+use crate::robot::JointKind;
 use crate::sampled::Sampled;
 use crate::scenario::Scenario;
+use crate::units::{Unit, of_joints};
 
 /// What was proved, as numbers.
 #[derive(Clone, Debug, Serialize)]
 pub struct ProofSummary {
     /// Name of the scenario.
     pub name: String,
+    /// Which joints turn, which slide.
+    #[serde(skip)]
+    pub kinds: Vec<JointKind>,
     /// On everything that was asked, as [`Standing::words`] has it. Rates stand where they were proved of the law in continuous
     /// time.
     pub verdict: &'static str,
@@ -219,6 +224,11 @@ impl BlockSummary {
 }
 
 impl ProofSummary {
+    /// A unit of joints, as this robot's turn or slide.
+    pub fn unit(&self, unit: Unit) -> String {
+        of_joints(unit, "", self.kinds.iter().copied())
+    }
+
     /// The summary of a proof of `scenario`.
     pub fn new(scenario: &Scenario, proof: &Proof, sampled: Option<Sampled>) -> Self {
         let certificate = proof.verdict.proved();
@@ -240,6 +250,7 @@ impl ProofSummary {
         };
         Self {
             name: scenario.name.clone(),
+            kinds: scenario.robot.kinds(),
             verdict: Standing::of(scenario, proof, sampled.as_ref()).words(),
             left_out: scenario.beyond_ideal(),
             contraction_rate: certificate.map(|c| c.contraction_rate.approximate()),

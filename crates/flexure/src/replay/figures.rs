@@ -138,14 +138,7 @@ impl Sheet<'_> {
             signals.iter().filter_map(|(name, unit, values)| Some((name, unit, values.as_ref()?))).collect();
         let names = there.iter().flat_map(|(name, unit, _)| {
             let joint = |(i, kind): (usize, JointKind)| (format!("{name}{}", i + 1), unit.of(kind).plain);
-            self.scenario
-                .robot
-                .joints
-                .iter()
-                .map(|joint| joint.kind)
-                .enumerate()
-                .map(joint)
-                .collect::<Vec<_>>()
+            self.scenario.robot.kinds().into_iter().enumerate().map(joint).collect::<Vec<_>>()
         });
         let mut trace = Trace::new(std::iter::once(("t".to_owned(), units::TIME.plain)).chain(names));
         for k in 0..log.samples() {

@@ -1,7 +1,7 @@
 //! Pages, figures and certificates as files.
 
-use std::io;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 use super::{Scene, Verdict, Viewed, assumptions, cost_figure, leaderboard_page, score_map, view};
 use crate::compare::{Leaderboard, Task};
@@ -75,7 +75,21 @@ fn write_page(folder: &Path, stem: &str, page: &str, figures: &[Scene]) -> Resul
     for (i, figure) in figures.iter().enumerate() {
         paths.extend(write_figure(folder, &figure_name(stem, i, figures.len()), figure)?);
     }
+    remove_stale(folder, stem, &paths);
     Ok(paths)
+}
+
+/// Removes pictures that a page of that name had before and has no more: they would be taken for those of the new one.
+fn remove_stale(folder: &Path, stem: &str, written: &[PathBuf]) {
+    let both = |name: String| ["svg", "png"].map(|ending| folder.join(format!("{name}.{ending}")));
+    let is_stale = |paths: &[PathBuf; 2]| paths.iter().all(|path| path.is_file() && !written.contains(path));
+    let numbered = (1..).map(|i: usize| both(format!("{stem}-{i}"))).take_while(|paths| paths[0].is_file());
+    for paths in std::iter::once(both(stem.to_owned())).chain(numbered.collect::<Vec<_>>()).filter(is_stale) {
+        for path in paths {
+            // What cannot be removed stays.
+            let _ = fs::remove_file(path);
+        }
+    }
 }
 
 /// Writes `NAME.margins.html` and its figures into `folder`, which is created if missing; returns the paths.
@@ -106,7 +120,7 @@ pub fn write_certified(
     let figure = certificate_figure(scenario, summary);
     let beside = certificate.filter(|path| folder_of(path) == folder).and_then(Path::file_name);
     let link = beside.map(|name| name.to_string_lossy());
-    let page = certify_page(scenario, summary, verdict, &figure, link.as_deref());
+    let page = certify_page(scenario, summary, verdict, &figure, certificate, link.as_deref());
     write_page(
         folder,
         &stem(&scenario.name, "certify"),

@@ -12,6 +12,7 @@ use crate::files::normal::Normal;
 use crate::files::source::Source;
 use crate::files::table::Table;
 use crate::files::{Assumption, Outside, Places, Problem, Problems, provenance, quantity};
+use crate::robot::JointKind;
 use crate::robot::joints::{self, Drives, Limits};
 use crate::robot::links::{self, Assembled, Links, MovingJoint};
 use crate::robot::looks::Looks;
@@ -67,6 +68,11 @@ pub struct Robot {
 }
 
 impl Robot {
+    /// Which joints turn, which slide, in their order.
+    pub fn kinds(&self) -> Vec<JointKind> {
+        self.joints.iter().map(|joint| joint.kind).collect()
+    }
+
     /// Number of moving joints.
     pub fn joint_count(&self) -> usize {
         self.joints.len()

@@ -126,7 +126,10 @@ impl Scenario {
     pub fn beyond_ideal(&self) -> Vec<&'static str> {
         let between = self.between();
         let limits = self.drive_limits().filter(|_| !between.contains(&Saturation::NAME));
-        self.plant.options().into_iter().chain(limits.map(|_| "torque limits")).chain(between).collect()
+        // The errors of the law have derivatives of the reference up to the third in them.
+        let jumps = self.reference.jump().filter(|jump| jump.derivative <= 3);
+        let options = self.plant.options().into_iter().chain(limits.map(|_| "torque limits"));
+        options.chain(jumps.map(|_| "jumps of the reference")).chain(between).collect()
     }
 
     /// What stands between motion and torque.

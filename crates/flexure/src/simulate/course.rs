@@ -120,6 +120,6 @@ fn summary(
         energy_drift: held.energy_drift(),
         steps: held.steps(),
         wall_seconds,
-        kinds: scenario.robot.joints.iter().map(|joint| joint.kind).collect(),
+        kinds: scenario.robot.kinds(),
     }
 }

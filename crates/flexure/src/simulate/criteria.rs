@@ -157,7 +157,7 @@ impl Criteria {
             settling_because: if accept.settling.is_some() { GIVEN } else { "half of the run" },
             error: accept.error.clone(),
             others,
-            joints: scenario.robot.joints.iter().map(|joint| joint.kind).collect(),
+            joints: scenario.robot.kinds(),
         })
     }
 

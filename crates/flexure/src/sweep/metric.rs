@@ -2,9 +2,11 @@
 
 use crate::files::Problems;
 use crate::prove::question::certified_rate;
+use crate::robot::JointKind;
 use crate::sampled::Outlook;
 use crate::scenario::Scenario;
 use crate::simulate::{Run, Summary};
+use crate::units::{self, of_joints};
 
 /// A number that is kept of each run; none (null) where there is none.
 #[derive(Clone, Copy, Debug)]
@@ -30,9 +32,15 @@ impl Metric {
         Self { name, unit, what, usual: true, of }
     }
 
-    /// Its name with its unit, if it has one.
-    pub(crate) fn titled(&self) -> String {
-        if self.unit == "1" { self.name.to_owned() } else { format!("{} [{}]", self.name, self.unit) }
+    /// Its unit for a robot with joints of these kinds; none of plain numbers.
+    pub(crate) fn unit_of(&self, kinds: &[JointKind]) -> Option<String> {
+        let of_joints = |unit| of_joints(unit, "", kinds.iter().copied());
+        match self.unit {
+            "1" => None,
+            unit if unit == units::ANGLE.plain => Some(of_joints(units::ANGLE)),
+            unit if unit == units::TORQUE.plain => Some(of_joints(units::TORQUE)),
+            unit => Some(unit.to_owned()),
+        }
     }
 
     const fn on_demand(self) -> Self {

@@ -31,6 +31,7 @@ use crate::files::source::{self, Source};
 use crate::files::{Bundle, Outside, Problem, Problems, Reading, bounds, suggest};
 use crate::imperfections::Imperfection;
 use crate::progress::Progress;
+use crate::robot::JointKind;
 use crate::scenario::{self, Scenario};
 use crate::simulate::SIDE_BY_SIDE;
 use document::{FORM, IN_HAND, Said, Seeds};
@@ -277,6 +278,11 @@ impl Sweep {
     /// What is kept of each run.
     pub fn metrics(&self) -> &[&'static Metric] {
         &self.said.metrics
+    }
+
+    /// Which joints of the robot turn, which slide; none if the first row is refused.
+    pub(crate) fn kinds(&self) -> Vec<JointKind> {
+        self.scenario(0).map_or_else(|_| Vec::new(), |scenario| scenario.robot.kinds())
     }
 
     /// How points are spread.

@@ -38,15 +38,13 @@ impl Status {
         }
     }
 
-    /// What runs of it do, behind their number.
+    /// What runs of it do, before their number.
     pub fn words(self) -> &'static str {
         match self {
             Self::Follows => "follow their reference",
             Self::Strays => "do not follow",
             Self::Diverges => "diverge",
-            Self::Refused => {
-                "were refused: their numbers do not go together (`flexure sweep replay` says why)"
-            }
+            Self::Refused => "refused, as their numbers do not go together (`flexure sweep replay` says why)",
         }
     }
 

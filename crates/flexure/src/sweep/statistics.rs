@@ -98,10 +98,10 @@ impl Statistics {
     pub fn sentence(&self, sweep: &Sweep) -> String {
         let counts = Status::ALL.iter().filter_map(|status| {
             let count = self.statuses.get(status.name()).filter(|count| **count > 0)?;
-            Some(format!("{count} {}", status.words()))
+            Some(format!("{}: {count}", status.words()))
         });
         let counts = counts.collect::<Vec<_>>().join(", ");
-        let counts = if counts.is_empty() { counts } else { format!(": {counts}") };
+        let counts = if counts.is_empty() { counts } else { format!("; {counts}") };
         format!("{} of {} runs are there{counts}", self.rows, sweep.rows())
     }
 

@@ -2,7 +2,11 @@
 
 use super::decimate::{bucket_size, decimate, extremes};
 
-/// Buckets in a row that swing before they are drawn as a band: fewer are a wiggle.
+/// Buckets to either side that are looked at with one.
+const REACH: usize = 2;
+/// Turns in those buckets from which lines are no longer told apart.
+const OFTEN: usize = 4;
+/// Buckets in a row that swing before they are drawn as a band, and that do not before it ends: fewer are a wiggle, or a pause.
 const RUN: usize = 6;
 
 /// A signal as a figure shows it, point by point from left to right.
@@ -14,7 +18,8 @@ pub(crate) struct Shown {
     pub bands: Vec<Vec<(f64, f64, f64)>>,
 }
 
-/// A signal that is cut into at most `buckets` runs of samples, each of which is a point of a band where it turns twice or more in that time.
+/// A signal that is cut into at most `buckets` runs of samples, each of which is a point of a band where it swings too fast for lines: to the
+/// extremes of the buckets around it, so that slow swings have no gaps between their peaks.
 ///
 /// # Panics
 /// As [`decimate`].
@@ -27,11 +32,12 @@ pub(crate) fn shown(t: &[f64], values: &[f64], buckets: usize) -> Shown {
     let mut shown = Shown { line: Vec::new(), bands: Vec::new() };
     shown.line.extend(t.first().copied().zip(values.first().copied()).filter(|_| !swings[0]));
     let mut is_open = false;
-    for ((t, values), swings) in t.chunks(size).zip(values.chunks(size)).zip(&swings) {
-        let (low, high) = extremes(values);
-        if *swings {
+    for (k, (t, own)) in t.chunks(size).zip(values.chunks(size)).enumerate() {
+        if swings[k] {
             let middle = 0.5 * (t[0] + t[t.len() - 1]);
-            shown.line.push((middle, 0.5 * (values[low] + values[high])));
+            let around = &values[k.saturating_sub(REACH) * size..((k + REACH + 1) * size).min(values.len())];
+            let (low, high) = extremes(around);
+            shown.line.push((middle, 0.5 * (around[low] + around[high])));
             if !is_open {
                 shown.bands.push(Vec::new());
             }
@@ -39,11 +45,12 @@ pub(crate) fn shown(t: &[f64], values: &[f64], buckets: usize) -> Shown {
                 .bands
                 .last_mut()
                 .into_iter()
-                .for_each(|band| band.push((middle, values[low], values[high])));
+                .for_each(|band| band.push((middle, around[low], around[high])));
         } else {
-            shown.line.extend([low.min(high), low.max(high)].map(|index| (t[index], values[index])));
+            let (low, high) = extremes(own);
+            shown.line.extend([low.min(high), low.max(high)].map(|index| (t[index], own[index])));
         }
-        is_open = *swings;
+        is_open = swings[k];
     }
     let is_line = swings.last() == Some(&false);
     shown.line.extend(t.last().copied().zip(values.last().copied()).filter(|_| is_line));
@@ -51,23 +58,25 @@ pub(crate) fn shown(t: &[f64], values: &[f64], buckets: usize) -> Shown {
     shown
 }
 
-/// Whether each run of so many samples is part of a band.
+/// Whether each run of so many samples is part of a band: whether the signal turns back often in it and in those around it.
 fn swinging(values: &[f64], size: usize) -> Vec<bool> {
     if size <= 2 {
         return Vec::new();
     }
-    let turns = |k: usize| {
-        let around = |k: usize| values.get(k).copied();
-        let (Some(before), Some(after)) = (k.checked_sub(1).and_then(around), around(k + 1)) else {
-            return false;
-        };
-        (values[k] - before) * (after - values[k]) < 0.0
-    };
-    let of_bucket =
-        |start: usize| (start..(start + size).min(values.len())).filter(|&k| turns(k)).count() >= 2;
-    let mut swings: Vec<bool> = (0..values.len()).step_by(size).map(of_bucket).collect();
-    for run in swings.chunk_by_mut(|a, b| a == b).filter(|run| run.len() < RUN) {
-        run.fill(false);
+    // A signal at a limit stands still before it turns back.
+    let (mut turns, mut rising): (Vec<usize>, Option<bool>) = (vec![0; values.len().div_ceil(size)], None);
+    for (k, pair) in values.windows(2).enumerate().filter(|(_, pair)| pair[0].total_cmp(&pair[1]).is_ne()) {
+        let is_rising = pair[1] > pair[0];
+        turns[(k + 1) / size] += usize::from(rising.is_some_and(|rising| rising != is_rising));
+        rising = Some(is_rising);
+    }
+    let around =
+        |k: usize| turns[k.saturating_sub(REACH)..(k + REACH + 1).min(turns.len())].iter().sum::<usize>();
+    let mut swings: Vec<bool> = (0..turns.len()).map(|k| around(k) >= OFTEN).collect();
+    for is_band in [false, true] {
+        for run in swings.chunk_by_mut(|a, b| a == b).filter(|run| run.len() < RUN && run[0] == is_band) {
+            run.fill(!is_band);
+        }
     }
     swings
 }
@@ -112,6 +121,16 @@ mod tests {
         assert!(slow, "the line goes through the middle");
         assert!(shown.line.windows(2).all(|pair| pair[0].0 <= pair[1].0));
         assert_eq!((shown.line[0].0, shown.line[shown.line.len() - 1].0), (t[0], t[t.len() - 1]));
+    }
+
+    /// A torque that goes from limit to limit, and stays there for a while each time.
+    #[test]
+    fn a_signal_between_limits_is_a_band_from_one_to_the_other() {
+        let (t, values) = signal(|t| (400.0 * t).sin().signum());
+        let shown = shown(&t, &values, 500);
+        let [band] = &shown.bands[..] else { panic!("{} bands", shown.bands.len()) };
+        assert!(band.len() > 490 && band.iter().all(|(_, low, high)| *low < -0.9 && *high > 0.9));
+        assert!(shown.line.iter().filter(|(_, middle)| middle.abs() > 0.1).count() < 10);
     }
 
     #[test]

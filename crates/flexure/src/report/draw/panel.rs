@@ -218,16 +218,19 @@ fn draw(scene: &mut Scene, axes: &Axes, limits: &[Limit], curves: &[Curve], view
     const END: Stroke = Stroke { color: MUTED, width: 1.2, dash: &[1.5, 3.0] };
     shade(scene, axes, &view.happenings);
     axes.draw(scene);
+    let mut labels: Vec<(f64, String)> = Vec::new();
     for Limit { value, of, stroke } in limits.iter().filter(|limit| axes.y.range.contains(limit.value)) {
         axes.level(scene, *value, *stroke);
-        let [left, _, width, _] = axes.frame;
         let [_, y] = axes.place(axes.x.range.low, *value);
-        scene.text(
-            [left + width - 6.0, y - 4.0],
-            &format!("limit of {of}"),
-            letters(12.0, MUTED),
-            Anchor::End,
-        );
+        match labels.iter_mut().find(|(other, _)| (other - y).abs() < 14.0) {
+            Some((_, names)) => *names = format!("{names}, {of}"),
+            None => labels.push((y, of.clone())),
+        }
+    }
+    for (y, names) in labels {
+        let [left, _, width, _] = axes.frame;
+        let at = [left + width - 6.0, y - 4.0];
+        scene.text(at, &format!("limit of {names}"), letters(12.0, MUTED), Anchor::End);
     }
     for curve in curves {
         axes.curve(scene, curve, view.buckets);

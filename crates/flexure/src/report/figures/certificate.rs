@@ -54,8 +54,7 @@ pub fn certificate_figure(scenario: &Scenario, summary: &ProofSummary) -> Result
 
     let subtitle = "the run is that of the file, with all that it has; what is proved is proved of the law in continuous time, with exact measurements \
                     and without limits of torques";
-    let (mut scene, top) =
-        page(WIDTH, &format!("{}: errors, and what is proved of them", scenario.name), subtitle);
+    let (mut scene, top) = page(WIDTH, &format!("{}: {}", scenario.name, told.title()), subtitle);
     let mut top = top + line_legend(&mut scene, top, &told.legend()) + 8.0;
     draw_storage(&mut scene, top, &told, &run, decay.as_ref());
     top += STORAGE + 14.0;
@@ -116,6 +115,14 @@ impl<'a> Told<'a> {
         }
     }
 
+    fn title(&self) -> &'static str {
+        if self.rate.is_none() && self.levels.is_empty() {
+            "errors of the run"
+        } else {
+            "errors, and what is proved of them"
+        }
+    }
+
     fn legend(&self) -> Vec<(String, Stroke)> {
         let decay = self.start.zip(self.rate).map(|(_, rate)| {
             (format!("W(0) e^(−2 · {} t), proved in continuous time", significant(rate, 3)), DECAY)
@@ -160,6 +167,9 @@ fn draw_storage(scene: &mut Scene, top: f64, told: &Told, run: &Curve, decay: Op
         low: range.low.min(level - 0.5),
         high: range.high.max(level + 0.5),
     });
+    // What the legend names is seen.
+    let start = told.start.zip(told.rate).map_or(range.low, |(start, _)| start.log10());
+    let range = Range { low: range.low.min(start - 0.5), high: range.high.max(start + 0.5) };
     let range = Range { low: range.low.max(range.high - DECADES), ..range };
     let y = Axis { range, ticks: ticks::decades(range), label: "storage W [J]" };
     let axes = over_time([MARGIN / 2.0, top, WIDTH - MARGIN, STORAGE], LEFT, time, TIME, y);
@@ -200,13 +210,17 @@ impl Plane {
             power => format!("{of} [{} {unit}]", power_of_ten(power)),
         };
         let labels = [label("link error", x), label("motor error", y)];
-        let ticks = |range: Range, most| ticks::even_by(range, most, ticks::power(range));
+        // One number says nothing of the scale.
+        let ticks = |range: Range, most: u8| {
+            let by = |most| ticks::even_by(range, f64::from(most), ticks::power(range));
+            (most..12).map(by).find(|ticks| ticks.len() > 2).unwrap_or_else(|| by(most))
+        };
         scene.text([left + LEFT, top + 16.0], name, bold(15.0, INK), Anchor::Start);
         let axes = Axes {
             frame: [left + LEFT, top + 26.0, width - LEFT - 14.0, PLANE - 26.0 - BOTTOM - 8.0],
             left: LEFT,
-            x: Axis { range: x, ticks: ticks(x, 4.0), label: &labels[0] },
-            y: Axis { range: y, ticks: ticks(y, 7.0), label: &labels[1] },
+            x: Axis { range: x, ticks: ticks(x, 4), label: &labels[0] },
+            y: Axis { range: y, ticks: ticks(y, 6), label: &labels[1] },
         };
         axes.draw(scene);
         let region = self.region.map(|[a, b]| rectangle(a, b));

@@ -35,7 +35,7 @@ fn taken(constraint: &Constraint) -> f64 {
 fn track(constraint: &Constraint, axis: Range) -> Track {
     let Constraint { what, joint, value, limit, unit, slack, asked, .. } = constraint;
     let taken = taken(constraint);
-    let amount = |x: f64| format!("{} {unit}", short(x, 3)).trim_end().to_owned();
+    let amount = |x: f64| format!("{} {unit}", short(x, 5)).trim_end().to_owned();
     let of = joint.as_ref().map_or(String::new(), |joint| format!(" of {joint}"));
     let wished = if *asked { "" } else { ", wished" };
     Track {

@@ -1,6 +1,6 @@
 //! How the metrics of a sweep are spread, as a picture.
 
-use crate::files::number::engineering;
+use crate::files::number::{engineering, power_of_ten};
 use crate::report::draw::range::Range;
 use crate::report::draw::scene::Scene;
 use crate::report::draw::style::{HOLDS, INK, SHADES, Stroke};
@@ -19,14 +19,17 @@ pub fn spread_figure(sweep: &Sweep, statistics: &Statistics) -> Scene {
         format!("{} of {} runs; each metric over the runs that have it", statistics.rows, sweep.rows());
     let legend =
         [swatch("least to largest", SHADES[3]), swatch("5 % to 95 %", HOLDS), ("median".to_owned(), MEDIAN)];
-    let metrics = sweep.metrics().iter();
-    let rows: Vec<Track> =
-        metrics.filter_map(|metric| track(metric.titled(), statistics.metrics.get(metric.name)?)).collect();
+    let kinds = sweep.kinds();
+    let rows: Vec<Track> = sweep
+        .metrics()
+        .iter()
+        .filter_map(|metric| track(metric.name, metric.unit_of(&kinds), statistics.metrics.get(metric.name)?))
+        .collect();
     tracks(&format!("{}: how the runs are spread", sweep.name()), &subtitle, &legend, rows)
 }
 
 /// The row of a metric; none if no run has it.
-fn track(name: String, figures: &Figures) -> Option<Track> {
+fn track(name: &str, unit: Option<String>, figures: &Figures) -> Option<Track> {
     let (least, largest) = (figures.least?, figures.largest?);
     let [low, median, high] =
         [0.05, 0.5, 0.95].map(|part| figures.quantile(part).unwrap_or(f64::NAN).clamp(least, largest));
@@ -38,16 +41,14 @@ fn track(name: String, figures: &Figures) -> Option<Track> {
         (false, true) => 1.0,
         (false, false) => 0.1 * from.abs(),
     };
-    let axis = Range { low: from - room, high: to + room };
-    let power = ticks::power(axis);
-    let (ticks, name) = match (is_wide, power) {
-        (true, _) => (ticks::logarithmic(axis, 6.0), name),
-        (false, 0) => (ticks::even(axis, 6.0), name),
-        (false, power) => (
-            ticks::even_by(axis, 6.0, power),
-            format!("{name} · {}", crate::files::number::power_of_ten(-power)),
-        ),
-    };
+    // What is never anything but zero is not below it.
+    let start = if from == 0.0 && to == 0.0 { 0.0 } else { from - room };
+    let axis = Range { low: start, high: to + room };
+    let power = if is_wide { 0 } else { ticks::power(axis) };
+    let ticks = if is_wide { ticks::logarithmic(axis, 6.0) } else { ticks::even_by(axis, 6.0, power) };
+    let scale = (power != 0).then(|| power_of_ten(power));
+    let unit: Vec<String> = scale.into_iter().chain(unit).collect();
+    let name = if unit.is_empty() { name.to_owned() } else { format!("{name} [{}]", unit.join(" ")) };
     Some(Track {
         name,
         axis,

@@ -6,6 +6,7 @@ use crate::files::number::{NONE, engineering, short, significant};
 use crate::prove::engine::certificate::StructureName;
 use crate::prove::summary::ProofSummary;
 use crate::report::tables::summary::proved_rate;
+use crate::units;
 
 /// A proof as the report shows it.
 #[derive(Clone, Debug)]
@@ -20,6 +21,9 @@ pub struct CertificateReport {
 
 /// The table of proofs, with what it means.
 pub(crate) fn section(certificates: &[CertificateReport]) -> Markup {
+    let unit = certificates.first().map_or_else(String::new, |first| first.summary.unit(units::ANGLE));
+    let files: Vec<&String> =
+        certificates.iter().filter_map(|certificate| certificate.file.as_ref()).collect();
     markup! {
         div.prose {
             p {
@@ -34,7 +38,7 @@ pub(crate) fn section(certificates: &[CertificateReport]) -> Markup {
             table.numbers {
                 thead { tr {
                     th { "φ" }
-                    th { "region" br; span.unit { "|q̃| [rad]" } }
+                    th { "region" br; span.unit { "|q̃| [" (unit) "]" } }
                     @for title in ["contraction", "convergence", "paper’s formula", "φ_l", "φ_m", "σ_l", "σ_m"] {
                         th { (crate::report::pages::runs::symbols(title)) br; span.unit { "[1/s]" } }
                     }
@@ -46,9 +50,9 @@ pub(crate) fn section(certificates: &[CertificateReport]) -> Markup {
         }
         p.note {
             (crate::report::pages::runs::symbols("φ_l … σ_m")) ": contraction rates of the blocks of positions and momenta, links and motors. Check a certificate with "
-            code { "flexure verify FILE" } " or " code { "tools/check_certificate.py FILE" } ": "
-            @for (i, file) in certificates.iter().filter_map(|certificate| certificate.file.as_ref()).enumerate() {
-                @if i > 0 { ", " }
+            code { "flexure verify FILE" } " or " code { "tools/check_certificate.py FILE" }
+            @for (i, file) in files.iter().enumerate() {
+                @if i > 0 { ", " } @else { ": " }
                 a href=(file) { (file) }
             }
             "."

@@ -1,5 +1,7 @@
 //! The page of a proof.
 
+use std::path::Path;
+
 use maud::{Markup, html as markup};
 
 use super::certificates::{self, CertificateReport};
@@ -14,6 +16,7 @@ use crate::report::tables::proof::statements;
 use crate::report::tables::summary::proved_rate;
 use crate::sampled::Sampled;
 use crate::scenario::Scenario;
+use crate::units;
 
 /// What a proof comes to in a sentence: good if it is about the loop in the file and its start, bad if it is wrong, if that loop is unstable, or if a `strict`
 /// question gets a proof of another loop; else no verdict.
@@ -32,7 +35,7 @@ pub fn proof_verdict(standing: &Standing<'_>, summary: &ProofSummary, strict: bo
                 Some(sampled) => {
                     format!(
                         "Proved in continuous time: {proved} Of the loop that holds its torque: {}.",
-                        held(sampled)
+                        bare(sampled)
                     )
                 }
                 None => format!("Proved: {proved}"),
@@ -45,20 +48,21 @@ pub fn proof_verdict(standing: &Standing<'_>, summary: &ProofSummary, strict: bo
                 conditions.join(", ").replace('_', " ")
             ),
         },
-        Standing::Unstable(sampled) => Verdict {
-            good: Some(false),
-            words: format!(
-                "Unstable: {}. What is proved in continuous time is not true of it.",
-                sampled.line()
-            ),
-        },
+        Standing::Unstable { sampled, proved } => {
+            let rest = if *proved { " What is proved in continuous time is not true of it." } else { "" };
+            let help = sampled.help().map_or_else(String::new, |help| format!(" What helps: {help}."));
+            Verdict {
+                good: Some(false),
+                words: format!("Unstable as sampled: {}.{rest}{help}", bare(sampled)),
+            }
+        }
         Standing::Refuted(problem) => Verdict { good: Some(false), words: format!("Refuted: {problem}.") },
         Standing::Undecided(problem) => Verdict { good: None, words: format!("Undecided: {problem}.") },
     }
 }
 
-/// What the sampled loop does, where it is stable.
-fn held(sampled: &Sampled) -> String {
+/// What the sampled loop does.
+fn bare(sampled: &Sampled) -> String {
     sampled.line().trim_start_matches("sampled loop: ").to_owned()
 }
 
@@ -71,7 +75,7 @@ fn rates(summary: &ProofSummary) -> String {
         |level| format!("errors that start with W ≤ {} J", short(level, 3)),
     );
     let place = region.and_then(|region| region.error.as_ref()).map_or_else(String::new, |errors| {
-        format!(" where position errors are up to {} rad", largest(errors))
+        format!(" where position errors are up to {} {}", largest(errors), summary.unit(units::ANGLE))
     });
     format!(
         "{errors} shrink at {} 1/s or faster, and any two solutions of the virtual system come together at {} 1/s or faster{place}.",
@@ -86,11 +90,16 @@ pub(crate) fn certify_page(
     summary: &ProofSummary,
     verdict: &Verdict,
     picture: &Result<Scene, Problems>,
-    certificate: Option<&str>,
+    certificate: Option<&Path>,
+    link: Option<&str>,
 ) -> String {
     let caption = markup! {
-        "Above: the storage W of the errors along the run. Below: the position errors of each joint, from the ring on; a level of W is an ellipse there, \
-         and what is outside of the ellipse is outside of the level, while a point inside of it may have momenta that are not. "
+        "Above: the storage W of the errors along the run. Below: the position errors of each joint, from the ring on"
+        @if summary.region.as_ref().is_some_and(|region| region.level.is_some()) {
+            "; a level of W is an ellipse there, and what is outside of the ellipse is outside of the level, while a point inside of it may have momenta that are \
+             not"
+        }
+        ". "
         @if summary.convergence_rate.is_some() {
             "The decay is proved of the law in continuous time; a loop that holds its torque for a control period, or has imperfections, is left with an \
              error of its own."
@@ -105,18 +114,19 @@ pub(crate) fn certify_page(
         let report = CertificateReport {
             summary: summary.clone(),
             phi: scenario.controller.phi().unwrap_or_default().to_owned(),
-            file: certificate.map(str::to_owned),
+            file: link.map(str::to_owned),
         };
         sections.push(Section::new("rates", "Proved rates", certificates::section(&[report])));
     }
     sections.push(Section::new("statements", "All that is said", said(summary)));
-    let assumed = markup! { ul { @for assumed in &summary.assumptions { li { (assumed) } } } };
+    let assumed = markup! { ul { @for assumed in summary.assumptions.iter().collect::<std::collections::BTreeSet<_>>() { li { (assumed) } } } };
     sections.push(Section::new("assumptions", "Assumptions", assumed).folded());
-    let lines = [
+    let mut lines = vec![
         "Rounded outwards, from the decimals of the robot and scenario files. The same build writes the same page, byte for byte, on any number of \
          threads."
             .to_owned(),
     ];
+    lines.extend(certificate.map(|path| format!("The certificate is {}.", path.display())));
     Page {
         title: &format!("{}: proof", scenario.name),
         verdict: Some(verdict),
@@ -131,7 +141,7 @@ fn said(summary: &ProofSummary) -> Markup {
     markup! {
         @if let Some(sampled) = &summary.sampled { p.note { (sampled.line()) } }
         div.scroll { table { tbody {
-            @for [label, words] in statements(summary).iter().filter(|[label, _]| label != "assumed") { tr { th scope="row" { (label) } td { (symbols(words)) } } }
+            @for [label, words] in statements(summary).iter().filter(|[label, _]| label != "assumed") { tr { th scope="row" { (label) } td { (if ["limit", "witness"].contains(&&**label) { markup! { (words) } } else { symbols(words) }) } } }
         } } }
     }
 }

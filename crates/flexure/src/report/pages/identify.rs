@@ -19,8 +19,8 @@ pub(crate) fn identify_page(
     file: Option<&Path>,
 ) -> String {
     let caption = markup! {
-        "Each row on an axis of its own, zero at the number that was found. An error bar that does not reach the dashed line speaks against the number of \
-         the robot file."
+        "Each row on an axis of its own, zero at the number that was found. Error bars are those of a model that has all that the robot has: where prediction \
+         errors are larger than the noise of the encoders it has not, and numbers may be farther off than their bars."
     };
     let sections = vec![
         Section::new("numbers", "In numbers", estimates(found)),
@@ -40,6 +40,9 @@ pub(crate) fn identify_page(
     }
     .html()
 }
+
+/// Prediction errors over the noise of the encoders up to which the model is taken to explain the logs.
+const MISFIT: f64 = 1.4;
 
 fn verdict(found: &Identified, objection: Option<&Problem>) -> Verdict {
     if let Some(problem) = objection {
@@ -63,8 +66,24 @@ fn verdict(found: &Identified, objection: Option<&Problem>) -> Verdict {
             raised(unit)
         )
     });
-    let words = format!("The logs know the stiffness and the motor inertia of every joint.{worst}");
-    Verdict { good: Some(true), words }
+    let ratios = found
+        .joints
+        .iter()
+        .flat_map(|joint| joint.noise_ratio.link.into_iter().chain([joint.noise_ratio.motor]));
+    let misfit = ratios.fold(0.0, f64::max);
+    let (good, fit) = if misfit <= MISFIT {
+        (Some(true), "")
+    } else {
+        (
+            None,
+            ": the model lacks something that is in the logs, and numbers may be farther off than their errors say",
+        )
+    };
+    let words = format!(
+        "The logs know the stiffness and the motor inertia of every joint.{worst} Prediction errors are up to {} times the noise of the encoders{fit}.",
+        significant(misfit, 3)
+    );
+    Verdict { good, words }
 }
 
 fn estimates(found: &Identified) -> Markup {
@@ -103,7 +122,7 @@ fn fit(found: &Identified) -> Markup {
         ))
         ul {
             @for offset in &found.offsets {
-                li { (offset.log) ": torques act " (number(1e3 * offset.value)) " ± " (significant(1e3 * offset.error, 2)) " ms after they are logged." }
+                li { (offset.log) ": torques act " (format!("{:.4}", 1e3 * offset.value)) " ± " (significant(1e3 * offset.error, 2)) " ms after they are logged." }
             }
             @for joint in &found.joints {
                 @if let Some(doubt) = &joint.doubt { li { (joint.name) ": nothing of it counts as known: " (doubt) } }

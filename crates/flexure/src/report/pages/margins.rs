@@ -5,10 +5,11 @@ use maud::{Markup, html as markup};
 use super::kit::{self, Page, Section, Verdict, figure, made};
 use super::runs::{AssumedNumber, assumptions};
 use crate::files::Problem;
-use crate::files::number::{NONE, significant};
+use crate::files::number::{NONE, short, significant};
 use crate::margins::{Edge, Margins};
 use crate::report::draw::scene::Scene;
 use crate::scenario::Scenario;
+use crate::units;
 
 /// The page, with a figure for each loop: for each what it bears, as a picture, then all numbers. The same margins give the same page, byte for byte.
 pub(crate) fn margins_page(
@@ -22,7 +23,8 @@ pub(crate) fn margins_page(
     let verdict = verdict(loops, scenario);
     let caption = markup! {
         "Bars end where the loop was seen to hold last, red begins where it did not. Each change is made alone, from the scenario as it is, by \
-         steps and bisection to 1 %: where a loop holds again farther out was not looked for."
+         steps and bisection to 1 %: where a loop holds again farther out was not looked for. Holding is seen in runs: errors that grow so slowly \
+         that a run is too short for them do not show."
     };
     let lead = markup! { @for scene in figures { (figure(&scene.svg(), &caption)) } };
     let sections = vec![
@@ -62,14 +64,16 @@ fn borne(margins: &Margins) -> String {
         edge => number(edge, 1.0),
     };
     format!(
-        "{} holds with {} ms of delay more, {} to {} times its torque, {} to {} times its stiffness, and {} mrad of noise more.",
+        "{} holds, in runs of {} s, with {} ms of delay more, {} to {} times its torque, {} to {} times its stiffness, and {} {} of noise more.",
         margins.law(),
+        short(margins.duration, 4),
         number(&margins.delay, 1e3),
         least(&margins.gain_low),
         number(&margins.gain_high, 1.0),
         least(&margins.stiffness_low),
         number(&margins.stiffness_high, 1.0),
-        number(&margins.noise, 1e3)
+        number(&margins.noise, 1e3),
+        margins.unit(units::ANGLE, "m")
     )
 }
 
@@ -82,18 +86,18 @@ fn numbers(loops: &[Margins]) -> Markup {
     markup! {
         @for margins in loops {
             h3 { (margins.law()) }
-            (kit::numbers(&["change", "holds", "does not hold"], [
-                ("delay from command to torque added [ms]", &margins.delay, 1e3),
-                ("torque too small by the factor", &margins.gain_low, 1.0),
-                ("torque too large by the factor", &margins.gain_high, 1.0),
-                ("springs softer than the law believes by the factor", &margins.stiffness_low, 1.0),
-                ("springs stiffer than the law believes by the factor", &margins.stiffness_high, 1.0),
-                ("white noise added to all positions, standard deviation [mrad]", &margins.noise, 1e3),
-            ].map(|(name, edge, scale)| (name.to_owned(), both(edge, scale)))))
+            (kit::numbers(&["change", if margins.is_unstable() { "follows" } else { "holds" }, "does not hold"], [
+                ("delay from command to torque added [ms]".to_owned(), &margins.delay, 1e3),
+                ("torque too small by the factor".to_owned(), &margins.gain_low, 1.0),
+                ("torque too large by the factor".to_owned(), &margins.gain_high, 1.0),
+                ("springs softer than the law believes by the factor".to_owned(), &margins.stiffness_low, 1.0),
+                ("springs stiffer than the law believes by the factor".to_owned(), &margins.stiffness_high, 1.0),
+                (format!("white noise added to all positions, standard deviation [{}]", margins.unit(units::ANGLE, "m")), &margins.noise, 1e3),
+            ].map(|(name, edge, scale)| (name, both(edge, scale)))))
             @if let (Some(error), Some(torque)) = (margins.noise_to_error, margins.noise_to_torque) {
                 p.note {
-                    "At a tenth of that noise: " (significant(error, 3)) " rad of link error for each rad of noise, and "
-                    (significant(1e-3 * torque, 3)) " N m of torque step for each mrad (root mean squares)."
+                    "At a tenth of that noise: " "link errors are " (significant(error, 3)) " times the noise, and torques step by "
+                    (significant(1e-3 * torque, 3)) " " (margins.unit(units::TORQUE, "")) " for each " (margins.unit(units::ANGLE, "m")) " (root mean squares)."
                 }
             }
             @if let Some(sampled) = &margins.sampled { p.note { (sampled.line()) } }
@@ -106,8 +110,9 @@ fn criteria(loops: &[Margins]) -> Markup {
         ul { @for margins in loops {
             li {
                 (margins.law()) ": it follows its reference by the verdict on runs, with an rms error of at most "
-                (significant(1e3 * margins.allowed_rms_e_l, 3)) " mrad, torques of at most " (significant(margins.allowed_max_u_m, 3))
-                " N m, and steps of the torque of at most " (significant(margins.allowed_rms_torque_change, 3)) " N m (rms) a control period."
+                (significant(1e3 * margins.allowed_rms_e_l, 3)) " " (margins.unit(units::ANGLE, "m")) ", torques of at most " (significant(margins.allowed_max_u_m, 3))
+                " " (margins.unit(units::TORQUE, "")) ", and steps of the torque of at most " (significant(margins.allowed_rms_torque_change, 3)) " "
+                (margins.unit(units::TORQUE, "")) " (rms) a control period."
             }
         } }
     }

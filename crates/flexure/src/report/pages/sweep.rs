@@ -40,14 +40,33 @@ pub(crate) fn sweep_page(sweep: &Sweep, statistics: &Statistics, picture: &Scene
     .html()
 }
 
-/// Good if every run is there and follows; how many may fail is not for the program to say.
+/// The metric that tells whether a loop is stable as it is sampled.
+const DECAY: &str = "sampled_rate";
+
+/// Good if every run is there and follows in a loop that is stable as sampled; how many may fail is not for the program to say.
 fn verdict(sweep: &Sweep, statistics: &Statistics) -> Verdict {
     let follow = statistics.statuses.get(Status::Follows.name()).copied().unwrap_or_default();
-    let good = (follow == sweep.rows()).then_some(true);
-    Verdict { good, words: format!("{}.", statistics.sentence(sweep)) }
+    let all = statistics.statuses.values().sum::<u64>() == sweep.rows();
+    let decay = statistics.metrics.get(DECAY);
+    let slowest = decay.filter(|decay| decay.count == sweep.rows()).and_then(|decay| decay.least);
+    let sampled = match (decay.and_then(|decay| decay.least), slowest) {
+        (_, Some(slowest)) if slowest > 0.0 => {
+            format!(" Small errors shrink in every sampled loop, by {} 1/s or faster.", engineering(slowest))
+        }
+        (Some(least), _) if least <= 0.0 => {
+            " Some of the loops are unstable as sampled: small errors grow.".to_owned()
+        }
+        _ => format!(
+            " Whether small errors shrink in each of the sampled loops is not among the metrics: {DECAY}."
+        ),
+    };
+    let good =
+        (all && follow == sweep.rows() && slowest.is_some_and(|slowest| slowest > 0.0)).then_some(true);
+    Verdict { good, words: format!("{}.{sampled}", statistics.sentence(sweep)) }
 }
 
 fn metrics(sweep: &Sweep, statistics: &Statistics) -> Markup {
+    let kinds = sweep.kinds();
     let rows = sweep.metrics().iter().filter_map(|metric| {
         let figures = statistics.metrics.get(metric.name)?;
         let mean = (figures.count > 0).then_some(figures.mean);
@@ -55,7 +74,11 @@ fn metrics(sweep: &Sweep, statistics: &Statistics) -> Markup {
         let [low, median, high] = quantiles;
         let numbers = [figures.least, low, median, high, figures.largest, mean, figures.deviation()]
             .map(|number| number.map_or(NONE.to_owned(), engineering));
-        Some((metric.titled(), std::iter::once(figures.count.to_string()).chain(numbers).collect::<Vec<_>>()))
+        let unit = metric.unit_of(&kinds).map_or_else(String::new, |unit| format!(" [{unit}]"));
+        Some((
+            format!("{}{unit}", metric.name),
+            std::iter::once(figures.count.to_string()).chain(numbers).collect::<Vec<_>>(),
+        ))
     });
     numbers(&["metric", "runs", "least", "5 %", "median", "95 %", "largest", "mean", "deviation"], rows)
 }

@@ -14,6 +14,7 @@ use crate::report::draw::scene::Scene;
 use crate::report::figures::margins::margins_figure;
 use crate::sampled::Sampled;
 use crate::scenario::Scenario;
+use crate::units::{self, of_joints};
 
 /// The page: whether gains were found that keep every constraint, what they leave of each, and what speaks for them.
 pub(crate) fn tune_page(
@@ -24,7 +25,7 @@ pub(crate) fn tune_page(
     file: Option<&Path>,
 ) -> String {
     let caption = markup! {
-        "A bar is the share of its limit that the loop takes, with the gains that were found: the nearer to the line, the less is left. Of a rate, which \
+        "A bar is the share of its limit that the loop takes, with the best gains that were found: the nearer to the line, the less is left. Of a rate, which \
          shall be large, what is left is what it has more."
     };
     let mut sections = vec![
@@ -34,7 +35,10 @@ pub(crate) fn tune_page(
         Section::new("evidence", "What the loop does with them", evidence(scenario, design)),
     ];
     if let Some(margins) = &design.evidence.margins {
-        let caption = markup! { "Each change is made alone, from the scenario as it is." };
+        let caption = markup! {
+            "Each change is made alone, from the scenario as it is. Holding is seen in runs: errors that grow so slowly that a run is too short for them do not \
+             show, and constraints on the sampled loop may say no sooner."
+        };
         let body = figure(&margins_figure(margins).svg(), &caption);
         sections.push(Section::new("margins", "What it bears", body));
     }
@@ -47,7 +51,7 @@ pub(crate) fn tune_page(
     lines.extend(file.map(|file| format!("The scenario with these gains is in {}.", file.display())));
     Page {
         title: &format!("{}: tuned gains", design.name),
-        verdict: Some(&verdict(design, objection)),
+        verdict: Some(&verdict(scenario, design, objection)),
         lead: figure(&picture.svg(), &caption),
         sections,
         provenance: made(&lines),
@@ -55,7 +59,7 @@ pub(crate) fn tune_page(
     .html()
 }
 
-fn verdict(design: &Design, objection: Option<&Problem>) -> Verdict {
+fn verdict(scenario: &Scenario, design: &Design, objection: Option<&Problem>) -> Verdict {
     if let Some(problem) = objection {
         return Verdict { good: Some(false), words: format!("{problem}.") };
     }
@@ -65,7 +69,7 @@ fn verdict(design: &Design, objection: Option<&Problem>) -> Verdict {
             let of = joint.as_ref().map_or_else(String::new, |joint| format!(" of {joint}"));
             let amount = |x: f64| format!("{} {unit}", short(x, 3)).trim_end().to_owned();
             format!(
-                " The one with least left is {what}{of}: {}, where {} is the limit.",
+                " Least is left of “{what}”{of}: {}, where {} is the limit.",
                 amount(*value),
                 amount(*limit)
             )
@@ -76,8 +80,9 @@ fn verdict(design: &Design, objection: Option<&Problem>) -> Verdict {
     });
     let rms = design.evidence.runs.iter().map(|run| run.rms_e_l).fold(0.0, f64::max);
     let words = format!(
-        "Gains that keep every constraint that is asked; the rms error is {} mrad.{}{}",
+        "Gains that keep every constraint that is asked; the rms error is {} {}.{}{}",
         significant(1e3 * rms, 3),
+        of_joints(units::ANGLE, "m", scenario.robot.kinds().into_iter()),
         closest.unwrap_or_default(),
         frail.unwrap_or_default()
     );
@@ -91,6 +96,7 @@ fn constraints(constraints: &[Constraint]) -> Markup {
         let left = match (*slack < 0.0, *asked) {
             (true, true) => "broken".to_owned(),
             (true, false) => "not borne, wished for".to_owned(),
+            (false, _) if *limit == 0.0 => NONE.to_owned(),
             (false, _) => significant(100.0 * slack, 3),
         };
         (what.clone(), [joint.clone().unwrap_or(NONE.to_owned()), amount(*value), amount(*limit), left])

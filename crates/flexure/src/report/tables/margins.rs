@@ -6,21 +6,25 @@ use super::columns::laid_out;
 use super::summary::{headed, right};
 use crate::files::number::{NONE, significant};
 use crate::margins::{Edge, Margins};
+use crate::units;
 
 /// One row a loop, in so many columns.
-pub fn margins_table(margins: &[Margins], width: usize) -> String {
+pub fn margins_table(loops: &[Margins], width: usize) -> String {
+    // Of one robot, whose joints these are.
+    let unit = |unit, prefix| loops.first().map_or_else(String::new, |first| first.unit(unit, prefix));
+    let [milli, angle, torque] = [unit(units::ANGLE, "m"), unit(units::ANGLE, ""), unit(units::TORQUE, "")];
     let titles = [
         "loop",
-        "rms\n|e_l|\n[mrad]",
+        &format!("rms\n|e_l|\n[{milli}]"),
         "delay\nadded\n[ms]",
         "torque\ngain\nfrom … to",
         "plant\nstiffness\nfrom … to",
-        "noise\nadded\n[mrad]",
-        "error\nper noise\n[rad/rad]",
-        "torque step\nper noise\n[N m/mrad]",
+        &format!("noise\nadded\n[{milli}]"),
+        &format!("error\nper noise\n[{angle}/{angle}]"),
+        &format!("torque step\nper noise\n[{torque}/{milli}]"),
     ];
     let mut table = headed(titles.into_iter());
-    for loop_ in margins {
+    for loop_ in loops {
         let milli = |x: Option<f64>, scale: f64| x.map_or(NONE.to_owned(), |x| significant(scale * x, 3));
         table.add_row(vec![
             Cell::new(format!("{}\n{}", loop_.name, loop_.law())),

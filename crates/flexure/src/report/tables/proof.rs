@@ -10,6 +10,7 @@ use crate::prove::engine::certificate::{LoopSide, Norm, StructureName};
 use crate::prove::engine::verdict::Verdict;
 use crate::prove::standing::outside_of_proofs;
 use crate::prove::summary::{BlockSummary, ProofSummary, WithinSummary, WitnessSummary};
+use crate::robot::JointKind;
 use crate::units::{self, Unit};
 
 /// What was proved, refuted or left undecided; the table in so many columns.
@@ -94,14 +95,21 @@ pub(crate) fn statements(summary: &ProofSummary) -> Vec<[String; 2]> {
     lines(summary).into_iter().map(labelled).collect()
 }
 
+/// Below this W is the rounding of a start on the reference [J].
+const ROUNDING: f64 = 1e-15;
+
 fn lines(summary: &ProofSummary) -> Vec<String> {
+    let [rad, torque] = [units::ANGLE, units::TORQUE].map(|unit| summary.unit(unit));
     let mut lines = Vec::new();
     if let Some(region) = &summary.region {
         match (&region.error, region.level, &region.error_at_level) {
             (Some(error), Some(level), Some(at_level)) => {
-                lines.push(format!("region       |q̃_i| ≤ {} rad, any speed, any configuration", list(error)));
                 lines.push(format!(
-                    "invariant    {{W ≤ {} J}}, where |q̃_i| ≤ {} rad",
+                    "region       |q̃_i| ≤ {} {rad}, any speed, any configuration",
+                    list(error)
+                ));
+                lines.push(format!(
+                    "invariant    {{W ≤ {} J}}, where |q̃_i| ≤ {} {rad}",
                     short(level, 3),
                     list(at_level)
                 ));
@@ -114,7 +122,7 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
             } else {
                 "not known to be inside: nothing is said of this run"
             };
-            lines.push(format!("start        W ≤ {} J, {place}", short(start.level, 3)));
+            lines.push(format!("start        W ≤ {} J, {place}", short(start.level.max(ROUNDING), 3)));
         }
         lines.push("mass matrix  positive definite at every configuration".to_owned());
     }
@@ -167,19 +175,19 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
     }
     if let Some(tube) = &summary.tube {
         lines.push(format!(
-            "tube         |d_m| ≤ {} N m: W comes below {} J, where |q̃_i| ≤ {} rad",
+            "tube         |d_m| ≤ {} {torque}: W comes below {} J, where |q̃_i| ≤ {} {rad}",
             list(&tube.disturbance),
             engineering(tube.level),
             list(&tube.error)
         ));
     }
     if let Some(within) = &summary.within {
-        lines.extend(tolerated(within));
+        lines.extend(tolerated(within, &rad));
     }
     if let Some(along) = &summary.along {
-        lines.extend(bounds(along));
+        lines.extend(bounds(along, summary));
     }
-    lines.extend(summary.witness.as_ref().map(witness));
+    lines.extend(summary.witness.as_ref().map(|found| witness(found, &rad)));
     if let Some(undecided) = &summary.undecided {
         lines.push(format!("undecided    {} (boxes looked at: {})", undecided.at, undecided.spent));
     }
@@ -188,7 +196,7 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
 }
 
 /// What holds of the robots within the tolerances.
-fn tolerated(within: &WithinSummary) -> Vec<String> {
+fn tolerated(within: &WithinSummary, rad: &str) -> Vec<String> {
     let (Some(rate), Some(level), Some(settles), Some(error)) =
         (within.rate, within.level, within.settles, &within.error)
     else {
@@ -211,7 +219,7 @@ fn tolerated(within: &WithinSummary) -> Vec<String> {
             significant(rate, 6)
         ),
         format!(
-            "tolerances   to that of W = {} J, where |q̃_i| ≤ {} rad, not to 0",
+            "tolerances   to that of W = {} J, where |q̃_i| ≤ {} {rad}, not to 0",
             engineering(settles),
             list(error)
         ),
@@ -219,30 +227,32 @@ fn tolerated(within: &WithinSummary) -> Vec<String> {
 }
 
 /// What is bounded along the reference.
-fn bounds(along: &Along) -> Vec<String> {
+fn bounds(along: &Along, summary: &ProofSummary) -> Vec<String> {
+    let [rad, speed, torque] = [units::ANGLE, units::SPEED, units::TORQUE].map(|unit| summary.unit(unit));
     let mut lines = vec![
         format!(
             "along        while W ≤ {} J: |q̇_l| {}",
             short(along.level, 3),
-            bounded(&along.velocity.bound, "rad/s")
+            bounded(&along.velocity.bound, &speed)
         ),
-        format!("along        |q_m − q_l| {}", bounded(&along.deflection.bound, "rad")),
+        format!("along        |q_m − q_l| {}", bounded(&along.deflection.bound, &rad)),
         format!(
-            "along        |u_m| {}, {} N m on the reference with the numbers of the file",
-            bounded(&along.torque.bound, "N m"),
+            "along        |u_m| {}, {} {torque} on the reference with the numbers of the file",
+            bounded(&along.torque.bound, &torque),
             list(&along.torque.nominal)
         ),
     ];
     let undecided = along.limits.iter().filter(|limit| matches!(limit.verdict, Verdict::Undecided(_)));
-    lines.extend(along.limits.iter().filter_map(limit));
+    lines.extend(along.limits.iter().filter_map(|bound| limit(bound, &summary.kinds)));
     lines.extend(open(undecided));
     lines
 }
 
 /// What is known of a limit.
-fn limit(limit: &Limit) -> Option<String> {
+fn limit(limit: &Limit, kinds: &[JointKind]) -> Option<String> {
+    let kind = kinds.get(limit.joint).copied().unwrap_or(JointKind::Revolute);
     let (joint, key, unit) =
-        (limit.joint + 1, limit.key, Unit::of_key(limit.key).unwrap_or(units::NONE).plain);
+        (limit.joint + 1, limit.key, Unit::of_key(limit.key).unwrap_or(units::NONE).of(kind).plain);
     let verdict = match &limit.verdict {
         Verdict::Proved(bound) => format!("never reached, at most {} {unit}", short(*bound, 3)),
         Verdict::Refuted(state) => {
@@ -270,11 +280,11 @@ fn open<'a>(limits: impl Iterator<Item = &'a Limit>) -> Vec<String> {
     joints.into_iter().map(line).collect()
 }
 
-fn witness(witness: &WitnessSummary) -> String {
+fn witness(witness: &WitnessSummary, rad: &str) -> String {
     let block = witness.block.name();
     let place = match (&witness.error, &witness.configuration) {
-        (Some(error), _) => format!("at errors {} rad", list(error)),
-        (_, Some(q)) => format!("at q_l = {} rad", list(q)),
+        (Some(error), _) => format!("at errors {} {rad}", list(error)),
+        (_, Some(q)) => format!("at q_l = {} {rad}", list(q)),
         _ => "everywhere".to_owned(),
     };
     format!(
