@@ -196,7 +196,7 @@ impl Plane {
         let (e_l, e_m) = path.of_joint(joint);
         let of = |errors: &[f64]| Some([*errors.get(joint)?, *errors.get(joints + joint)?]);
         Self {
-            run: Curve { t: e_l, values: e_m, stroke: run_stroke() },
+            run: Curve { t: e_l, values: e_m, stroke: Stroke { width: 1.3, ..run_stroke() } },
             region: told.region.and_then(of),
             levels: told.levels.iter().filter_map(|set| Some((of(set.error)?, set.stroke))).collect(),
         }
