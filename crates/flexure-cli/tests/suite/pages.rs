@@ -176,7 +176,8 @@ fn joints_that_slide_are_measured_in_metres() {
     let place = Place::new();
     let slide = "name = \"slide\"\n[links]\nkind = \"tree\"\n[[links.joint]]\nname = \"rail\"\nkind = \"prismatic\"\nmass = 2.0\n\
                  axis = [1.0, 0.0, 0.0]\ncom = [0.0, 0.0, 0.0]\ninertia = [0.01, 0.0, 0.0, 0.01, 0.0, 0.01]\n[joints]\nstiffness = [4000.0]\n\
-                 motor_inertia = [1.0]\nlink_damping = [1.0]\nmotor_damping = [4.0]\n";
+                 motor_inertia = [1.0]\nlink_damping = [1.0]\nmotor_damping = [4.0]\n\
+                 position_lower = -0.2\nposition_upper = 0.2\n";
     let scenario = "robot = \"slide.toml\"\nduration = 1.0\ncontrol_period = 0.001\n[reference]\nkind = \"sine\"\namplitude = [0.05]\n\
                     frequency = [2.0]\n[reference.smooth_start]\nduration = 0.5\n[controller]\nkind = \"vcbc\"\nphi = \"tanh\"\n";
     place.write("slide.toml", slide).write("along.toml", scenario);

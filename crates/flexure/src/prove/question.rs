@@ -192,8 +192,8 @@ fn beyond_the_model(scenario: &Scenario) -> Vec<String> {
     let robot = &scenario.robot;
     notes.extend(tolerances(robot));
     for (i, joint) in robot.joints.iter().enumerate() {
-        if joint.kind == robot::JointKind::Prismatic {
-            let (lower, upper) = (robot.limits.lower[i], robot.limits.upper[i]);
+        let (lower, upper) = (robot.limits.lower[i], robot.limits.upper[i]);
+        if joint.kind == robot::JointKind::Prismatic && lower.is_finite() && upper.is_finite() {
             notes
                 .push(format!("{} slides between {lower} and {upper} m: nothing is said beyond", joint.name));
         }

@@ -70,9 +70,13 @@ fn swinging(values: &[f64], size: usize) -> Vec<bool> {
         turns[(k + 1) / size] += usize::from(rising.is_some_and(|rising| rising != is_rising));
         rising = Some(is_rising);
     }
-    let around =
-        |k: usize| turns[k.saturating_sub(REACH)..(k + REACH + 1).min(turns.len())].iter().sum::<usize>();
-    let mut swings: Vec<bool> = (0..turns.len()).map(|k| around(k) >= OFTEN).collect();
+    let count = |from: usize, to: usize| turns[from..to.min(turns.len())].iter().sum::<usize>();
+    let swings_at = |k: usize| {
+        let (before, after) = (count(k.saturating_sub(REACH), k + 1), count(k, k + REACH + 1));
+        // Beside a swing nothing turns on one side.
+        before > 0 && after > 0 && before + after - turns[k] >= OFTEN
+    };
+    let mut swings: Vec<bool> = (0..turns.len()).map(swings_at).collect();
     for is_band in [false, true] {
         for run in swings.chunk_by_mut(|a, b| a == b).filter(|run| run.len() < RUN && run[0] == is_band) {
             run.fill(!is_band);

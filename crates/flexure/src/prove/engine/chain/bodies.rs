@@ -38,7 +38,10 @@ impl Body {
             (JointMotion::Revolute, _) => None,
             (JointMotion::Prismatic, Some(ends)) => Some(ends.each_ref().map(Number::bounds)),
             (JointMotion::Prismatic, None) => {
-                return Err(format!("joint {} slides without limits: the mass matrix has no bound", k + 1));
+                return Err(format!(
+                    "joint {} slides without position_lower and position_upper: the mass matrix has no bound",
+                    k + 1
+                ));
             }
         };
         let [xx, xy, xz, yy, yz, zz] = body.inertia.each_ref().map(Number::bounds);
