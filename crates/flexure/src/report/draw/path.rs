@@ -4,6 +4,8 @@
 const MOST: usize = 2000;
 /// How far apart points are at first, as a part of the farthest that each coordinate has been from zero.
 const APART: f64 = 1.0 / 1024.0;
+/// How far apart they are at most: to and fro in steps larger than this a way is noise.
+const COARSEST: f64 = 1.0 / 32.0;
 
 /// Points of a way, each so far from the one before that a picture shows it.
 #[derive(Clone, Debug)]
@@ -37,14 +39,18 @@ impl Path {
             self.points.push(point);
         }
         while self.points.len() > MOST {
-            self.apart *= 2.0;
-            let mut kept: Vec<[f64; 2]> = Vec::new();
-            for point in std::mem::take(&mut self.points) {
-                if kept.last().is_none_or(|last| self.is_far(*last, point)) {
-                    kept.push(point);
+            let points = std::mem::take(&mut self.points);
+            if self.apart < COARSEST {
+                self.apart *= 2.0;
+                for point in points {
+                    if self.points.last().is_none_or(|last| self.is_far(*last, point)) {
+                        self.points.push(point);
+                    }
                 }
+            } else {
+                // A way to and fro without end: some of it looks like all of it.
+                self.points = points.into_iter().step_by(2).collect();
             }
-            self.points = kept;
         }
     }
 
@@ -77,7 +83,9 @@ mod tests {
             [radius * angle.cos(), 0.1 * radius * angle.sin()]
         };
         let noisy = (0..200_000).map(|_| [random(), 0.1 * random()]);
-        for points in [(0..3000).map(spiral).collect::<Vec<_>>(), noisy.collect()] {
+        // Steps of a smooth way stay far below those between points; noise leaves gaps between two thousand points.
+        let ways = [((0..3000).map(spiral).collect::<Vec<_>>(), 4.0 * APART), (noisy.collect(), 0.25)];
+        for (points, far) in ways {
             let mut path = Path::new();
             for point in &points {
                 path.push(*point);
@@ -85,7 +93,6 @@ mod tests {
             let kept = path.points();
             assert!(kept.len() <= MOST + 1);
             assert_eq!((kept[0], kept[kept.len() - 1]), (points[0], points[points.len() - 1]));
-            let far = 2.0 * path.apart.max(APART);
             for point in points.iter().step_by(97) {
                 let near =
                     |kept: &[f64; 2]| (0..2).all(|i| (kept[i] - point[i]).abs() <= far * path.farthest[i]);
