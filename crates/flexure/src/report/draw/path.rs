@@ -68,7 +68,7 @@ impl Path {
 
 #[cfg(test)]
 mod tests {
-    use super::{APART, MOST, Path};
+    use super::{MOST, Path};
 
     /// A spiral that comes in, and noise without end: the picture of it is near to every point that there was.
     #[test]
@@ -84,7 +84,7 @@ mod tests {
         };
         let noisy = (0..200_000).map(|_| [random(), 0.1 * random()]);
         // Steps of a smooth way stay far below those between points; noise leaves gaps between two thousand points.
-        let ways = [((0..3000).map(spiral).collect::<Vec<_>>(), 4.0 * APART), (noisy.collect(), 0.25)];
+        let ways = [((0..3000).map(spiral).collect::<Vec<_>>(), 1.0 / 256.0), (noisy.collect(), 0.25)];
         for (points, far) in ways {
             let mut path = Path::new();
             for point in &points {
