@@ -42,6 +42,12 @@ fn a_proof_is_good_only_if_it_is_about_the_loop_in_the_file() {
     assert_eq!((code, good), (Some(0), "✓ good"));
     assert!(page.contains("Proved in continuous time") && page.contains("href=\"c.json\""), "{page}");
     assert!(page.contains("invariant") && page.contains("joint2"), "{page}");
+    // The same answer is the same page, wherever it goes.
+    let elsewhere = place.path().join("elsewhere");
+    let folder = elsewhere.to_str().unwrap();
+    let certificate = elsewhere.join("c.json");
+    place.run(&["certify", "two-link-tanh", "--page", folder, "--out", certificate.to_str().unwrap()]).done();
+    assert_eq!(place.read("elsewhere/two-link-tanh.certify.html"), page);
     let (code, open, page) = certify("two-link-hardware", &[]);
     assert_eq!((code, open), (Some(0), "– no verdict"));
     assert!(

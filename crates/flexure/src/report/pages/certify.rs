@@ -126,7 +126,9 @@ pub(crate) fn certify_page(
          threads."
             .to_owned(),
     ];
-    lines.extend(certificate.map(|path| format!("The certificate is {}.", path.display())));
+    lines.extend(
+        certificate.and_then(Path::file_name).map(|name| format!("The certificate is {}.", name.display())),
+    );
     Page {
         title: &format!("{}: proof", scenario.name),
         verdict: Some(verdict),

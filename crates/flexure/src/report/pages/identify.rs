@@ -30,7 +30,10 @@ pub(crate) fn identify_page(
         format!("{} samples were fitted, {} kept from the fit.", found.samples, found.held_out),
         "Errors are three standard deviations.".to_owned(),
     ];
-    lines.extend(file.map(|file| format!("The robot file with these numbers is {}.", file.display())));
+    lines.extend(
+        file.and_then(Path::file_name)
+            .map(|name| format!("The robot file with these numbers is {}.", name.display())),
+    );
     Page {
         title: &format!("{}: identified joints", found.robot),
         verdict: Some(&verdict(found, objection)),

@@ -48,7 +48,10 @@ pub(crate) fn tune_page(
         "{} loops were run in the search. The same build writes the same page, byte for byte, on any number of threads.",
         design.runs
     )];
-    lines.extend(file.map(|file| format!("The scenario with these gains is in {}.", file.display())));
+    lines.extend(
+        file.and_then(Path::file_name)
+            .map(|name| format!("The scenario with these gains is {}.", name.display())),
+    );
     Page {
         title: &format!("{}: tuned gains", design.name),
         verdict: Some(&verdict(scenario, design, objection)),
