@@ -1,18 +1,21 @@
 //! The command line's grammar.
 
+mod import;
+mod laws;
+mod logs;
+mod paged;
+
 use std::num::NonZeroU32;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
-use flexure::compare::{BUDGET, SEEDS};
-use flexure::excite::{BUDGET as EXCITE_BUDGET, RESOLUTION};
-use flexure::files::{Change, prepare_for};
-use flexure::replay::HORIZON;
-use flexure::report::{page_names, stem};
-use flexure::robot::DriveClass;
+use flexure::files::Change;
 
-use crate::failure::Failure;
+pub use import::Import;
+pub use laws::{Certify, Compare, Margins, OfFolder, Sweep, Tune};
+pub use logs::{Excite, Identify, Replay};
+pub use paged::Paged;
 
 /// Model, design, simulate and compare controllers for robots with elastic joints.
 #[derive(Debug, Parser)]
@@ -188,278 +191,6 @@ pub struct Traced {
     pub view: bool,
 }
 
-/// Where the page of an answer goes.
-#[derive(Debug, Args)]
-pub struct Paged {
-    /// Write a page with the answer as a picture and in numbers into this folder, too; created if missing.
-    #[arg(long, value_name = "FOLDER")]
-    pub page: Option<PathBuf>,
-}
-
-impl Paged {
-    /// That a page about `name` with so many figures can be written, if one is asked for, and that it is not in the place of the file `out`:
-    /// said before the work, not after.
-    pub fn prepare(
-        &self,
-        name: &str,
-        command: &str,
-        figures: usize,
-        out: Option<&Path>,
-    ) -> Result<(), Failure> {
-        let Some(folder) = &self.page else { return Ok(()) };
-        let names = page_names(&stem(name, command), figures);
-        let place = |path: &Path| std::path::absolute(path).ok();
-        let taken = |out: &&Path| {
-            std::iter::once(folder.clone())
-                .chain(names.iter().map(|name| folder.join(name)))
-                .any(|path| place(&path) == place(out))
-        };
-        if let Some(out) = out.filter(taken) {
-            let message = format!("{} is what --out writes, and where the page goes", out.display());
-            return Err(Failure::input("usage", message, "give the page a folder of its own"));
-        }
-        Ok(prepare_for(folder, names)?)
-    }
-}
-
-#[derive(Debug, Args)]
-pub struct Import {
-    /// URDF file.
-    pub urdf: String,
-    /// Hold a joint still at a position, rad or m; may be given several times.
-    #[arg(long, value_name = "JOINT=POSITION", value_parser = lock)]
-    pub lock: Vec<(String, f64)>,
-    /// Class of drives, of `flexure list drives`, that stands in for what a URDF does not say; listed as assumed.
-    #[arg(long, value_name = "DRIVES", value_parser = drives)]
-    pub assume: Option<&'static DriveClass>,
-    /// Limits of zero, and ranges without width, stand for what nobody knew: take them as none instead of refusing them.
-    #[arg(long)]
-    pub unknown_limits: bool,
-    /// Draft a scenario, too: files instead of standard output.
-    #[arg(long)]
-    pub scenario: bool,
-    /// Folder for NAME.toml and NAME-scenario.toml, or the robot file, PATH.toml; default with --scenario: the current folder.
-    #[arg(long, value_name = "PATH")]
-    pub out: Option<PathBuf>,
-    /// Replace files that exist.
-    #[arg(long)]
-    pub force: bool,
-}
-
-#[derive(Debug, Args)]
-pub struct Certify {
-    /// Scenario file, or the name of a built-in scenario.
-    pub scenario: String,
-    /// Largest position errors in rad: one number, or links then motors, one per joint.
-    #[arg(
-        long,
-        value_name = "R",
-        value_delimiter = ',',
-        allow_negative_numbers = true,
-        conflicts_with = "initial_error"
-    )]
-    pub error_box: Option<Vec<f64>>,
-    /// Position errors at the start in rad, momentum errors none: certifies the level of W that holds them.
-    #[arg(long, value_name = "E", value_delimiter = ',', allow_negative_numbers = true)]
-    pub initial_error: Option<Vec<f64>>,
-    /// Contraction rate to prove or refute, 1/s; the largest if left out.
-    #[arg(long, value_name = "RATE", allow_negative_numbers = true)]
-    pub rate: Option<f64>,
-    /// Largest unknown torque on each motor in N m: certifies the tube that errors settle in.
-    #[arg(long, value_name = "D", value_delimiter = ',', allow_negative_numbers = true)]
-    pub disturbance: Option<Vec<f64>>,
-    /// Prove the rate once more, from the full inequality without any theorem.
-    #[arg(long)]
-    pub direct: bool,
-    /// With --direct: largest speed of the links, rad/s.
-    #[arg(long, value_name = "V", default_value_t = 5.0, allow_negative_numbers = true, requires = "direct")]
-    pub speed: f64,
-    /// With --direct: boxes that may be looked at.
-    #[arg(long, value_name = "BOXES", default_value_t = 1000, requires = "direct")]
-    pub budget: usize,
-    /// Answer no (exit code 1) where the proof is about the ideal loop and the file has more: imperfections, plant options, an
-    /// estimator, a guard.
-    #[arg(long)]
-    pub strict: bool,
-    /// Certificate file; default out/NAME.certificate.json.
-    #[arg(long, value_name = "FILE")]
-    pub out: Option<PathBuf>,
-    #[command(flatten)]
-    pub paged: Paged,
-}
-
-#[derive(Debug, Args)]
-pub struct Compare {
-    /// Scenario files, or names of built-in scenarios; the suite of tasks if left out.
-    #[arg(value_name = "SCENARIO")]
-    pub scenarios: Vec<String>,
-    /// Laws: names of `flexure list controllers`, vcbc:tanh, vcbc:coupled-tanh; the first list and vcbc:tanh if left out.
-    #[arg(long, value_name = "LAW", value_delimiter = ',')]
-    pub controllers: Vec<String>,
-    /// Runs that the search for gains may simulate, for each law, task and seed.
-    #[arg(long, value_name = "RUNS", default_value_t = BUDGET)]
-    pub budget: usize,
-    /// First seed of search and imperfections.
-    #[arg(long, default_value_t = 0)]
-    pub seed: u64,
-    /// Number of seeds: what ranks is the median, and places that overlap are ties.
-    #[arg(long, value_name = "COUNT", default_value_t = SEEDS)]
-    pub seeds: usize,
-    #[command(flatten)]
-    pub output: Output,
-}
-
-#[derive(Debug, Args)]
-pub struct Tune {
-    /// Scenario file, or the name of a built-in scenario; its gains may be left out.
-    pub scenario: String,
-    /// What the loop shall do: rate, delays, uncertainty, margins, references.
-    #[arg(long, value_name = "SPEC")]
-    pub spec: Option<PathBuf>,
-    /// Runs that the search for gains may simulate.
-    #[arg(long, value_name = "RUNS", default_value_t = flexure::design::BUDGET)]
-    pub budget: usize,
-    /// Seed of the search.
-    #[arg(long, default_value_t = 0)]
-    pub seed: u64,
-    /// Scenario file to write; default NAME-tuned.toml beside the scenario.
-    #[arg(long, value_name = "FILE")]
-    pub out: Option<PathBuf>,
-    #[command(flatten)]
-    pub paged: Paged,
-}
-
-#[derive(Debug, Args)]
-pub struct Sweep {
-    #[command(subcommand)]
-    pub of: Option<OfFolder>,
-    /// Sweep file: a scenario, which of its numbers change, which points, what is kept.
-    #[arg(required = true, value_name = "SWEEP")]
-    pub file: Option<String>,
-    /// Shards to compute, counted from 0: A..B without B, or one; all if left out. Those that are there stay.
-    #[arg(long, value_name = "A..B")]
-    pub shards: Option<String>,
-    /// Folder of the rows; created if missing; default out/SWEEP.
-    #[arg(long, value_name = "FOLDER")]
-    pub out: Option<PathBuf>,
-    #[command(flatten)]
-    pub paged: Paged,
-}
-
-#[derive(Debug, Subcommand)]
-pub enum OfFolder {
-    /// Run a row again: summary, trace and figure.
-    Replay {
-        /// Folder of a sweep.
-        folder: PathBuf,
-        /// The row, counted from 0.
-        #[arg(long)]
-        row: u64,
-        #[command(flatten)]
-        traced: Traced,
-    },
-    /// Tell what the rows that are there come to.
-    Show {
-        /// Folder of a sweep.
-        folder: PathBuf,
-        #[command(flatten)]
-        paged: Paged,
-    },
-}
-
-#[derive(Debug, Args)]
-pub struct Margins {
-    /// Scenario file, or the name of a built-in scenario.
-    pub scenario: String,
-    /// Laws to measure instead of the scenario's, with gains from the search of `compare`.
-    #[arg(long, value_name = "LAW", value_delimiter = ',')]
-    pub controllers: Vec<String>,
-    /// With --controllers: runs that the search for gains may simulate, for each law.
-    #[arg(long, value_name = "RUNS", default_value_t = BUDGET, requires = "controllers")]
-    pub budget: usize,
-    /// With --controllers: seed of the search.
-    #[arg(long, default_value_t = 0, requires = "controllers")]
-    pub seed: u64,
-    #[command(flatten)]
-    pub paged: Paged,
-}
-
-#[derive(Debug, Args)]
-pub struct Excite {
-    /// Robot file, or the name of a built-in robot.
-    pub robot: String,
-    /// Length of the motion, s.
-    #[arg(long, value_name = "SECONDS", default_value_t = 20.0, allow_negative_numbers = true)]
-    pub duration: f64,
-    /// Control period of the robot, s.
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.001, allow_negative_numbers = true)]
-    pub control_period: f64,
-    /// Link positions that the motion is about, rad or m, as 0,-0.5,1.2; default the middle of the limits.
-    #[arg(long, value_name = "Q1,Q2,…", value_delimiter = ',', allow_negative_numbers = true)]
-    pub posture: Option<Vec<f64>>,
-    /// One count of the encoders on the links, rad; default 2π/2¹⁷, 47.9e-6.
-    #[arg(long, value_name = "RAD", default_value_t = RESOLUTION, hide_default_value = true, allow_negative_numbers = true)]
-    pub link_resolution: f64,
-    /// One count of the encoders on the motors, rad on the link side of the gear; default 2π/2¹⁷, 47.9e-6.
-    #[arg(long, value_name = "RAD", default_value_t = RESOLUTION, hide_default_value = true, allow_negative_numbers = true)]
-    pub motor_resolution: f64,
-    /// The links have no encoders.
-    #[arg(long, conflicts_with = "link_resolution")]
-    pub motor_only: bool,
-    /// Sets of phases that are tried for each joint, for the smallest peaks.
-    #[arg(long, value_name = "SETS", default_value_t = EXCITE_BUDGET)]
-    pub budget: usize,
-    /// Seed of the phases.
-    #[arg(long, default_value_t = 0)]
-    pub seed: u64,
-    /// Scenario file; default ROBOT-excite.toml beside the robot's file.
-    #[arg(long, value_name = "FILE")]
-    pub out: Option<PathBuf>,
-}
-
-#[derive(Debug, Args)]
-pub struct Replay {
-    /// Scenario file, or the name of a built-in scenario.
-    pub scenario: String,
-    /// Log of the robot: CSV, a trace of `flexure run` or any other with --columns.
-    #[arg(long, value_name = "FILE")]
-    pub log: PathBuf,
-    /// Which column is what: a TOML file, or q_l=link_pos_{},q_l.unit=deg,u_m=tau_{} and so on.
-    #[arg(long, value_name = "MAP")]
-    pub columns: Option<String>,
-    /// Length of the windows over which the robot is predicted from the logged torque, s.
-    #[arg(long, value_name = "SECONDS", default_value_t = HORIZON, allow_negative_numbers = true)]
-    pub horizon: f64,
-    #[command(flatten)]
-    pub output: Output,
-}
-
-#[derive(Debug, Args)]
-pub struct Identify {
-    /// Robot file, or the name of a built-in robot; numbers to be found may be guesses or nan.
-    pub robot: String,
-    /// Log of the robot: CSV, a trace of `flexure run` or any other with --columns; may be given several times.
-    #[arg(long = "log", value_name = "FILE", required = true)]
-    pub logs: Vec<PathBuf>,
-    /// Which column is what: a TOML file, or q_l=link_pos_{},q_l.unit=deg,u_m=tau_{} and so on.
-    #[arg(long, value_name = "MAP")]
-    pub columns: Option<String>,
-    /// Fit nothing of the links, as if only the motors had encoders: a trace has the links' positions even so.
-    #[arg(long)]
-    pub motor_only: bool,
-    /// Part of each log, at its end, that is kept from the fit to judge it by.
-    #[arg(long, value_name = "PART", default_value_t = 0.2, allow_negative_numbers = true)]
-    pub hold_out: f64,
-    /// Largest error of a stiffness or motor inertia, as a part of it, for the number to be taken over.
-    #[arg(long, value_name = "PART", default_value_t = 0.2, allow_negative_numbers = true)]
-    pub accuracy: f64,
-    /// Robot file to write, with the numbers found and everything else as it is.
-    #[arg(long, value_name = "FILE")]
-    pub out: Option<PathBuf>,
-    #[command(flatten)]
-    pub paged: Paged,
-}
-
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Kind {
     Robots,
@@ -507,19 +238,4 @@ fn change(text: &str) -> Result<Change, String> {
 fn every(text: &str) -> Result<NonZeroU32, String> {
     let must = || format!("it must be a whole number of control periods from 1 to {}", u32::MAX);
     text.trim().parse().map_err(|_| must())
-}
-
-/// The name of a class of drives.
-fn drives(name: &str) -> Result<&'static DriveClass, String> {
-    DriveClass::named(name).map_err(|problem| format!("{problem}; {}", problem.hint()))
-}
-
-/// `JOINT=POSITION`.
-fn lock(text: &str) -> Result<(String, f64), String> {
-    let (name, position) =
-        text.rsplit_once('=').ok_or("write it as JOINT=POSITION, for instance finger=0.0")?;
-    match position.trim().parse() {
-        Ok(position) if f64::is_finite(position) => Ok((name.trim().to_owned(), position)),
-        _ => Err(format!("the position is '{position}', must be a number in rad or m")),
-    }
 }

@@ -50,7 +50,7 @@ impl Unit {
 }
 
 /// How numbers about several joints are measured, each with `prefix` before it: "N m", "N", or "N m or N".
-pub fn of_joints(unit: Unit, prefix: &str, kinds: impl Iterator<Item = JointKind>) -> String {
+pub fn of_joints(unit: Unit, prefix: &str, kinds: &[JointKind]) -> String {
     let (mut turns, mut slides) = (false, false);
     for kind in kinds {
         match kind {
@@ -141,11 +141,11 @@ mod tests {
     #[test]
     fn units_of_several_joints_name_what_there_is() {
         use JointKind::{Prismatic, Revolute};
-        let units = |kinds: &[JointKind]| of_joints(ANGLE, "m", kinds.iter().copied());
+        let units = |kinds: &[JointKind]| of_joints(ANGLE, "m", kinds);
         assert_eq!(units(&[Revolute, Revolute]), "mrad");
         assert_eq!(units(&[Prismatic]), "mm");
         assert_eq!(units(&[Prismatic, Revolute]), "mrad or mm");
-        assert_eq!(of_joints(TORQUE, "", [Prismatic, Revolute].into_iter()), "N m or N");
+        assert_eq!(of_joints(TORQUE, "", &[Prismatic, Revolute]), "N m or N");
     }
 
     /// Every unit, and for those of joints the power of rad that is the same power of m at a joint that slides: torque is energy

@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use flexure::files::{Problem, Reading, folder_of, prepare, spare};
+use flexure::files::{Problem, Reading, Unfinished, folder_of, prepare, spare};
 use flexure::prove::question::{Direct, Question, Region, prove_watched};
 use flexure::prove::standing::{Standing, outside_of_proofs};
 use flexure::prove::summary::ProofSummary;
 use flexure::report::{proof_table, proof_verdict, write_certificate, write_certified};
-use flexure::sampled::probe;
+use flexure::sampled::{not_looked_at, probe};
 use flexure::scenario::{Scenario, load_scenario_with};
 use serde::Serialize;
 
@@ -57,11 +57,18 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
     let pages = match &options.paged.page {
         // Of a part of a proof a page would be taken for the whole.
         Some(folder) if !proof.broken_off => {
-            let verdict = proof_verdict(&standing, &summary, options.strict);
-            write_certified(folder, &scenario, &summary, &verdict, file.as_deref())?
+            let verdict = proof_verdict(&scenario, &standing, &summary, options.strict);
+            let progress = Progress::of_one(&scenario.name);
+            let watch = |fraction| progress.set(0, fraction);
+            match write_certified(folder, &scenario, &summary, &verdict, file.as_deref(), &watch) {
+                Err(Unfinished::Problems(problems)) if problems.is_interrupted() => None,
+                pages => Some(pages?),
+            }
         }
-        _ => Vec::new(),
+        _ => Some(Vec::new()),
     };
+    let has_page = pages.is_some();
+    let pages = pages.unwrap_or_default();
     let ended = ending(&scenario, standing, options.strict);
     if json {
         print::json(&Outcome { summary, file, pages })?;
@@ -70,8 +77,15 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
             print::line("broken off: what is here is proved, not all that was asked was looked at")?;
         }
         print::line(&proof_table(&summary, print::columns()))?;
+        if let Some(line) = not_looked_at(&scenario) {
+            print::line(&line)?;
+        }
         print::wrote(file.as_slice())?;
         print::wrote(&pages)?;
+    }
+    if !has_page {
+        let words = "broken off: what was proved is there, its page is not".to_owned();
+        return Err(Failure::interrupted(words, "without Ctrl-C the loop is run for its picture"));
     }
     match ended {
         Err(Failure::Undecided(reports)) if proof.broken_off => Err(Failure::Interrupted(reports)),

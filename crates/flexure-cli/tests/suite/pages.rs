@@ -131,7 +131,7 @@ fn a_sweep_is_good_if_all_of_it_is_there_and_follows_in_stable_loops() {
     place.write("blind.toml", altered(sweep, &[(", \"sampled_rate\"", "")]));
     let (_, page) = paged(&place, &["sweep", "blind.toml", "--out", "blind"], "blind.sweep");
     assert_eq!(mark(&page), "– no verdict");
-    assert!(page.contains("is not among the metrics: sampled_rate"), "{page}");
+    assert!(page.contains("is not known from the metrics (sampled_rate)"), "{page}");
     // They follow for as long as the runs are, and are unstable.
     let slow = [("duration = 2.0", "duration = 0.05\ncontrol_period = 0.012")];
     place.write("short.toml", altered(sweep, &slow));

@@ -290,7 +290,7 @@ impl Margins {
 
     /// A unit of joints with a prefix, as this robot's turn or slide.
     pub fn unit(&self, unit: Unit, prefix: &str) -> String {
-        of_joints(unit, prefix, self.kinds.iter().copied())
+        of_joints(unit, prefix, &self.kinds)
     }
 
     /// The law in words.

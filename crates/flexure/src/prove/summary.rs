@@ -226,7 +226,7 @@ impl BlockSummary {
 impl ProofSummary {
     /// A unit of joints, as this robot's turn or slide.
     pub fn unit(&self, unit: Unit) -> String {
-        of_joints(unit, "", self.kinds.iter().copied())
+        of_joints(unit, "", &self.kinds)
     }
 
     /// The summary of a proof of `scenario`.

@@ -9,6 +9,7 @@ use crate::design::Design;
 use crate::files::{Problem, Unfinished, WriteError, create_folder, folder_of, write_atomic};
 use crate::identify::Identified;
 use crate::margins::Margins;
+use crate::progress::Progress;
 use crate::prove::engine::Certificate;
 use crate::prove::summary::ProofSummary;
 use crate::report::figures::certificate::certificate_figure;
@@ -106,27 +107,27 @@ pub fn write_margins(
     write_page(folder, &stem(&scenario.name, "margins"), &page, &figures)
 }
 
-/// Writes `NAME.certify.html` and its figure into `folder`, which is created if missing; returns the paths.
+/// Writes `NAME.certify.html` and its figure into `folder`, which is created if missing; returns the paths. For the figure the scenario is run.
 ///
 /// # Errors
-/// As [`write_margins`].
+/// As [`write_margins`], and [`Problems::interrupted`](crate::files::Problems::interrupted) if `progress` breaks the run off.
 pub fn write_certified(
     folder: &Path,
     scenario: &Scenario,
     summary: &ProofSummary,
     verdict: &Verdict,
     certificate: Option<&Path>,
-) -> Result<Vec<PathBuf>, WriteError> {
-    let figure = certificate_figure(scenario, summary);
-    let beside = certificate.filter(|path| folder_of(path) == folder).and_then(Path::file_name);
-    let link = beside.map(|name| name.to_string_lossy());
-    let page = certify_page(scenario, summary, verdict, &figure, certificate, link.as_deref());
-    write_page(
-        folder,
-        &stem(&scenario.name, "certify"),
-        &page,
-        figure.as_ref().map_or(&[], std::slice::from_ref),
-    )
+    progress: Progress<'_>,
+) -> Result<Vec<PathBuf>, Unfinished> {
+    let figure = match certificate_figure(scenario, summary, progress) {
+        Err(problems) if problems.is_interrupted() => return Err(problems.into()),
+        figure => figure,
+    };
+    let beside = certificate.is_some_and(|path| folder_of(path) == folder);
+    let name = certificate.and_then(Path::file_name).map(|name| name.to_string_lossy());
+    let page = certify_page(scenario, summary, verdict, &figure, name.as_deref(), beside);
+    let figures = figure.as_ref().map_or(&[][..], std::slice::from_ref);
+    Ok(write_page(folder, &stem(&scenario.name, "certify"), &page, figures)?)
 }
 
 /// Writes `NAME.tune.html` and its figures into `folder`, which is created if missing; returns the paths.

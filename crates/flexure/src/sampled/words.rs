@@ -12,18 +12,23 @@ const PASSING: &str = " on the whole way along the reference; a robot that stood
 impl Sampled {
     /// In one line.
     pub fn line(&self) -> String {
+        format!("sampled loop: {}", self.words())
+    }
+
+    /// The same without what it is of.
+    pub fn words(&self) -> String {
         let at = self.at();
         let digits = if (self.spectral_radius - 1.0).abs() < 0.01 { 7 } else { 4 };
         let radius = short(self.spectral_radius, digits);
         match (self.stable, &self.joint) {
             (true, _) => format!(
-                "sampled loop: spectral radius {radius} {at}; small errors shrink by {} 1/s{}",
+                "spectral radius {radius} {at}; small errors shrink by {} 1/s{}",
                 short(self.rate, 4),
                 if self.passes() { PASSING } else { "" }
             ),
-            (false, None) => format!("sampled loop: spectral radius {radius} {at}: unstable"),
+            (false, None) => format!("spectral radius {radius} {at}: unstable"),
             (false, Some(joint)) => {
-                format!("sampled loop: spectral radius {radius} {at}: unstable, in joint {joint} most")
+                format!("spectral radius {radius} {at}: unstable, in joint {joint} most")
             }
         }
     }

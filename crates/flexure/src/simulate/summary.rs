@@ -74,7 +74,7 @@ pub struct Summary {
 impl Summary {
     /// How far the links are off, whether and when they settle, and what that takes of the motors.
     pub fn in_words(&self) -> String {
-        let unit = |unit: Unit, prefix: &str| of_joints(unit, prefix, self.kinds.iter().copied());
+        let unit = |unit: Unit, prefix: &str| of_joints(unit, prefix, &self.kinds);
         let (milli, torque) = (unit(units::ANGLE, "m"), unit(units::TORQUE, ""));
         let settled = match self.settling_time {
             Some(0.0) => format!("always within 1 {milli}"),

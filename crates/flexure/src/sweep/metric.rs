@@ -34,7 +34,7 @@ impl Metric {
 
     /// Its unit for a robot with joints of these kinds; none of plain numbers.
     pub(crate) fn unit_of(&self, kinds: &[JointKind]) -> Option<String> {
-        let of_joints = |unit| of_joints(unit, "", kinds.iter().copied());
+        let of_joints = |unit| of_joints(unit, "", kinds);
         match self.unit {
             "1" => None,
             unit if unit == units::ANGLE.plain => Some(of_joints(units::ANGLE)),

@@ -4,6 +4,7 @@
 use super::error_path::ErrorPath;
 use crate::files::Problems;
 use crate::files::number::{engineering, power_of_ten, short, significant};
+use crate::progress::Progress;
 use crate::prove::summary::ProofSummary;
 use crate::report::draw::axes::{Axes, Axis, BOTTOM};
 use crate::report::draw::curve::Curve;
@@ -45,8 +46,12 @@ const DECAY: Stroke = Stroke { color: INK, width: 1.4, dash: &[8.0, 4.0, 2.0, 4.
 ///
 /// # Errors
 /// If W is not defined or jumps, as with a reference whose third derivative does, and if the loop cannot be run.
-pub fn certificate_figure(scenario: &Scenario, summary: &ProofSummary) -> Result<Scene, Problems> {
-    let path = ErrorPath::of(scenario)?;
+pub fn certificate_figure(
+    scenario: &Scenario,
+    summary: &ProofSummary,
+    progress: Progress<'_>,
+) -> Result<Scene, Problems> {
+    let path = ErrorPath::of(scenario, progress)?;
     let (t, values) = path.storage();
     let run = Curve { t, values, stroke: run_stroke() };
     let told = Told::new(summary);

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use crate::files::Problems;
-use crate::progress::unwatched;
+use crate::progress::Progress;
 use crate::prove::along::start_level;
 use crate::report::draw::decimate::Thinned;
 use crate::report::draw::path::Path;
@@ -30,11 +30,11 @@ impl ErrorPath {
     ///
     /// # Errors
     /// If W is not defined or jumps ([`start_level`]), and as [`run_into`].
-    pub(crate) fn of(scenario: &Scenario) -> Result<Self, Problems> {
+    pub(crate) fn of(scenario: &Scenario, progress: Progress<'_>) -> Result<Self, Problems> {
         start_level(scenario)?;
         let signals = scenario.signals()?;
         let mut path = Self::new(scenario, &signals)?;
-        run_into(scenario, &mut [&mut path], &unwatched)?;
+        run_into(scenario, &mut [&mut path], progress)?;
         Ok(path)
     }
 
@@ -95,6 +95,7 @@ impl Sink for ErrorPath {
 #[cfg(test)]
 mod tests {
     use super::ErrorPath;
+    use crate::progress::unwatched;
     use crate::prove::along::start_level;
     use crate::prove::question::{Question, prove};
     use crate::scenario::{Hold, load_scenario};
@@ -105,7 +106,7 @@ mod tests {
     fn storage_shrinks_as_is_proved() {
         let mut scenario = load_scenario("two-link-tanh").unwrap();
         scenario.hold = Hold::Continuous;
-        let path = ErrorPath::of(&scenario).unwrap();
+        let path = ErrorPath::of(&scenario, &unwatched).unwrap();
         let (t, storage) = path.storage();
         let bound = start_level(&scenario).unwrap();
         // The bound is of the same numbers rounded outwards: no more than rounding above.

@@ -228,8 +228,10 @@ fn legend(marked: Marked, options: &FigureOptions, happenings: &[Happening]) -> 
         entry("reference", Stroke::reference()),
     ];
     if marked.settled {
-        let within =
-            format!("1 {}", of_joints(units::ANGLE, "m", options.joints.iter().map(|joint| joint.kind)));
+        let within = format!(
+            "1 {}",
+            of_joints(units::ANGLE, "m", &options.joints.iter().map(|joint| joint.kind).collect::<Vec<_>>())
+        );
         let when = if options.settled.is_some() { ", and settled below it" } else { "" };
         entries.push((within + when, DOTTED));
     }

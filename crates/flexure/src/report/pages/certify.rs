@@ -1,6 +1,6 @@
 //! The page of a proof.
 
-use std::path::Path;
+use std::collections::BTreeSet;
 
 use maud::{Markup, html as markup};
 
@@ -14,13 +14,18 @@ use crate::prove::summary::ProofSummary;
 use crate::report::draw::scene::Scene;
 use crate::report::tables::proof::statements;
 use crate::report::tables::summary::proved_rate;
-use crate::sampled::Sampled;
+use crate::sampled::not_looked_at;
 use crate::scenario::Scenario;
 use crate::units;
 
 /// What a proof comes to in a sentence: good if it is about the loop in the file and its start, bad if it is wrong, if that loop is unstable, or if a `strict`
-/// question gets a proof of another loop; else no verdict.
-pub fn proof_verdict(standing: &Standing<'_>, summary: &ProofSummary, strict: bool) -> Verdict {
+/// question gets a proof of another loop; else no verdict, as where the loop that holds its torque was not looked at.
+pub fn proof_verdict(
+    scenario: &Scenario,
+    standing: &Standing<'_>,
+    summary: &ProofSummary,
+    strict: bool,
+) -> Verdict {
     let proved = rates(summary);
     match standing {
         Standing::Proved if summary.start.is_some_and(|start| !start.inside) => Verdict {
@@ -29,17 +34,18 @@ pub fn proof_verdict(standing: &Standing<'_>, summary: &ProofSummary, strict: bo
                 "Proved in continuous time, but the start of this file is not known to be inside: {proved}"
             ),
         },
-        Standing::Proved => Verdict {
-            good: Some(true),
-            words: match &summary.sampled {
-                Some(sampled) => {
-                    format!(
-                        "Proved in continuous time: {proved} Of the loop that holds its torque: {}.",
-                        bare(sampled)
-                    )
-                }
-                None => format!("Proved: {proved}"),
+        Standing::Proved => match (&summary.sampled, not_looked_at(scenario)) {
+            (Some(sampled), _) => Verdict {
+                good: Some(true),
+                words: format!(
+                    "Proved in continuous time: {proved} Of the loop that holds its torque: {}.",
+                    sampled.words()
+                ),
             },
+            (None, Some(why)) => {
+                Verdict { good: None, words: format!("Proved in continuous time: {proved} {why}.") }
+            }
+            (None, None) => Verdict { good: Some(true), words: format!("Proved: {proved}") },
         },
         Standing::Ideal(conditions) => Verdict {
             good: strict.then_some(false),
@@ -53,17 +59,12 @@ pub fn proof_verdict(standing: &Standing<'_>, summary: &ProofSummary, strict: bo
             let help = sampled.help().map_or_else(String::new, |help| format!(" What helps: {help}."));
             Verdict {
                 good: Some(false),
-                words: format!("Unstable as sampled: {}.{rest}{help}", bare(sampled)),
+                words: format!("Unstable as sampled: {}.{rest}{help}", sampled.words()),
             }
         }
         Standing::Refuted(problem) => Verdict { good: Some(false), words: format!("Refuted: {problem}.") },
         Standing::Undecided(problem) => Verdict { good: None, words: format!("Undecided: {problem}.") },
     }
-}
-
-/// What the sampled loop does.
-fn bare(sampled: &Sampled) -> String {
-    sampled.line().trim_start_matches("sampled loop: ").to_owned()
 }
 
 /// The rates that are proved, and where.
@@ -84,14 +85,14 @@ fn rates(summary: &ProofSummary) -> String {
     )
 }
 
-/// The page: what is proved, with the run in it, or why there is no such picture. The certificate is linked if it lies beside the page.
+/// The page: what is proved, with the run in it, or why there is no such picture. The certificate, called so, is linked if it lies `beside` the page.
 pub(crate) fn certify_page(
     scenario: &Scenario,
     summary: &ProofSummary,
     verdict: &Verdict,
     picture: &Result<Scene, Problems>,
-    certificate: Option<&Path>,
-    link: Option<&str>,
+    certificate: Option<&str>,
+    beside: bool,
 ) -> String {
     let caption = markup! {
         "Above: the storage W of the errors along the run. Below: the position errors of each joint, from the ring on"
@@ -114,21 +115,21 @@ pub(crate) fn certify_page(
         let report = CertificateReport {
             summary: summary.clone(),
             phi: scenario.controller.phi().unwrap_or_default().to_owned(),
-            file: link.map(str::to_owned),
+            file: certificate.filter(|_| beside).map(str::to_owned),
         };
         sections.push(Section::new("rates", "Proved rates", certificates::section(&[report])));
     }
     sections.push(Section::new("statements", "All that is said", said(summary)));
-    let assumed = markup! { ul { @for assumed in summary.assumptions.iter().collect::<std::collections::BTreeSet<_>>() { li { (assumed) } } } };
+    // Each sensor of a side says it.
+    let once: BTreeSet<&String> = summary.assumptions.iter().collect();
+    let assumed = markup! { ul { @for assumed in once { li { (assumed) } } } };
     sections.push(Section::new("assumptions", "Assumptions", assumed).folded());
     let mut lines = vec![
         "Rounded outwards, from the decimals of the robot and scenario files. The same build writes the same page, byte for byte, on any number of \
          threads."
             .to_owned(),
     ];
-    lines.extend(
-        certificate.and_then(Path::file_name).map(|name| format!("The certificate is {}.", name.display())),
-    );
+    lines.extend(certificate.map(|name| format!("The certificate is {name}.")));
     Page {
         title: &format!("{}: proof", scenario.name),
         verdict: Some(verdict),
@@ -143,7 +144,13 @@ fn said(summary: &ProofSummary) -> Markup {
     markup! {
         @if let Some(sampled) = &summary.sampled { p.note { (sampled.line()) } }
         div.scroll { table { tbody {
-            @for [label, words] in statements(summary).iter().filter(|[label, _]| label != "assumed") { tr { th scope="row" { (label) } td { (if ["limit", "witness"].contains(&&**label) { markup! { (words) } } else { symbols(words) }) } } }
+            @for [label, words] in statements(summary).iter().filter(|[label, _]| label != "assumed") {
+                tr {
+                    th scope="row" { (label) }
+                    // Keys of files have no subscripts.
+                    td { @if ["limit", "witness"].contains(&&**label) { (words) } @else { (symbols(words)) } }
+                }
+            }
         } } }
     }
 }

@@ -9,6 +9,7 @@ use crate::files::Problem;
 use crate::files::number::{NONE, significant};
 use crate::identify::{Estimate, Identified, Parameter};
 use crate::report::draw::scene::Scene;
+use crate::report::tables::grid::Grid;
 use crate::units::raised;
 
 /// The page: whether the logs know the numbers that a law needs, each with its error bar, and how well the model explains the logs.
@@ -100,11 +101,11 @@ fn estimates(found: &Identified) -> Markup {
             };
             let [value, error] = values;
             let name = format!("{}, {}", joint.name, key.replace('_', " "));
-            (name, [value, error, before.map_or(NONE.to_owned(), number), raised(unit)])
+            vec![name, value, error, before.map_or(NONE.to_owned(), number), raised(unit)]
         })
     });
     markup! {
-        (numbers(&["number", "found", "±", "in the robot file", "unit"], rows))
+        (numbers(&Grid::new(&["number", "found", "±", "in the robot file", "unit"], rows.collect())))
         p.note { "— where the logs do not know the number: it stays as it was." }
     }
 }
@@ -113,16 +114,14 @@ fn fit(found: &Identified) -> Markup {
     let number = |x: f64| significant(x, 3);
     let rows = found.joints.iter().map(|joint| {
         let optional = |x: Option<f64>| x.map_or(NONE.to_owned(), number);
-        (
-            joint.name.clone(),
-            [optional(joint.noise_ratio.link), number(joint.noise_ratio.motor), optional(joint.held_out)],
-        )
+        let [link, motor] = [optional(joint.noise_ratio.link), number(joint.noise_ratio.motor)];
+        vec![joint.name.clone(), link, motor, optional(joint.held_out)]
     });
     markup! {
-        (numbers(
+        (numbers(&Grid::new(
             &["joint", "link: prediction errors over the encoder's noise", "motor", "squares in the held-out part over those in the fitted"],
-            rows
-        ))
+            rows.collect()
+        )))
         ul {
             @for offset in &found.offsets {
                 li { (offset.log) ": torques act " (format!("{:.4}", 1e3 * offset.value)) " ± " (significant(1e3 * offset.error, 2)) " ms after they are logged." }

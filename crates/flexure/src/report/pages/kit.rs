@@ -2,6 +2,8 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 
+use crate::report::tables::grid::Grid;
+
 /// The result in a sentence.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Verdict {
@@ -96,17 +98,15 @@ pub(crate) fn figure(svg: &str, caption: &Markup) -> Markup {
     markup! { figure { div.card { (PreEscaped(svg)) } figcaption { (caption) } } }
 }
 
-/// A table of numbers: headings, then rows with what each is of.
-pub(crate) fn numbers<R: AsRef<[String]>>(
-    headings: &[&str],
-    rows: impl IntoIterator<Item = (String, R)>,
-) -> Markup {
+/// A table of numbers.
+pub(crate) fn numbers(grid: &Grid) -> Markup {
     markup! {
         div.scroll { table.numbers {
-            thead { tr { @for heading in headings { th { (heading) } } } }
-            tbody { @for (name, numbers) in rows { tr {
-                th scope="row" { (name) }
-                @for number in numbers.as_ref() { td { (number) } }
+            thead { tr { @for heading in &grid.headings { th { (heading.replace('\n', " ")) } } } }
+            tbody { @for row in &grid.rows { tr {
+                @for (column, text) in row.iter().enumerate() {
+                    @if column == 0 { th scope="row" { (text) } } @else if column < grid.words { td.word { (text) } } @else { td { (text) } }
+                }
             } } }
         } }
     }

@@ -8,6 +8,7 @@ use crate::files::Problem;
 use crate::files::number::{NONE, short, significant};
 use crate::margins::{Edge, Margins};
 use crate::report::draw::scene::Scene;
+use crate::report::tables::grid::Grid;
 use crate::scenario::Scenario;
 use crate::units;
 
@@ -78,22 +79,10 @@ fn borne(margins: &Margins) -> String {
 }
 
 fn numbers(loops: &[Margins]) -> Markup {
-    let both = |edge: &Edge, scale: f64| match edge {
-        Edge::Between { holds, fails } => [holds, fails].map(|x| significant(scale * x, 3)),
-        Edge::Beyond { holds } | Edge::Open { holds } => [significant(scale * holds, 3), NONE.to_owned()],
-        Edge::Nowhere => [NONE.to_owned(), NONE.to_owned()],
-    };
     markup! {
         @for margins in loops {
             h3 { (margins.law()) }
-            (kit::numbers(&["change", if margins.is_unstable() { "follows" } else { "holds" }, "does not hold"], [
-                ("delay from command to torque added [ms]".to_owned(), &margins.delay, 1e3),
-                ("torque too small by the factor".to_owned(), &margins.gain_low, 1.0),
-                ("torque too large by the factor".to_owned(), &margins.gain_high, 1.0),
-                ("springs softer than the law believes by the factor".to_owned(), &margins.stiffness_low, 1.0),
-                ("springs stiffer than the law believes by the factor".to_owned(), &margins.stiffness_high, 1.0),
-                (format!("white noise added to all positions, standard deviation [{}]", margins.unit(units::ANGLE, "m")), &margins.noise, 1e3),
-            ].map(|(name, edge, scale)| (name, both(edge, scale)))))
+            (kit::numbers(&changes(margins)))
             @if let (Some(error), Some(torque)) = (margins.noise_to_error, margins.noise_to_torque) {
                 p.note {
                     "At a tenth of that noise: " "link errors are " (significant(error, 3)) " times the noise, and torques step by "
@@ -103,6 +92,32 @@ fn numbers(loops: &[Margins]) -> Markup {
             @if let Some(sampled) = &margins.sampled { p.note { (sampled.line()) } }
         }
     }
+}
+
+fn changes(margins: &Margins) -> Grid {
+    let both = |edge: &Edge, scale: f64| match edge {
+        Edge::Between { holds, fails } => [holds, fails].map(|x| significant(scale * x, 3)),
+        Edge::Beyond { holds } | Edge::Open { holds } => [significant(scale * holds, 3), NONE.to_owned()],
+        Edge::Nowhere => [NONE.to_owned(), NONE.to_owned()],
+    };
+    let noise = format!(
+        "white noise added to all positions, standard deviation [{}]",
+        margins.unit(units::ANGLE, "m")
+    );
+    let rows = [
+        ("delay from command to torque added [ms]", &margins.delay, 1e3),
+        ("torque too small by the factor", &margins.gain_low, 1.0),
+        ("torque too large by the factor", &margins.gain_high, 1.0),
+        ("springs softer than the law believes by the factor", &margins.stiffness_low, 1.0),
+        ("springs stiffer than the law believes by the factor", &margins.stiffness_high, 1.0),
+        (&noise, &margins.noise, 1e3),
+    ];
+    let rows =
+        rows.map(|(name, edge, scale)| std::iter::once(name.to_owned()).chain(both(edge, scale)).collect());
+    Grid::new(
+        &["change", if margins.is_unstable() { "follows" } else { "holds" }, "does not hold"],
+        rows.into(),
+    )
 }
 
 fn criteria(loops: &[Margins]) -> Markup {

@@ -4,9 +4,10 @@ use maud::{Markup, html as markup};
 
 use super::kit::{Page, Section, Verdict, figure, made, numbers};
 use super::runs;
-use crate::files::number::{NONE, engineering};
+use crate::files::number::engineering;
 use crate::report::assumptions;
 use crate::report::draw::scene::Scene;
+use crate::report::tables::sweep::metrics;
 use crate::sweep::{Statistics, Status, Sweep, Values};
 
 /// The page: what became of the runs, how their metrics are spread, and what was changed.
@@ -21,7 +22,7 @@ pub(crate) fn sweep_page(sweep: &Sweep, statistics: &Statistics, picture: &Scene
     let mut assumed = assumptions(scenario.iter());
     assumed.retain(|number| !changed(&number.key));
     let sections = vec![
-        Section::new("metrics", "Metrics in numbers", metrics(sweep, statistics)),
+        Section::new("metrics", "Metrics in numbers", numbers(&metrics(sweep, statistics))),
         Section::new("what", "What the metrics are", explained(sweep)).folded(),
         Section::new("parameters", "What was changed", parameters(sweep)),
         Section::new("assumptions", "Assumptions", runs::assumptions(&assumed)).folded(),
@@ -63,24 +64,6 @@ fn verdict(sweep: &Sweep, statistics: &Statistics) -> Verdict {
     let good =
         (all && follow == sweep.rows() && slowest.is_some_and(|slowest| slowest > 0.0)).then_some(true);
     Verdict { good, words: format!("{}.{sampled}", statistics.sentence(sweep)) }
-}
-
-fn metrics(sweep: &Sweep, statistics: &Statistics) -> Markup {
-    let kinds = sweep.kinds();
-    let rows = sweep.metrics().iter().filter_map(|metric| {
-        let figures = statistics.metrics.get(metric.name)?;
-        let mean = (figures.count > 0).then_some(figures.mean);
-        let quantiles = [0.05, 0.5, 0.95].map(|part| figures.quantile(part));
-        let [low, median, high] = quantiles;
-        let numbers = [figures.least, low, median, high, figures.largest, mean, figures.deviation()]
-            .map(|number| number.map_or(NONE.to_owned(), engineering));
-        let unit = metric.unit_of(&kinds).map_or_else(String::new, |unit| format!(" [{unit}]"));
-        Some((
-            format!("{}{unit}", metric.name),
-            std::iter::once(figures.count.to_string()).chain(numbers).collect::<Vec<_>>(),
-        ))
-    });
-    numbers(&["metric", "runs", "least", "5 %", "median", "95 %", "largest", "mean", "deviation"], rows)
 }
 
 fn explained(sweep: &Sweep) -> Markup {

@@ -6,12 +6,13 @@ use maud::{Markup, html as markup};
 
 use super::kit::{Page, Section, Verdict, figure, made, numbers};
 use super::runs;
-use crate::design::{Constraint, Design, Effect, Trade};
+use crate::design::{Constraint, Design};
 use crate::files::Problem;
-use crate::files::number::{NONE, engineering, short, significant};
+use crate::files::number::{short, significant};
 use crate::report::assumptions;
 use crate::report::draw::scene::Scene;
 use crate::report::figures::margins::margins_figure;
+use crate::report::tables::design;
 use crate::sampled::Sampled;
 use crate::scenario::Scenario;
 use crate::units::{self, of_joints};
@@ -19,7 +20,7 @@ use crate::units::{self, of_joints};
 /// The page: whether gains were found that keep every constraint, what they leave of each, and what speaks for them.
 pub(crate) fn tune_page(
     scenario: &Scenario,
-    design: &Design,
+    found: &Design,
     objection: Option<&Problem>,
     picture: &Scene,
     file: Option<&Path>,
@@ -28,13 +29,14 @@ pub(crate) fn tune_page(
         "A bar is the share of its limit that the loop takes, with the best gains that were found: the nearer to the line, the less is left. Of a rate, which \
          shall be large, what is left is what it has more."
     };
+    let joints: Vec<String> = scenario.robot.joints.iter().map(|joint| joint.name.clone()).collect();
     let mut sections = vec![
-        Section::new("constraints", "Constraints in numbers", constraints(&design.constraints)),
-        Section::new("gains", "Gains", gains(scenario, design)),
-        Section::new("trades", "What each gain trades", trades(&design.gains)),
-        Section::new("evidence", "What the loop does with them", evidence(scenario, design)),
+        Section::new("constraints", "Constraints in numbers", constraints(&found.constraints)),
+        Section::new("gains", "Gains", numbers(&design::gains(&joints, found))),
+        Section::new("trades", "What each gain trades", numbers(&design::trades(&found.gains))),
+        Section::new("evidence", "What the loop does with them", evidence(scenario, found)),
     ];
-    if let Some(margins) = &design.evidence.margins {
+    if let Some(margins) = &found.evidence.margins {
         let caption = markup! {
             "Each change is made alone, from the scenario as it is. Holding is seen in runs: errors that grow so slowly that a run is too short for them do not \
              show, and constraints on the sampled loop may say no sooner."
@@ -46,15 +48,15 @@ pub(crate) fn tune_page(
     sections.push(Section::new("assumptions", "Assumptions", runs::assumptions(&assumed)).folded());
     let mut lines = vec![format!(
         "{} loops were run in the search. The same build writes the same page, byte for byte, on any number of threads.",
-        design.runs
+        found.runs
     )];
     lines.extend(
         file.and_then(Path::file_name)
             .map(|name| format!("The scenario with these gains is {}.", name.display())),
     );
     Page {
-        title: &format!("{}: tuned gains", design.name),
-        verdict: Some(&verdict(scenario, design, objection)),
+        title: &format!("{}: tuned gains", found.name),
+        verdict: Some(&verdict(scenario, found, objection)),
         lead: figure(&picture.svg(), &caption),
         sections,
         provenance: made(&lines),
@@ -85,60 +87,19 @@ fn verdict(scenario: &Scenario, design: &Design, objection: Option<&Problem>) ->
     let words = format!(
         "Gains that keep every constraint that is asked; the rms error is {} {}.{}{}",
         significant(1e3 * rms, 3),
-        of_joints(units::ANGLE, "m", scenario.robot.kinds().into_iter()),
+        of_joints(units::ANGLE, "m", &scenario.robot.kinds()),
         closest.unwrap_or_default(),
         frail.unwrap_or_default()
     );
     Verdict { good: Some(true), words }
 }
 
-fn constraints(constraints: &[Constraint]) -> Markup {
-    let row = |constraint: &Constraint| {
-        let Constraint { what, joint, value, limit, unit, slack, asked, .. } = constraint;
-        let amount = |x: f64| format!("{} {unit}", short(x, 4)).trim_end().to_owned();
-        let left = match (*slack < 0.0, *asked) {
-            (true, true) => "broken".to_owned(),
-            (true, false) => "not borne, wished for".to_owned(),
-            (false, _) if *limit == 0.0 => NONE.to_owned(),
-            (false, _) => significant(100.0 * slack, 3),
-        };
-        (what.clone(), [joint.clone().unwrap_or(NONE.to_owned()), amount(*value), amount(*limit), left])
-    };
+fn constraints(list: &[Constraint]) -> Markup {
     markup! {
-        (numbers(&["constraint", "joint", "value", "limit", "left [%]"], constraints.iter().map(row)))
-        @for constraint in constraints {
+        (numbers(&design::constraints(list)))
+        @for constraint in list {
             @if let Some(note) = &constraint.note { p.note { (constraint.what) ": " (note) } }
         }
-    }
-}
-
-fn gains(scenario: &Scenario, design: &Design) -> Markup {
-    let headings: Vec<&str> =
-        std::iter::once("joint").chain(design.gains.iter().map(|trade| &*trade.gain)).collect();
-    let rows = scenario.robot.joints.iter().enumerate().map(|(i, joint)| {
-        let values =
-            design.gains.iter().map(|trade| trade.values.get(i).map_or(NONE.to_owned(), |&x| engineering(x)));
-        (joint.name.clone(), values.collect::<Vec<_>>())
-    });
-    numbers(&headings, rows)
-}
-
-fn trades(trades: &[Trade]) -> Markup {
-    let factor = |x: f64| if x.is_finite() { format!("×{}", significant(x, 3)) } else { NONE.to_owned() };
-    let row = |trade: &Trade| {
-        let values = match trade.effect {
-            Some(Effect { error, torque, chatter, decay }) => {
-                [Some(error), Some(torque), Some(chatter), decay].map(|x| x.map_or(NONE.to_owned(), factor))
-            }
-            None => ["unstable", NONE, NONE, NONE].map(str::to_owned),
-        };
-        (trade.gain.clone(), values)
-    };
-    markup! {
-        (numbers(
-            &["a quarter more of, in all joints", "rms link error", "largest torque", "torque change a period", "decay as sampled"],
-            trades.iter().map(row)
-        ))
     }
 }
 
