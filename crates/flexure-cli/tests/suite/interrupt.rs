@@ -159,3 +159,19 @@ fn the_second_ctrl_c_ends_at_once() {
     interrupt(&child);
     assert_eq!(child.wait_with_output().unwrap().status.code(), Some(130));
 }
+
+/// The proof takes a moment, the run for its picture minutes.
+#[test]
+fn a_proof_is_there_where_its_picture_was_not_waited_for() {
+    let place = Place::new();
+    place.write("long.toml", long());
+    let args = ["certify", "long.toml", "--out", "c.json", "--page", "pages"];
+    let (outcome, time) = broken_off(&place, &args, 4.0);
+    assert!(
+        outcome.stdout.contains("wrote c.json") && outcome.stdout.contains("long: proved"),
+        "{outcome:?}"
+    );
+    assert!(time < Duration::from_secs(5), "{time:?}");
+    assert_eq!(place.names("pages"), Vec::<String>::new());
+    outcome.said(&["its page is not"]);
+}

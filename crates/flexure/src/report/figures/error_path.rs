@@ -29,13 +29,13 @@ impl ErrorPath {
     /// Runs `scenario` as its file says. The errors are those of the true state, whatever the law knows of it.
     ///
     /// # Errors
-    /// If W is not defined or jumps ([`start_level`]), and as [`run_into`].
+    /// If W is not defined or jumps ([`start_level`]), as [`run_into`], and [`Problems::interrupted`] if `progress` breaks the run off.
     pub(crate) fn of(scenario: &Scenario, progress: Progress<'_>) -> Result<Self, Problems> {
         start_level(scenario)?;
         let signals = scenario.signals()?;
         let mut path = Self::new(scenario, &signals)?;
-        run_into(scenario, &mut [&mut path], progress)?;
-        Ok(path)
+        let run = run_into(scenario, &mut [&mut path], progress)?;
+        if run.broken_off.is_some() { Err(Problems::interrupted()) } else { Ok(path) }
     }
 
     fn new(scenario: &Scenario, signals: &[Signal]) -> Result<Self, Problems> {
