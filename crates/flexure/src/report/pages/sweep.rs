@@ -58,7 +58,7 @@ fn verdict(sweep: &Sweep, statistics: &Statistics) -> Verdict {
             " Some of the loops are unstable as sampled: small errors grow.".to_owned()
         }
         _ => format!(
-            " Whether small errors shrink in each of the sampled loops is not among the metrics: {DECAY}."
+            " Whether small errors shrink in each of the sampled loops is not known from the metrics ({DECAY})."
         ),
     };
     let good =
