@@ -38,8 +38,8 @@ pub struct Certify {
     /// With --direct: boxes that may be looked at.
     #[arg(long, value_name = "BOXES", default_value_t = 1000, requires = "direct")]
     pub budget: usize,
-    /// Answer no (exit code 1) where the proof is about the ideal loop and the file has more: imperfections, plant options, an
-    /// estimator, a guard.
+    /// Answer no (exit code 1) where the proof is about the ideal loop and the file has more: imperfections, plant options, jumps
+    /// of the reference, an estimator, a guard.
     #[arg(long)]
     pub strict: bool,
     /// Certificate file; default out/NAME.certificate.json.

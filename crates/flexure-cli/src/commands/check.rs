@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use flexure::check::{Along, Assumed, Findings};
 use flexure::files::{Problem, Reading, create_folder, prepare, prepare_for};
-use flexure::report::{joint_table, response_figure, usage_table, write_figure};
+use flexure::report::{joint_table, response_figure, stem, usage_table, write_figure};
 use serde::Serialize;
 
 use super::print;
@@ -72,7 +72,7 @@ fn draw(verdicts: &mut [Verdict], folder: &Path) -> Result<(), Failure> {
         let mut candidates = std::iter::once(robot_name.clone()).chain(numbered);
         names.extend(candidates.find(|name| !names.contains(name)));
     }
-    let name = |name: &String| format!("{}.response", name.replace(['/', '\\'], "_"));
+    let name = |robot: &String| stem(robot, "response");
     let files =
         names.iter().flat_map(|robot| ["svg", "png"].map(|ending| format!("{}.{ending}", name(robot))));
     prepare_for(folder, files)?;

@@ -108,6 +108,12 @@ fn identified_numbers_are_good_if_a_law_can_use_them() {
     let (outcome, page) = paged(&place, &args, "quanser-2dof.identify");
     let is_good = outcome.code == Some(0);
     assert_eq!(mark(&page), if is_good { "✓ good" } else { "✕ bad" }, "{outcome:?}");
+    // A name is no path.
+    place.write(
+        "robot.toml",
+        altered(crate::command::ROBOT, &[("name = \"quanser-2dof\"", "name = \"../../x\"")]),
+    );
+    paged(&place, &["identify", "robot.toml", "--log", "two-link-tanh-smooth.csv"], ".._.._x.identify");
     let json = place.run(&[&args[..], &["--page", "pages", "--json"]].concat()).json();
     assert_eq!(json["pages"][0], "pages/quanser-2dof.identify.html");
     assert!(json["joints"][0]["parameters"][0]["unit"].as_str().is_some());

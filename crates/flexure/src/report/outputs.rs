@@ -175,9 +175,9 @@ pub fn write_swept(
     write_page(folder, &stem(sweep.name(), "sweep"), &page, &figures)
 }
 
-/// What the files of a command's page about `name` are called, without their endings.
+/// What the files of a command's page or picture about `name` are called, without their endings: in the folder, whatever is in the name.
 pub fn stem(name: &str, command: &str) -> String {
-    format!("{name}.{command}")
+    format!("{}.{command}", name.replace(['/', '\\'], "_"))
 }
 
 /// Writes the page of a run in motion, or of two side by side, as `NAME.view.html` or `NAME-and-NAME.view.html` into `folder`, which is created
