@@ -41,6 +41,14 @@ SHOWS = [
         "The two-link arm under a linear and a tanh shaping function: the same motion, the same moment, one view.",
     ),
     Show(
+        "run",
+        "A run, and what is proved of its errors",
+        "run two-link-tanh --page DIR --out DIR",
+        "two-link-tanh.run.html",
+        "two-link-tanh.run.png",
+        "What came of a run in a sentence, its figure with the proved bound of the errors, and what it took of every limit.",
+    ),
+    Show(
         "reproduce",
         "The experiments of the paper",
         "reproduce --out DIR",

@@ -13,10 +13,11 @@ export const there = existsSync(PROGRAM);
 /** Commands, the exit codes that are right for them, and the pages that they write beside their figures. */
 export const COMMANDS = [
   { folder: 'reproduce', words: 'reproduce', pages: ['report.html'] },
-  { folder: 'panda', words: 'run panda-tanh-smooth --view', pages: ['panda-tanh-smooth.view.html'] },
+  { folder: 'panda', words: 'run panda-tanh-smooth --view --page OUT --out OUT', pages: ['panda-tanh-smooth.run.html', 'panda-tanh-smooth.view.html'] },
+  { folder: 'ran', words: 'run two-link-tanh --page OUT --out OUT', pages: ['two-link-tanh.run.html'] },
   { folder: 'everything', words: 'run two-link-everything --view', codes: [0, 1], pages: ['two-link-everything.view.html'] },
   { folder: 'pair', words: 'run --view two-link-linear-smooth two-link-tanh-smooth', pages: ['two-link-linear-smooth-and-two-link-tanh-smooth.view.html'] },
-  { folder: 'diverging', words: 'run two-link-tanh --set control_period=0.01 --view', codes: [1], pages: ['two-link-tanh.view.html'] },
+  { folder: 'diverging', words: 'run two-link-tanh --set control_period=0.01 --view --page OUT --out OUT', codes: [1], pages: ['two-link-tanh.run.html', 'two-link-tanh.view.html'] },
   { folder: 'margins', words: 'margins pendulum-tanh --page OUT', pages: ['pendulum-tanh.margins.html'] },
   { folder: 'proved', words: 'certify two-link-tanh --page OUT --out OUT/two-link-tanh.certificate.json', pages: ['two-link-tanh.certify.html'] },
   { folder: 'undecided', words: 'certify panda-tanh-smooth --disturbance 0.05 --page OUT --out OUT/panda.certificate.json', codes: [3], pages: ['panda-tanh-smooth.certify.html'] },

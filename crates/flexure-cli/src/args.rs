@@ -189,6 +189,8 @@ pub struct Traced {
     /// Write a page with the robot in motion, too: one file for any browser, which needs no network.
     #[arg(long)]
     pub view: bool,
+    #[command(flatten)]
+    pub paged: Paged,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -17,6 +17,16 @@ pub struct Paged {
 }
 
 impl Paged {
+    /// What is said of what was broken off: `hint`, and that no page was written, if one was asked for.
+    pub fn broken_off(&self, hint: &str) -> String {
+        // Of a part a page would be taken for the whole.
+        if self.page.is_some() {
+            format!("{hint}; no page is written of what was broken off")
+        } else {
+            hint.to_owned()
+        }
+    }
+
     /// That a page about `name` with so many figures can be written, if one is asked for, and that it is not in the place of the file `out`:
     /// said before the work, not after.
     pub fn prepare(

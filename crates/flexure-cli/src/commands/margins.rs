@@ -43,7 +43,6 @@ pub fn margins(options: &Margins, reading: Reading<'_>, json: bool) -> Result<()
         measured(&scenario, &chosen, options, &|part, fraction| progress.set(part, fraction))?
     };
     let pages = match &options.paged.page {
-        // Of a part of the search a page would be taken for the whole.
         Some(folder) if is_whole => write_margins(folder, &scenario, &loops)?,
         _ => Vec::new(),
     };
@@ -59,7 +58,8 @@ pub fn margins(options: &Margins, reading: Reading<'_>, json: bool) -> Result<()
         print::wrote(&pages)?;
     }
     if !is_whole {
-        return Err(Failure::interrupted(words.to_owned(), "what is not there was not measured"));
+        let hint = options.paged.broken_off("what is not there was not measured");
+        return Err(Failure::interrupted(words.to_owned(), &hint));
     }
     let objections: Vec<_> = loops.iter().filter_map(|found| found.objection(&scenario)).collect();
     if objections.is_empty() {

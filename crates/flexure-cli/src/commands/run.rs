@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use flexure::feasible;
 use flexure::files::number::short;
-use flexure::files::{Problem, Reading, prepare_for};
+use flexure::files::{Problem, Reading, folder_of, prepare_for};
 use flexure::prove::standing::outside_of_proofs;
-use flexure::report::{summary_table, view_name, write_view};
+use flexure::report::{RunTold, Verdict, summary_table, view_name, write_ran, write_view};
 use flexure::reproduce::{Experiment, trace_file, write_experiment};
 use flexure::sampled::{Sampled, not_looked_at};
 use flexure::scenario::{Scenario, load_scenario_with};
@@ -32,6 +32,9 @@ pub struct Outcome<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub faults: Option<&'a FaultLog>,
     pub files: Vec<PathBuf>,
+    /// Its page and the figure of that; not there without `--page`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub pages: Vec<PathBuf>,
 }
 
 /// Two runs, and the page that shows both.
@@ -51,6 +54,7 @@ impl<'a> Outcome<'a> {
             sampled: experiment.sampled.as_ref(),
             faults: run.faults.as_ref(),
             files,
+            pages: Vec::new(),
         }
     }
 }
@@ -89,6 +93,8 @@ struct Finished {
     /// The answers that are no, the first first; nothing for a run that was broken off, of which that is not known.
     answers: Vec<Problem>,
     files: Vec<PathBuf>,
+    /// Its page and the figure of that, if they were asked for.
+    pages: Vec<PathBuf>,
 }
 
 /// Runs scenarios, writes their files as `traced` says, and tells what came of them, after `first`: who prints before the end has no word
@@ -104,6 +110,9 @@ pub fn told(
         .flat_map(|scenario| ["csv", "svg", "png"].map(|ending| format!("{}.{ending}", scenario.name)));
     let view = traced.view.then(|| view_name(scenarios.iter()));
     prepare_for(&traced.output.out, files.chain(view))?;
+    for scenario in &scenarios {
+        traced.paged.prepare(&scenario.name, "run", 1, None)?;
+    }
     let mut finished: Vec<Finished> = Vec::new();
     for scenario in scenarios {
         finished.push(run_of(scenario, traced)?);
@@ -112,6 +121,11 @@ pub fn told(
         }
     }
     let page = if traced.view { Some(page(&finished, &traced.output.out)?) } else { None };
+    if let Some(folder) = &traced.paged.page {
+        for run in &mut finished {
+            run.pages = page_of(run, folder, page.as_deref())?;
+        }
+    }
     let mut broken_off = None;
     if json {
         document(&finished, page)?;
@@ -139,7 +153,7 @@ pub fn told(
 
 /// Runs a scenario and writes its trace and its figure.
 fn run_of(scenario: Scenario, traced: &Traced) -> Result<Finished, Failure> {
-    let Traced { output, columns, every, view: _ } = traced;
+    let Traced { output, columns, every, view: _, paged: _ } = traced;
     let signals = scenario.signals()?;
     let excerpt = Excerpt::new(&signals, columns, *every)?;
     say(&scenario.warnings);
@@ -160,29 +174,69 @@ fn run_of(scenario: Scenario, traced: &Traced) -> Result<Finished, Failure> {
         Some(_) => Vec::new(),
         None => objections(&experiment).into_iter().chain(beyond).collect(),
     };
-    Ok(Finished { experiment, answers, files })
+    Ok(Finished { experiment, answers, files, pages: Vec::new() })
 }
 
 /// The runs in motion, as a page.
 fn page(finished: &[Finished], folder: &Path) -> Result<PathBuf, Failure> {
-    let words: Vec<String> = finished.iter().map(Finished::verdict).collect();
-    let viewed = finished.iter().zip(&words).map(|(finished, words)| {
-        let good = finished.experiment.run.broken_off.is_none().then_some(finished.answers.is_empty());
-        finished.experiment.viewed(good, words)
-    });
+    let verdicts: Vec<Verdict> = finished.iter().map(Finished::verdict).collect();
+    let viewed = finished.iter().zip(&verdicts);
+    let viewed = viewed.map(|(finished, Verdict { good, words })| finished.experiment.viewed(*good, words));
     let (path, warnings) = write_view(folder, &viewed.collect::<Vec<_>>())?;
     say(&warnings);
     Ok(path)
 }
 
+/// The page of a run, with links to what it left in the same folder, the page in `motion` too.
+fn page_of(run: &Finished, folder: &Path, motion: Option<&Path>) -> Result<Vec<PathBuf>, Failure> {
+    let Experiment { scenario, run: ran, figure, proved, .. } = &run.experiment;
+    let trace = run
+        .files
+        .first()
+        .map(|path| (path.as_path(), "every signal at every control instant that was asked for"));
+    let motion = motion.map(|path| (path, "the robot in motion"));
+    let name = |(path, what): (&Path, &'static str)| Some((path.file_name()?.to_str()?.to_owned(), what));
+    let beside: Vec<_> = trace
+        .into_iter()
+        .chain(motion)
+        .filter(|(path, _)| folder_of(path) == folder)
+        .filter_map(name)
+        .collect();
+    let told = RunTold {
+        scenario,
+        summary: &ran.summary,
+        verdict: &run.verdict(),
+        figure,
+        proved: *proved,
+        notes: &run.notes(),
+        beside: &beside,
+    };
+    Ok(write_ran(folder, &told)?)
+}
+
 impl Finished {
     /// Its summary and its files, `page` among them.
     fn outcome(&self, page: Option<PathBuf>) -> Outcome<'_> {
-        Outcome::new(&self.experiment, self.files.iter().cloned().chain(page).collect())
+        let files = self.files.iter().cloned().chain(page).collect();
+        Outcome { pages: self.pages.clone(), ..Outcome::new(&self.experiment, files) }
+    }
+
+    /// What the numbers do not say of the loop.
+    fn notes(&self) -> Vec<String> {
+        let Experiment { scenario, run, sampled, .. } = &self.experiment;
+        let conditions = scenario.vcbc().map_or_else(|_| Vec::new(), |_| scenario.beyond_ideal());
+        let sampled = sampled.as_ref().map(Sampled::line).or_else(|| not_looked_at(scenario));
+        [summary_line(&run.summary), outside_of_proofs(&conditions), sampled].into_iter().flatten().collect()
+    }
+
+    /// What came of it, and whether that is good: not known of a run that was broken off.
+    fn verdict(&self) -> Verdict {
+        let good = self.experiment.run.broken_off.is_none().then_some(self.answers.is_empty());
+        Verdict { good, words: self.words() }
     }
 
     /// What came of it in a sentence.
-    fn verdict(&self) -> String {
+    fn words(&self) -> String {
         let Experiment { scenario, run, .. } = &self.experiment;
         match (run.broken_off, self.answers.first()) {
             (Some(time), _) => words_of_end(scenario, time),
@@ -214,28 +268,19 @@ fn document(finished: &[Finished], page: Option<PathBuf>) -> Result<(), Failure>
 }
 
 /// Prints what came of a run.
-fn in_words(Finished { experiment, files, .. }: &Finished) -> Result<(), Failure> {
+fn in_words(finished: &Finished) -> Result<(), Failure> {
+    let Finished { experiment, files, pages, .. } = finished;
     let broken_off = experiment.run.broken_off.map(|time| words_of_end(&experiment.scenario, time));
     if let Some(words) = &broken_off {
         print::line(words)?;
     }
     print::line(&summary_table(std::slice::from_ref(&experiment.run.summary), print::columns()))?;
-    if let Some(line) = summary_line(&experiment.run.summary) {
-        print::line(&line)?;
-    }
-    let conditions =
-        experiment.scenario.vcbc().map_or_else(|_| Vec::new(), |_| experiment.scenario.beyond_ideal());
-    if let Some(line) = outside_of_proofs(&conditions) {
-        print::line(&line)?;
-    }
-    let sampled = experiment.sampled.as_ref().map(Sampled::line);
-    if let Some(line) = sampled.or_else(|| not_looked_at(&experiment.scenario)) {
-        print::line(&line)?;
-    }
+    finished.notes().iter().try_for_each(|line| print::line(line))?;
     if broken_off.is_none() {
         print::line(&verdict(&experiment.run.summary.following))?;
     }
-    print::wrote(files)
+    print::wrote(files)?;
+    print::wrote(pages)
 }
 
 /// That a run was broken off, and when.

@@ -70,10 +70,10 @@ pub fn sweep(options: &Sweep, reading: Reading<'_>, json: bool) -> Result<(), Fa
         Ok(computed) => show(&sweep, &folder, computed, options.paged.page.as_deref(), json),
         Err(Unfinished::Problems(problems)) if problems.is_interrupted() => {
             let there = there()?;
-            // Of a part that was broken off a page would be taken for the whole.
             show(&sweep, &folder, (there - before.min(there)) as u64, None, json)?;
             let message = format!("broken off: {there} of {} shards are there", range.end - range.start);
-            Err(Failure::interrupted(message, "the same command goes on where it was"))
+            let hint = options.paged.broken_off("the same command goes on where it was");
+            Err(Failure::interrupted(message, &hint))
         }
         Err(other) => Err(other.into()),
     }

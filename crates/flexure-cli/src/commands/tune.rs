@@ -55,7 +55,6 @@ pub fn tune(options: &Tune, reading: Reading<'_>, json: bool) -> Result<(), Fail
     }
     let objection = found.objection(scenario, &spec);
     let pages = match &options.paged.page {
-        // Of a part of the search a page would be taken for the whole.
         Some(folder) if !found.broken_off => write_tuned(folder, scenario, &found, objection.as_ref(), file)?,
         _ => Vec::new(),
     };
@@ -72,10 +71,8 @@ pub fn tune(options: &Tune, reading: Reading<'_>, json: bool) -> Result<(), Fail
         } else {
             "broken off: no gains keep every constraint so far"
         };
-        return Err(Failure::interrupted(
-            words.to_owned(),
-            "without Ctrl-C the search goes on, and margins are measured",
-        ));
+        let hint = options.paged.broken_off("without Ctrl-C the search goes on, and margins are measured");
+        return Err(Failure::interrupted(words.to_owned(), &hint));
     }
     objection.map_or(Ok(()), |problem| Err(Failure::No(vec![problem.into()])))
 }

@@ -64,9 +64,13 @@ fn a_run_ends_where_it_is_and_leaves_its_trace() {
     assert!((last - end).abs() < 1e-9, "{last} {end}");
     assert_eq!(place.names("out"), ["long.csv", "long.png", "long.svg"]);
 
-    let (outcome, _) = broken_off(&place, &["run", "long.toml"], 2.0);
+    let (outcome, _) = broken_off(&place, &["run", "long.toml", "--page", "pages"], 2.0);
     assert!(outcome.stdout.contains("long: broken off at t = "), "{outcome:?}");
     assert!(!outcome.stdout.contains("follows its reference"), "{outcome:?}");
+    let page = place.read("pages/long.run.html");
+    assert!(page.contains("<strong>– no verdict</strong> long: broken off at t = "), "{page}");
+    // Nothing is proved of what was not looked at.
+    assert!(!page.contains("proved bound"), "{page}");
 }
 
 #[test]
@@ -77,7 +81,10 @@ fn margins_are_open_where_the_search_was() {
         "s.toml",
         altered(SCENARIO, &[("duration = 10.0", "duration = 400.0"), ("[controller]", smooth)]),
     );
-    let json = partial(&place, &["margins", "s.toml"], |json| json["loops"].is_array());
+    let args = ["margins", "s.toml", "--page", "pages"];
+    let json = partial(&place, &args, |json| json["loops"].is_array());
+    assert!(json["error"]["hint"].as_str().unwrap().contains("no page is written"), "{json}");
+    assert_eq!(place.names("pages"), [""; 0]);
     let found = &json["loops"][0];
     let edges = ["delay", "gain_low", "gain_high", "stiffness_low", "stiffness_high", "noise"];
     assert!(edges.iter().any(|edge| found[edge]["edge"] == "open"), "{found}");

@@ -70,6 +70,26 @@ fn a_loop_that_is_unstable_as_sampled_is_bad_whatever_is_proved() {
 }
 
 #[test]
+fn a_run_has_a_page() {
+    let place = Place::new();
+    let args = ["run", "two-link-tanh", "--out", "pages", "--view"];
+    let (outcome, page) = paged(&place, &args, "two-link-tanh.run");
+    let expected = if outcome.code == Some(0) { "✓ good" } else { "✕ bad" };
+    assert_eq!(mark(&page), expected);
+    assert!(page.contains("proved bound in continuous time") && page.contains("What it takes of its limits"));
+    assert!(page.contains("href=\"two-link-tanh.csv\"") && page.contains("href=\"two-link-tanh.view.html\""));
+    // Elsewhere there is nothing to link to; what is proved is proved of the loop in the file.
+    let args = ["run", "two-link-hardware", "--set", "duration=1", "--out", "out"];
+    let (outcome, page) = paged(&place, &args, "two-link-hardware.run");
+    assert_eq!(mark(&page), if outcome.code == Some(0) { "✓ good" } else { "✕ bad" });
+    assert!(!page.contains("href=\"two-link-hardware.csv\"") && !page.contains("proved bound"), "{page}");
+    assert!(page.contains("outside of them stand, in this scenario: encoder, velocity-filter"), "{page}");
+    let json =
+        place.run(&["run", "two-link-hardware", "--set", "duration=1", "--page", "pages", "--json"]).json();
+    assert_eq!(json["pages"][0], "pages/two-link-hardware.run.html");
+}
+
+#[test]
 fn what_has_no_picture_has_a_page_that_says_why() {
     let place = Place::new();
     // The third derivative of a quintic jumps.

@@ -5,6 +5,7 @@ mod asked_rate;
 mod closed_loop;
 mod complaint;
 pub mod confirmation;
+pub mod decay;
 mod decimals;
 pub mod engine;
 mod fitting;

@@ -10,6 +10,7 @@ use crate::progress::{Progress, unwatched};
 use crate::prove::along::{Along, along, start_level, uneven_metric};
 use crate::prove::asked_rate::at_rate;
 use crate::prove::confirmation::{Confirmation, confirm};
+use crate::prove::decay::Decay;
 use crate::prove::decimals::{gains, robot};
 use crate::prove::engine::certificate::{Certificate, CertifiedPhi, DecimalLaw};
 use crate::prove::engine::number::Number;
@@ -368,12 +369,24 @@ pub(crate) fn inside(certificate: &Certificate, level: f64) -> bool {
 /// # Errors
 /// If its level set cannot be found.
 pub fn certified_rate(scenario: &Scenario) -> Result<Option<f64>, Problems> {
+    Ok(certified(scenario)?.map(|(certificate, _)| certificate.contraction_rate.approximate()))
+}
+
+/// What is proved of `scenario` without further options, if anything is, and how errors decay from its start, if that is inside.
+///
+/// # Errors
+/// If its level set cannot be found.
+pub(crate) fn certified(scenario: &Scenario) -> Result<Option<(Certificate, Option<Decay>)>, Problems> {
     let certified = scenario.vcbc().is_ok_and(|gains| CertifiedPhi::named(gains.phi.name()).is_some());
     if !certified || uneven_metric(scenario).is_some() {
         return Ok(None);
     }
-    let problem = problem(scenario, &Question::default(), start_level(scenario).ok())?;
-    Ok(certify(&problem).proved().map(|certificate| certificate.contraction_rate.approximate()))
+    let start = start_level(scenario).ok();
+    let problem = problem(scenario, &Question::default(), start)?;
+    Ok(certify(&problem).proved().map(|certificate| {
+        let decay = start.and_then(|start| Decay::of(certificate, start));
+        (certificate.clone(), decay)
+    }))
 }
 
 #[cfg(test)]

@@ -26,12 +26,13 @@ pub use figures::run::{FigureOptions, four_panel, run_figure};
 pub use figures::score_map::score_map;
 pub use outputs::{
     page_names, stem, view_name, write_certificate, write_certified, write_figure, write_identified,
-    write_leaderboard, write_margins, write_swept, write_tuned, write_view,
+    write_leaderboard, write_margins, write_ran, write_swept, write_tuned, write_view,
 };
 pub use pages::certificates::CertificateReport;
 pub use pages::certify::proof_verdict;
 pub use pages::kit::Verdict;
 pub use pages::leaderboard::leaderboard_page;
+pub use pages::run::RunTold;
 pub use pages::runs::{AssumedNumber, RunReport, RunsReport, html};
 pub use replay::{replay_figure, replay_table, write_replay};
 pub use sketch::Sketch;

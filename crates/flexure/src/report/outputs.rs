@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
-use super::{Scene, Verdict, Viewed, assumptions, cost_figure, leaderboard_page, score_map, view};
+use super::{RunTold, Scene, Verdict, Viewed, assumptions, cost_figure, leaderboard_page, score_map, view};
 use crate::compare::{Leaderboard, Task};
 use crate::design::Design;
 use crate::files::{Problem, Unfinished, WriteError, create_folder, folder_of, write_atomic};
@@ -20,6 +20,7 @@ use crate::report::figures::spread::spread_figure;
 use crate::report::pages::certify::certify_page;
 use crate::report::pages::identify::identify_page;
 use crate::report::pages::margins::margins_page;
+use crate::report::pages::run::run_page;
 use crate::report::pages::sweep::sweep_page;
 use crate::report::pages::tune::tune_page;
 use crate::scenario::Scenario;
@@ -128,6 +129,15 @@ pub fn write_certified(
     let page = certify_page(scenario, summary, verdict, &figure, name.as_deref(), beside);
     let figures = figure.as_ref().map_or(&[][..], std::slice::from_ref);
     Ok(write_page(folder, &stem(&scenario.name, "certify"), &page, figures)?)
+}
+
+/// Writes `NAME.run.html` and its figure into `folder`, which is created if missing; returns the paths.
+///
+/// # Errors
+/// As [`write_margins`].
+pub fn write_ran(folder: &Path, told: &RunTold<'_>) -> Result<Vec<PathBuf>, WriteError> {
+    let figures = std::slice::from_ref(told.figure);
+    write_page(folder, &stem(&told.scenario.name, "run"), &run_page(told), figures)
 }
 
 /// Writes `NAME.tune.html` and its figures into `folder`, which is created if missing; returns the paths.

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use crate::files::number::{engineering, small};
 use crate::files::{Problem, Problems, Unfinished};
 use crate::progress::{PartProgress, Progress};
-use crate::prove::question::{Direct, Proof, Question, Region, certified_rate, prove};
+use crate::prove::question::{Direct, Proof, Question, Region, certified, prove};
 use crate::prove::standing::is_about;
 use crate::prove::summary::ProofSummary;
 use crate::report::{
@@ -47,8 +47,10 @@ pub struct Experiment {
     pub sketch: Sketch,
     /// What its animation shows of it.
     pub film: Film,
-    /// The four-panel figure.
+    /// The figure.
     pub figure: Scene,
+    /// Whether a proved bound of its errors is in the figure.
+    pub proved: bool,
 }
 
 impl Experiment {
@@ -72,8 +74,13 @@ impl Experiment {
         let mut run = run_into(&scenario, &mut all, progress)?;
         let exceeded = watch.warnings();
         let sampled = if run.broken_off.is_some() { None } else { probe(&scenario)? };
-        if run.broken_off.is_none() && is_about(&scenario, sampled.as_ref()) {
-            run.summary.rate_certified = certified_rate(&scenario)?;
+        let mut decay = None;
+        if run.broken_off.is_none()
+            && is_about(&scenario, sampled.as_ref())
+            && let Some((certificate, proved)) = certified(&scenario)?
+        {
+            run.summary.rate_certified = Some(certificate.contraction_rate.approximate());
+            decay = proved;
         }
         let ended = match (run.divergence, run.broken_off) {
             (Some(divergence), _) => format!("; diverged at t = {:.3} s", divergence.time),
@@ -81,15 +88,17 @@ impl Experiment {
             (None, None) => String::new(),
         };
         let subtitle = describe(&scenario) + &ended;
+        let proved = decay.is_some();
         let options = FigureOptions {
             title: scenario.name.clone(),
             subtitle,
             joints: JointMarks::of(&scenario),
             happenings: pushes(&scenario),
             settled: run.summary.settling_time,
+            decay,
         };
         let figure = run_figure(&sketch, &options);
-        Ok(Self { scenario, run, sampled, exceeded, sketch, film, figure })
+        Ok(Self { scenario, run, sampled, exceeded, sketch, film, figure, proved })
     }
 }
 

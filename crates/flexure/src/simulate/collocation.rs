@@ -1,7 +1,9 @@
-//! One step of collocation.
+//! One step of collocation. The stages of one robot go through its dynamics side by side, a SIMD lane each: to lanes one robot at several
+//! instants is several robots.
 
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Links, Motion};
+use flexure_core::scalar::{Lane, Lanes, Over as _, Piecewise as _, Scalar as _};
 
 use crate::plant::{Plant, Sides};
 use crate::simulate::damped::error_of_defect;
@@ -9,7 +11,7 @@ use crate::simulate::ledger::Ledger;
 use crate::simulate::local_error::{Torques, Values, estimate};
 use crate::simulate::newton::{Anchor, StageSolver, StepSolution};
 use crate::simulate::scheme::{Scheme, Stages};
-use crate::simulate::span::{Span, ahead, damping_rate, half, sum};
+use crate::simulate::span::{EachAtStages, Span, ahead, damping_rate, half, weighted};
 
 /// Corrections of this size relative to the speeds of a step are rounding.
 const ROUNDING: f64 = 1e-14;
@@ -59,9 +61,9 @@ pub(crate) struct Past<const N: usize> {
     pub(crate) contraction: f64,
     /// Number of stages of the polynomials; none are known if 0.
     pub(crate) stages: usize,
-    /// The polynomials at the stages: links, motors. Those beyond the number of stages are 0.
-    pub(crate) link: [Vector<f64, N>; 4],
-    pub(crate) motor: [Vector<f64, N>; 4],
+    /// The polynomials at the stages, a joint each: links, motors. What is beyond the number of stages is 0.
+    pub(crate) link: [Stages<4>; N],
+    pub(crate) motor: [Stages<4>; N],
 }
 
 impl<const N: usize> Past<N> {
@@ -70,8 +72,8 @@ impl<const N: usize> Past<N> {
         anchor: Anchor { q: [Vector::ZERO; 2], h: 0.0 },
         contraction: 1.0,
         stages: 0,
-        link: [Vector::ZERO; 4],
-        motor: [Vector::ZERO; 4],
+        link: [Stages::ZERO; N],
+        motor: [Stages::ZERO; N],
     };
 }
 
@@ -81,9 +83,15 @@ pub(crate) struct Collocation<const S: usize, const N: usize> {
     pub(crate) scheme: Scheme<S>,
     /// What a step of the same length leads on to at the stages, less its end.
     ahead: [Stages<S>; S],
+    /// What stage values are multiplied by to have their polynomial at the end.
+    at_end: Stages<S>,
     /// What stage values are multiplied by to have at 0 the polynomial through half as many points.
     half: Stages<S>,
     solver: Option<Box<StageSolver<S, N>>>,
+    /// Damping rates of the motors that it is for [1/s].
+    rate: Vector<f64, N>,
+    /// Length of a step in s, and what [`error_of_defect`] is for that length and half as many stages, a motor each.
+    of_coarser: (f64, [f64; N]),
 }
 
 /// What is moved, from where, when, how far, and under which torque.
@@ -95,10 +103,21 @@ pub(crate) struct Task<'a, L, const N: usize> {
     pub(crate) torque: &'a dyn Fn(f64, &Motion<f64, N>) -> Vector<f64, N>,
 }
 
-impl<const S: usize, const N: usize> Collocation<S, N> {
+impl<const S: usize, const N: usize> Collocation<S, N>
+where
+    f64: Lane<S>,
+{
     pub(crate) fn new() -> Self {
         let scheme = Scheme::gauss();
-        Self { ahead: ahead(&scheme, 1.0), half: half(&scheme), scheme, solver: None }
+        Self {
+            ahead: ahead(&scheme, 1.0),
+            at_end: scheme.at(1.0),
+            half: half(&scheme),
+            scheme,
+            solver: None,
+            rate: Vector::ZERO,
+            of_coarser: (0.0, [0.0; N]),
+        }
     }
 
     /// A step whose equations are solved to `accuracy`, relative to the speeds; none if they cannot be solved in finite numbers.
@@ -111,6 +130,9 @@ impl<const S: usize, const N: usize> Collocation<S, N> {
         let Task { plant, x, h, .. } = *task;
         let u = (task.torque)(task.t, x);
         let rate = &damping_rate(plant);
+        if self.rate != *rate {
+            (self.rate, self.solver, self.of_coarser.0) = (*rate, None, 0.0);
+        }
         // Where a matrix from some way back does not lead on, one from here may.
         let here = Anchor { q: [x.q_l, x.q_m], h };
         let ratio = h / past.anchor.h;
@@ -121,8 +143,10 @@ impl<const S: usize, const N: usize> Collocation<S, N> {
             if anchor == here {
                 (past.anchor, past.contraction) = (here, FRESH);
             }
-            if self.solver.as_ref().is_none_or(|solver| solver.anchor != anchor) {
-                self.solver = Some(Box::new(StageSolver::new(&self.scheme, plant, anchor)));
+            match &mut self.solver {
+                Some(solver) if solver.anchor == anchor => {}
+                Some(solver) => solver.move_to(&self.scheme, plant, anchor),
+                None => self.solver = Some(Box::new(StageSolver::new(&self.scheme, plant, anchor))),
             }
             let Some(solver) = self.solver.as_deref() else { break };
             let span = Span { scheme: &self.scheme, plant, x, h, solver, rate };
@@ -131,7 +155,8 @@ impl<const S: usize, const N: usize> Collocation<S, N> {
             let mut solution = if extrapolated {
                 self.extrapolated(past, ratio, &start)
             } else {
-                StepSolution { link: [start[0]; S], motor: [start[1]; S] }
+                let [link, motor] = start.map(|side| side.0.map(|value| Vector([value; S])));
+                StepSolution { link, motor }
             };
             past.stages = 0;
             let solved = Self::solve(task, &span, &start, &mut solution, &mut past.contraction, accuracy);
@@ -145,8 +170,11 @@ impl<const S: usize, const N: usize> Collocation<S, N> {
             let error = estimate::<S, _, S, N, f64>(&span, &span.speeds(&start), &values, damped);
             if is_finite(&end) {
                 past.stages = S;
-                past.link[..S].copy_from_slice(&solution.link);
-                past.motor[..S].copy_from_slice(&solution.motor);
+                for (past, solved) in [(&mut past.link, &solution.link), (&mut past.motor, &solution.motor)] {
+                    for (past, solved) in past.iter_mut().zip(solved) {
+                        past.0[..S].copy_from_slice(&solved.0);
+                    }
+                }
                 return Some(Step { end, work, start, solution, torques, error });
             }
         }
@@ -166,16 +194,23 @@ impl<const S: usize, const N: usize> Collocation<S, N> {
             return [a_l, a_m + rate.diag_mul(&x.v_m)];
         };
         // One correction of what the last step leads to, by its own mass matrix.
-        let weights = self.scheme.at(1.0);
-        span.start(u, [&past.link, &past.motor].map(|values| sum(&weights, values)))
+        let weights = &self.at_end;
+        let led_to =
+            |values: &[Stages<4>; N]| Vector(values.map(|values| weighted(weights, &first(&values))));
+        span.start(u, [led_to(&past.link), led_to(&past.motor)])
     }
 
     /// The polynomials of the last step, `ratio` times shorter than this one, led on and shifted to what they are at the start of this one.
     fn extrapolated(&self, past: &Past<N>, ratio: f64, start: &Sides<N>) -> StepSolution<S, N> {
         #[expect(clippy::float_cmp, reason = "exactly the same length")]
         let ahead = if ratio == 1.0 { self.ahead } else { ahead(&self.scheme, ratio) };
-        let on = |values: &[Vector<f64, N>; 4], start: &Vector<f64, N>| {
-            ahead.map(|weights| *start + sum(&weights, values))
+        let on = |values: &[Stages<4>; N], start: &Vector<f64, N>| {
+            let mut led = [Stages::ZERO; N];
+            for (led, (values, start)) in led.iter_mut().zip(values.iter().zip(start.iter())) {
+                let values = first(values);
+                *led = Vector::from_fn(|i| start + weighted(&ahead[i], &values));
+            }
+            led
         };
         StepSolution { link: on(&past.link, &start[0]), motor: on(&past.motor, &start[1]) }
     }
@@ -188,41 +223,34 @@ impl<const S: usize, const N: usize> Collocation<S, N> {
         solution: &mut StepSolution<S, N>,
         contraction: &mut f64,
         accuracy: f64,
-    ) -> Option<[Vector<f64, N>; S]> {
+    ) -> Option<EachAtStages<S, N>> {
         let Task { t, h, torque, .. } = *task;
         let speeds = span.speeds(start);
         // Corrections below this are rounding of velocities.
         let floor = (ROUNDING * (largest(&speeds[0]) + largest(&speeds[1])) + STILL) / h;
         let felt = span.felt(start);
-        let mut torques = [Vector::ZERO; S];
+        // What corrections count by.
+        let unit = speeds.map(|side| side.map(|speed| h / speed));
+        let mut found = in_lanes(solution);
         let (mut previous, mut previous_size) = (f64::INFINITY, f64::INFINITY);
         for iteration in 0..MAX_ITERATIONS {
-            let (mut link, mut motor) = ([Stages::ZERO; N], [Stages::ZERO; N]);
-            for i in 0..S {
-                let motion = span.stage(solution, i);
-                let u = torque(t + h * span.scheme.nodes[i], &motion);
-                let [missing_l, missing_m] = span.unbalanced(solution, i, &motion, &felt[i], &u);
-                for k in 0..N {
-                    link[k][i] = missing_l[k];
-                    motor[k][i] = missing_m[k];
-                }
-                torques[i] = u;
-            }
-            let (link, motor) = span.solver.correction(&link, &motor);
+            let motion = span.lanes(&found);
+            let torques = at_stages(&motion, |i, motion| torque(t + h * span.scheme.nodes[i], motion));
+            let [link, motor] = span.unbalanced_at_once(&found, &motion, &felt, &torques);
+            let corrections = span.solver.correction(&link.0, &motor.0);
             // The largest correction as it is, and relative to the speed of its joint.
-            let (mut worst, mut size, mut total) = (0.0_f64, 0.0_f64, 0.0);
-            for k in 0..N {
-                let (mut of_link, mut of_motor) = (0.0_f64, 0.0_f64);
-                for i in 0..S {
-                    solution.link[i][k] += link[k][i];
-                    solution.motor[i][k] += motor[k][i];
-                    of_link = of_link.max(link[k][i].abs());
-                    of_motor = of_motor.max(motor[k][i].abs());
-                    total += link[k][i] + motor[k][i];
+            let [mut worst, mut size, mut total] = [Lanes::ZERO; 3];
+            for (side, (found, corrections)) in found.iter_mut().zip(&corrections).enumerate() {
+                for (k, (found, correction)) in found.iter_mut().zip(corrections).enumerate() {
+                    *found += *correction;
+                    let magnitude = correction.abs();
+                    worst = worst.max(magnitude);
+                    size = size.max(magnitude.scale(unit[side][k]));
+                    total += *correction;
                 }
-                worst = worst.max(of_link).max(of_motor);
-                size = size.max(h * of_link / speeds[0][k]).max(h * of_motor / speeds[1][k]);
             }
+            let [worst, size] = [worst, size].map(|each| each.to_array().into_iter().fold(0.0, f64::max));
+            let total: f64 = total.to_array().iter().sum();
             // NaN does not win a maximum.
             if !total.is_finite() {
                 return None;
@@ -231,7 +259,7 @@ impl<const S: usize, const N: usize> Collocation<S, N> {
             // Rounding is what is left of the corrections, not what they are: an old matrix leaves more of them.
             let rounded = worst <= floor && worst * *contraction <= NOTHING * floor;
             if rounded || (stalled && worst <= STALL * floor) {
-                return Some(torques);
+                return Some(solved(solution, &found, &torques));
             }
             if stalled && worst > previous {
                 return None;
@@ -246,7 +274,7 @@ impl<const S: usize, const N: usize> Collocation<S, N> {
                 if iteration == 0 {
                     *contraction *= 1.25;
                 }
-                return Some(torques);
+                return Some(solved(solution, &found, &torques));
             }
             (previous, previous_size) = (worst, size);
         }
@@ -255,7 +283,7 @@ impl<const S: usize, const N: usize> Collocation<S, N> {
 
     /// The error that a step of half as many stages, those of `coarser`, would have had where this one was.
     pub(crate) fn error_of_coarser<L: Links<f64, N>, const C: usize>(
-        &self,
+        &mut self,
         task: &Task<'_, L, N>,
         coarser: &Collocation<C, N>,
         step: &Step<S, N>,
@@ -273,9 +301,57 @@ impl<const S: usize, const N: usize> Collocation<S, N> {
         let rate = &rate;
         let span = Span { scheme: &self.scheme, plant: task.plant, x: task.x, h: task.h, solver, rate };
         let values = Values { start, solution, torques: Some(torques), at_start };
-        let damped = |k: usize| error_of_defect(&coarser.scheme, task.h * rate[k]);
-        estimate::<C, _, S, N, f64>(&span, &span.speeds(start), &values, damped)
+        #[expect(clippy::float_cmp, reason = "coefficients of another length are others")]
+        if self.of_coarser.0 != task.h {
+            self.of_coarser = (task.h, rate.map(|rate| error_of_defect(&coarser.scheme, task.h * rate)).0);
+        }
+        estimate::<C, _, S, N, f64>(&span, &span.speeds(start), &values, |k| self.of_coarser.1[k])
     }
+}
+
+/// The numbers of links and motors at the stages, a lane each.
+fn in_lanes<const S: usize, const N: usize>(solution: &StepSolution<S, N>) -> [[Lanes<f64, S>; N]; 2]
+where
+    f64: Lane<S>,
+{
+    let StepSolution { link, motor } = solution;
+    [link, motor].map(|side| side.map(|stages| Lanes::from_array(stages.0)))
+}
+
+/// The torque that `torque` gives at each stage, told which and the motion there.
+fn at_stages<const S: usize, const N: usize>(
+    motion: &Motion<Lanes<f64, S>, N>,
+    torque: impl Fn(usize, &Motion<f64, N>) -> Vector<f64, N>,
+) -> Vector<Lanes<f64, S>, N>
+where
+    f64: Lane<S>,
+{
+    let Motion { q_l, q_m, v_l, v_m } = motion;
+    let [q_l, q_m, v_l, v_m] = [q_l, q_m, v_l, v_m].map(|each| each.map(Lanes::to_array));
+    let torques: [Vector<f64, N>; S] = std::array::from_fn(|i| {
+        let at = |each: &Vector<[f64; S], N>| Vector::from_fn(|k| each[k][i]);
+        torque(i, &Motion { q_l: at(&q_l), q_m: at(&q_m), v_l: at(&v_l), v_m: at(&v_m) })
+    });
+    Vector::from_fn(|k| Lanes::from_array(std::array::from_fn(|i| torques[i][k])))
+}
+
+/// Writes what was found to `solution`, and gives the torques.
+fn solved<const S: usize, const N: usize>(
+    solution: &mut StepSolution<S, N>,
+    [link, motor]: &[[Lanes<f64, S>; N]; 2],
+    torques: &Vector<Lanes<f64, S>, N>,
+) -> EachAtStages<S, N>
+where
+    f64: Lane<S>,
+{
+    let stages = |side: &[Lanes<f64, S>; N]| side.map(|stages| Vector(stages.to_array()));
+    *solution = StepSolution { link: stages(link), motor: stages(motor) };
+    stages(&torques.0)
+}
+
+/// Those of the first stages.
+fn first<const S: usize>(values: &Stages<4>) -> Stages<S> {
+    Vector::from_fn(|i| values[i])
 }
 
 fn largest<const N: usize>(v: &Vector<f64, N>) -> f64 {

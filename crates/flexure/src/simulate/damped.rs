@@ -8,7 +8,7 @@
 use flexure_core::linalg::{Matrix, Vector};
 use flexure_core::scalar::Scalar;
 
-use crate::simulate::scheme::{Block, Scheme, Stages, factorial};
+use crate::simulate::scheme::{Scheme, StageMap, Stages, factorial};
 
 /// φ_k(−x) for k = 0, 1, …: ∫₀¹ e^(−x (1 − s)) s^(k−1) / (k − 1)! ds.
 type Phi = [f64; COUNT];
@@ -35,21 +35,25 @@ pub(crate) struct Reach<const S: usize, T = f64> {
 /// The coefficients of one damped motor for steps of one length.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Damped<const S: usize, T = f64> {
-    /// By the stages.
-    pub stages: [Reach<S, T>; S],
+    /// What is left of the speed at the stages.
+    pub decay: Stages<S, T>,
+    /// How far the speed at the start carries by the stages, in h.
+    pub drift: Stages<S, T>,
+    /// What f adds to the speed at the stages, in h.
+    pub once: StageMap<S, T>,
     /// By the end of the step.
     pub end: Reach<S, T>,
-    /// h² times this integrates f twice up to the stages.
-    pub twice: Block<S, T>,
+    /// What f adds to the position at the stages, in h².
+    pub twice: StageMap<S, T>,
     /// What the acceleration at the stages has of f at the stages: q̈_m = f − λ q̇_m.
-    pub acceleration: Block<S, T>,
+    pub acceleration: StageMap<S, T>,
     /// By how much means of e^(−λ t) over the weights of the stages exceed its values there, where that matters: a spring that feels the
     /// means gets the impulse of a speed that is damped within the step.
     pub excess: Stages<S, T>,
     /// ∫ ℓ_i q̇_m dt for the polynomials ℓ_i of the stages, from the speed at the start, in h: they sum to `end.drift`.
     pub work_of_speed: Stages<S, T>,
     /// The same from f, in h².
-    pub work: Block<S, T>,
+    pub work: StageMap<S, T>,
     /// By how much the end of the step, its speed counted by how far it carries, moves for a defect of 1 at the start that vanishes
     /// at the stages, in h.
     pub error_of_defect: T,
@@ -82,13 +86,17 @@ impl<const S: usize> Damped<S> {
         let work_of_speed: Stages<S> = Vector::from_fn(|i| over(i, 0));
         let excess = Vector::from_fn(|i| work_of_speed[i] / scheme.weights[i] - stages[i].decay);
         Self {
-            stages,
+            decay: Vector(stages.map(|reach| reach.decay)),
+            drift: Vector(stages.map(|reach| reach.drift)),
+            once: StageMap::new(&speeds),
+            twice: StageMap::new(&Matrix(stages.map(|reach| reach.twice.0))),
             end,
-            twice: Matrix(stages.map(|reach| reach.twice.0)),
-            acceleration: Matrix::identity() - speeds.scaled(rate),
+            acceleration: StageMap::new(&(Matrix::identity() - speeds.scaled(rate))),
             excess: if rate < WITHIN { Stages::ZERO } else { excess },
             work_of_speed,
-            work: Matrix::from_fn(|i, j| (0..S).map(|k| p[(j, k)] * factorial(k) * over(i, k + 1)).sum()),
+            work: StageMap::new(&Matrix::from_fn(|i, j| {
+                (0..S).map(|k| p[(j, k)] * factorial(k) * over(i, k + 1)).sum()
+            })),
             error_of_defect: error_of_defect(scheme, rate),
         }
     }
@@ -98,8 +106,9 @@ impl<const S: usize, T: Scalar> Damped<S, T> {
     /// The coefficients of several motors, each number put together by `of`, which is told how to find it in the coefficients of one.
     pub(crate) fn together(of: impl Fn(&dyn Fn(&Damped<S>) -> f64) -> T) -> Self {
         let stages = |find: &dyn Fn(&Damped<S>) -> Stages<S>| Vector::from_fn(|i| of(&|one| find(one)[i]));
-        let block =
-            |find: &dyn Fn(&Damped<S>) -> Block<S>| Matrix::from_fn(|i, j| of(&|one| find(one)[(i, j)]));
+        let map = |find: &dyn Fn(&Damped<S>) -> StageMap<S>| {
+            StageMap::new(&Matrix::from_fn(|i, j| of(&|one| find(one).row(i)[j])))
+        };
         let reach = |find: &dyn Fn(&Damped<S>) -> Reach<S>| Reach {
             decay: of(&|one| find(one).decay),
             drift: of(&|one| find(one).drift),
@@ -107,13 +116,15 @@ impl<const S: usize, T: Scalar> Damped<S, T> {
             twice: stages(&|one| find(one).twice),
         };
         Self {
-            stages: std::array::from_fn(|i| reach(&|one| one.stages[i])),
+            decay: stages(&|one| one.decay),
+            drift: stages(&|one| one.drift),
+            once: map(&|one| one.once),
+            twice: map(&|one| one.twice),
             end: reach(&|one| one.end),
-            twice: block(&|one| one.twice),
-            acceleration: block(&|one| one.acceleration),
+            acceleration: map(&|one| one.acceleration),
             excess: stages(&|one| one.excess),
             work_of_speed: stages(&|one| one.work_of_speed),
-            work: block(&|one| one.work),
+            work: map(&|one| one.work),
             error_of_defect: of(&|one| one.error_of_defect),
         }
     }
@@ -227,7 +238,13 @@ mod tests {
         let f = scheme.nodes.map(at);
         for rate in RATES {
             let damped = Damped::new(&scheme, rate);
-            let reaches = scheme.nodes.iter().zip(damped.stages).chain([(1.0, damped.end)]);
+            let stage = |i: usize| Reach {
+                decay: damped.decay[i],
+                drift: damped.drift[i],
+                once: damped.once.row(i),
+                twice: damped.twice.row(i),
+            };
+            let reaches = scheme.nodes.iter().zip((0..S).map(stage)).chain([(1.0, damped.end)]);
             for (i, (c, reach)) in reaches.enumerate() {
                 let got =
                     [reach.drift * speed + reach.twice.dot(&f), reach.decay * speed + reach.once.dot(&f)];
@@ -271,9 +288,9 @@ mod tests {
     #[test]
     fn without_a_damper_it_is_collocation() {
         let scheme = Scheme::<4>::gauss();
-        let Damped { stages, end, twice, .. } = Damped::new(&scheme, 0.0);
-        for (i, stage) in stages.iter().enumerate() {
-            let differences = [stage.once - scheme.once.row(i), twice.row(i) - scheme.twice.row(i)];
+        let Damped { once, end, twice, .. } = Damped::new(&scheme, 0.0);
+        for i in 0..4 {
+            let differences = [once.row(i) - scheme.once.row(i), twice.row(i) - scheme.twice.row(i)];
             assert!(differences.iter().flat_map(Vector::iter).all(|x| x.abs() < 1e-14), "{differences:?}");
         }
         let differences = [end.once - scheme.weights, end.twice - scheme.end_twice];

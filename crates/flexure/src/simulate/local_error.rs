@@ -7,12 +7,12 @@ use flexure_core::scalar::{Over, Piecewise};
 use crate::plant::Sides;
 use crate::simulate::newton::StepSolution;
 use crate::simulate::scheme::{Scheme, Stages};
-use crate::simulate::span::Span;
+use crate::simulate::span::{EachAtStages, Span};
 
 /// Motor torques at the stages and at the end of a step [N m].
 #[derive(Clone, Copy)]
 pub(crate) struct Torques<const S: usize, const N: usize, T = f64> {
-    pub(super) stages: [Vector<T, N>; S],
+    pub(super) stages: EachAtStages<S, N, T>,
     pub(super) end: Vector<T, N>,
 }
 
@@ -59,12 +59,12 @@ where
             worst = worst.max((-error).select(T::ZERO, error * unit * (growth + damped)));
         };
         let h = T::from_f64(h);
-        effect(start[0][k], h / speeds[0][k], T::ZERO, &|i| solution.link[i][k]);
-        effect(start[1][k], h / speeds[1][k], of_damped(k), &|i| solution.motor[i][k]);
+        effect(start[0][k], h / speeds[0][k], T::ZERO, &|i| solution.link[k][i]);
+        effect(start[1][k], h / speeds[1][k], of_damped(k), &|i| solution.motor[k][i]);
         if let Some(Torques { stages, end }) = torques {
             // The points lie alike from both ends.
             let of_torque = h / plant.robot.motor_inertia[k] / speeds[1][k];
-            effect(end[k], of_torque, T::ZERO, &|i| stages[S - 1 - i][k]);
+            effect(end[k], of_torque, T::ZERO, &|i| stages[k][S - 1 - i]);
         }
     }
     worst

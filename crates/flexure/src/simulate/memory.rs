@@ -199,8 +199,12 @@ impl<const N: usize> Past<N> {
         port.word("stages", &mut code);
         *stages = code as usize;
         for (names, sides) in STAGES.iter().zip([link, motor]) {
-            for (name, stage) in names.iter().zip(sides) {
-                port.joints(name, "rad/s^2", &mut stage.0);
+            for (i, name) in names.iter().enumerate() {
+                let mut stage = sides.map(|stages| stages[i]);
+                port.joints(name, "rad/s^2", &mut stage);
+                for (stages, value) in sides.iter_mut().zip(stage) {
+                    stages[i] = value;
+                }
             }
         }
         port.leave();

@@ -15,7 +15,7 @@ use flexure_core::scalar::{Over, Piecewise, Scalar};
 
 use crate::plant::{Plant, Sides};
 use crate::simulate::damped::Damped;
-use crate::simulate::scheme::{Block, Scheme, Stages};
+use crate::simulate::scheme::{AtStages, Block, Scheme, StageMap, Stages};
 
 /// Where an iteration matrix was made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,38 +35,61 @@ pub(crate) struct StageSolver<const S: usize, const N: usize, T = f64> {
     /// How each motor moves on its own.
     pub(crate) damped: [Damped<S, T>; N],
     /// (M_m + h² K A_m²)⁻¹ per joint, A_m² the damped motor's.
-    motor: [Block<S, T>; N],
+    motor: [StageMap<S, T>; N],
     /// How an acceleration of a link loads its motor through the spring, h² K A², per joint.
-    of_link: [Block<S, T>; N],
+    of_link: [StageMap<S, T>; N],
     /// How what accelerates a motor loads its link through the spring, h² K A_m², per joint.
-    of_motor: [Block<S, T>; N],
+    of_motor: [StageMap<S, T>; N],
     /// How it loads the other through coupled rotors: a row per link, a column per motor [kg m²].
     coupling: Option<Matrix<T, N, N>>,
     /// Block LU of the links' matrix: unit lower part below the diagonal, inverses of pivots on it.
-    link: [[Block<S, T>; N]; N],
+    link: [[StageMap<S, T>; N]; N],
     /// The mass matrix alone.
     pub(crate) mass: Ldl<T, N>,
     /// The fastest rate at which springs and dampers of links let a joint move by itself, in 1/h.
     pub(crate) fastest: T,
 }
 
-/// The polynomials of one step: accelerations of the links and what accelerates the motors beside their dampers, at the stages.
+/// The polynomials of one step: accelerations of the links and what accelerates the motors beside their dampers, a joint each, at the stages.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepSolution<const S: usize, const N: usize, T = f64> {
-    pub(crate) link: [Vector<T, N>; S],
-    pub(crate) motor: [Vector<T, N>; S],
+    pub(crate) link: [Stages<S, T>; N],
+    pub(crate) motor: [Stages<S, T>; N],
 }
 
 impl<const S: usize, const N: usize> StageSolver<S, N> {
     pub(crate) fn new<L: Links<f64, N>>(scheme: &Scheme<S>, plant: &Plant<L, N>, anchor: Anchor<N>) -> Self {
-        let robot = &plant.robot;
-        let joints = robot.links.joints();
-        let damped: [Damped<S>; N] = std::array::from_fn(|k| {
-            let rate = if k < joints { robot.motor_damping[k] / robot.motor_inertia[k] } else { 0.0 };
-            Damped::new(scheme, anchor.h * rate)
-        });
-        Self::of(scheme, plant, anchor, damped, inverse)
+        Self::of(scheme, plant, anchor, damped_motors(scheme, plant, anchor.h), inverse)
     }
+
+    /// Makes the matrix anew at another anchor, of the same plant but for pushes.
+    pub(crate) fn move_to<L: Links<f64, N>>(
+        &mut self,
+        scheme: &Scheme<S>,
+        plant: &Plant<L, N>,
+        anchor: Anchor<N>,
+    ) {
+        #[expect(clippy::float_cmp, reason = "coefficients of another length are others")]
+        if self.anchor.h != anchor.h {
+            self.anchor.h = anchor.h;
+            self.damped = damped_motors(scheme, plant, anchor.h);
+        }
+        self.renew(scheme, plant, anchor.q, inverse);
+    }
+}
+
+/// How each motor moves on its own in steps of length `h` s.
+fn damped_motors<L: Links<f64, N>, const S: usize, const N: usize>(
+    scheme: &Scheme<S>,
+    plant: &Plant<L, N>,
+    h: f64,
+) -> [Damped<S>; N] {
+    let robot = &plant.robot;
+    let joints = robot.links.joints();
+    std::array::from_fn(|k| {
+        let rate = if k < joints { robot.motor_damping[k] / robot.motor_inertia[k] } else { 0.0 };
+        Damped::new(scheme, h * rate)
+    })
 }
 
 impl<const S: usize, const N: usize, T: Piecewise + Over<T> + Over<f64>> StageSolver<S, N, T> {
@@ -79,7 +102,7 @@ impl<const S: usize, const N: usize, T: Piecewise + Over<T> + Over<f64>> StageSo
         damped: [Damped<S, T>; N],
         inverse: impl Fn(&Block<S, T>) -> Block<S, T>,
     ) -> Self {
-        let none = [Block::ZERO; N];
+        let none = [StageMap::ZERO; N];
         let mut solver = Self {
             anchor,
             joints: plant.robot.links.joints(),
@@ -110,14 +133,15 @@ impl<const S: usize, const N: usize, T: Piecewise + Over<T> + Over<f64>> StageSo
         let (joints, q_l, h) = (*joints, *q_l, *h);
         let stiffness = plant.tangent_stiffness(&Motion { q_m: *q_m, ..Motion::at_rest(q_l) });
         let of_link = per_joint(joints, |k| times(&scheme.twice, stiffness[k].scale(h * h)));
-        let of_motor = per_joint(joints, |k: usize| damped[k].twice.scaled(stiffness[k].scale(h * h)));
+        let of_motor =
+            per_joint(joints, |k: usize| damped[k].twice.block().scaled(stiffness[k].scale(h * h)));
         let motor = per_joint(joints, |k: usize| {
             inverse(&(Matrix::identity().scaled(robot.motor_inertia[k]) + of_motor[k]))
         });
         let matrix = robot.links.mass_matrix(&q_l);
         let mass = matrix.ldl();
         let coupling = plant.coupling_matrix(&q_l);
-        let mut link = [[Block::ZERO; N]; N];
+        let mut link = [[Block::<S, T>::ZERO; N]; N];
         for (k, row) in link[..joints].iter_mut().enumerate() {
             for (l, block) in row[..joints].iter_mut().enumerate() {
                 *block = Matrix::identity().scaled(matrix[(k, l)]);
@@ -129,10 +153,11 @@ impl<const S: usize, const N: usize, T: Piecewise + Over<T> + Over<f64>> StageSo
                     // What the motors' elimination adds to the springs' part beside S.
                     *block = *block
                         + (of_motor[k] * motor[k]).scaled(shared[(l, k)])
-                        + (damped[l].acceleration * motor[l] * of_link[l]).scaled(shared[(k, l)]);
+                        + (damped[l].acceleration.block() * motor[l] * of_link[l]).scaled(shared[(k, l)]);
                     for (j, motor) in motor[..joints].iter().enumerate() {
                         *block = *block
-                            - (damped[j].acceleration * *motor).scaled(shared[(k, j)] * shared[(l, j)]);
+                            - (damped[j].acceleration.block() * *motor)
+                                .scaled(shared[(k, j)] * shared[(l, j)]);
                     }
                 }
             }
@@ -151,27 +176,31 @@ impl<const S: usize, const N: usize, T: Piecewise + Over<T> + Over<f64>> StageSo
             let spring = stiffness[k] * (free + T::ONE / robot.motor_inertia[k]);
             fastest.max(spring.sqrt().scale(h)).max(free.scale(h) * robot.link_damping[k])
         });
-        (self.motor, self.of_link, self.of_motor) = (motor, of_link, of_motor);
-        (self.coupling, self.link, self.mass, self.fastest) = (coupling, link, mass, fastest);
+        for (maps, blocks) in
+            [(&mut self.motor, &motor), (&mut self.of_link, &of_link), (&mut self.of_motor, &of_motor)]
+                .into_iter()
+                .chain(self.link.iter_mut().zip(&link))
+        {
+            for (map, block) in maps.iter_mut().zip(blocks).take(joints) {
+                *map = StageMap::new(block);
+            }
+        }
+        (self.coupling, self.mass, self.fastest) = (coupling, mass, fastest);
     }
 
     /// What improves a solution that leaves the torques `link` and `motor` unbalanced at the stages, a joint each [N m].
     #[inline]
-    pub(crate) fn correction(
-        &self,
-        link: &[Stages<S, T>; N],
-        motor: &[Stages<S, T>; N],
-    ) -> ([Stages<S, T>; N], [Stages<S, T>; N]) {
+    pub(crate) fn correction<V: AtStages<S, T>>(&self, link: &[V; N], motor: &[V; N]) -> [[V; N]; 2] {
         // Motors out, links solved, motors back.
-        let mut free = [Stages::ZERO; N];
+        let mut free = [V::ZERO; N];
         let mut loaded = *link;
         for k in 0..self.joints {
-            free[k] = self.motor[k] * motor[k];
-            loaded[k] += self.of_motor[k] * free[k];
+            free[k] = self.motor[k].of(&motor[k]);
+            loaded[k] += self.of_motor[k].of(&free[k]);
         }
         if let Some(shared) = &self.coupling {
             for j in 0..self.joints {
-                let acceleration = self.damped[j].acceleration * free[j];
+                let acceleration = self.damped[j].acceleration.of(&free[j]);
                 for k in 0..self.joints {
                     loaded[k] -= acceleration.scaled(shared[(k, j)]);
                 }
@@ -179,30 +208,30 @@ impl<const S: usize, const N: usize, T: Piecewise + Over<T> + Over<f64>> StageSo
         }
         let link = self.solve_links(loaded);
         for k in 0..self.joints {
-            let mut load = self.of_link[k] * link[k];
+            let mut load = self.of_link[k].of(&link[k]);
             if let Some(shared) = &self.coupling {
                 for (j, link) in link[..self.joints].iter().enumerate() {
                     load -= link.scaled(shared[(j, k)]);
                 }
             }
-            free[k] += self.motor[k] * load;
+            free[k] += self.motor[k].of(&load);
         }
-        (link, free)
+        [link, free]
     }
 
-    fn solve_links(&self, mut b: [Stages<S, T>; N]) -> [Stages<S, T>; N] {
+    fn solve_links<V: AtStages<S, T>>(&self, mut b: [V; N]) -> [V; N] {
         for i in 0..self.joints {
             for j in 0..i {
-                let known = self.link[i][j] * b[j];
+                let known = self.link[i][j].of(&b[j]);
                 b[i] -= known;
             }
         }
         for i in (0..self.joints).rev() {
             for j in i + 1..self.joints {
-                let known = self.link[i][j] * b[j];
+                let known = self.link[i][j].of(&b[j]);
                 b[i] -= known;
             }
-            b[i] = self.link[i][i] * b[i];
+            b[i] = self.link[i][i].of(&b[i]);
         }
         b
     }

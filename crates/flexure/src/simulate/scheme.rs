@@ -1,12 +1,106 @@
 //! The coefficients of Gauss–Legendre collocation.
 
+use std::ops::{AddAssign, SubAssign};
+
 use flexure_core::linalg::{Matrix, Vector};
+use flexure_core::scalar::{Lane, Lanes, Over, Scalar};
 
 /// One number per collocation point, or stage.
 pub(crate) type Stages<const S: usize, T = f64> = Vector<T, S>;
 
 /// One number per pair of stages.
 pub(crate) type Block<const S: usize, T = f64> = Matrix<T, S, S>;
+
+/// A linear map of stage values, by columns: what it makes of values is a sum of columns, all entries of which are computed side by side.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StageMap<const S: usize, T = f64>([Stages<S, T>; S]);
+
+impl<const S: usize, T: Scalar> StageMap<S, T> {
+    pub(crate) const ZERO: Self = Self([Stages::ZERO; S]);
+
+    /// With the entries of `block`.
+    pub(crate) fn new(block: &Block<S, T>) -> Self {
+        Self(std::array::from_fn(|j| block.column(j)))
+    }
+
+    /// Its entries.
+    pub(crate) fn block(&self) -> Block<S, T> {
+        Matrix::from_fn(|i, j| self.0[j][i])
+    }
+
+    /// Row `i`.
+    pub(crate) fn row(&self, i: usize) -> Stages<S, T> {
+        Vector::from_fn(|j| self.0[j][i])
+    }
+
+    /// Stage `i` of what it makes of `values`.
+    #[inline]
+    pub(crate) fn at<U: Over<T>>(&self, i: usize, values: &Stages<S, U>) -> U {
+        let mut sum = U::ZERO;
+        for (column, value) in self.0.iter().zip(values.iter()) {
+            sum += value.scale(column[i]);
+        }
+        sum
+    }
+
+    /// What it makes of `values`.
+    #[inline]
+    pub(crate) fn of<V: AtStages<S, T>>(&self, values: &V) -> V {
+        values.mapped(self)
+    }
+}
+
+/// Numbers at the stages: of several robots an array of lanes, of one robot a register.
+pub(crate) trait AtStages<const S: usize, T>: Copy + AddAssign + SubAssign {
+    const ZERO: Self;
+
+    /// What `map` makes of them.
+    fn mapped(&self, map: &StageMap<S, T>) -> Self;
+
+    /// All of them times `factor`.
+    fn scaled(self, factor: T) -> Self;
+}
+
+impl<const S: usize, T: Scalar, U: Over<T>> AtStages<S, T> for Stages<S, U> {
+    const ZERO: Self = Vector::ZERO;
+
+    #[inline]
+    fn mapped(&self, map: &StageMap<S, T>) -> Self {
+        let mut sums = Self::ZERO;
+        for (column, value) in map.0.iter().zip(self.iter()) {
+            for (sum, entry) in sums.0.iter_mut().zip(column.iter()) {
+                *sum += value.scale(entry);
+            }
+        }
+        sums
+    }
+
+    #[inline]
+    fn scaled(self, factor: T) -> Self {
+        self.map(|x| x.scale(factor))
+    }
+}
+
+impl<const S: usize> AtStages<S, f64> for Lanes<f64, S>
+where
+    f64: Lane<S>,
+{
+    const ZERO: Self = <Self as Scalar>::ZERO;
+
+    #[inline]
+    fn mapped(&self, map: &StageMap<S, f64>) -> Self {
+        let mut sums = <Self as Scalar>::ZERO;
+        for (column, value) in map.0.iter().zip(self.to_array()) {
+            sums += Self::from_array(column.0).scale(value);
+        }
+        sums
+    }
+
+    #[inline]
+    fn scaled(self, factor: f64) -> Self {
+        self.scale(factor)
+    }
+}
 
 /// Collocation at the `S` points of Gauss on [0, 1], of order 2 S.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +113,8 @@ pub(crate) struct Scheme<const S: usize> {
     pub once: Block<S>,
     /// A²: integrates them twice.
     pub twice: Block<S>,
+    /// A and A² again, as they are applied.
+    pub maps: [StageMap<S>; 2],
     /// bᵀA, which integrates twice up to the end of the step.
     pub end_twice: Stages<S>,
     /// Coefficients, constant term first, of the polynomials that are 1 at one node and 0 at the others, a row each.
@@ -50,6 +146,7 @@ impl<const S: usize> Scheme<S> {
             weights,
             once,
             twice: once * once,
+            maps: [StageMap::new(&once), StageMap::new(&(once * once))],
             end_twice: once.transpose() * weights,
             polynomials,
             start: polynomials.column(0),

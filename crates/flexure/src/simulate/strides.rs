@@ -23,7 +23,7 @@ use crate::simulate::ledger::Ledger;
 use crate::simulate::local_error::{Values, estimate};
 use crate::simulate::newton::{Anchor, StageSolver, StepSolution};
 use crate::simulate::scheme::{Block, Scheme, Stages};
-use crate::simulate::span::{Span, ahead, damping_rate, half, sum};
+use crate::simulate::span::{Span, ahead, damping_rate, half, weighted};
 
 /// Corrections of this size in rad/s are rounding whatever the speeds: at rest, torques of finite size still cancel.
 const STILL: f64 = 1e-13;
@@ -94,7 +94,7 @@ where
             effort,
             solvers: Vec::with_capacity(LENGTHS),
             served: 0,
-            past: StepSolution { link: [Vector::ZERO; S], motor: [Vector::ZERO; S] },
+            past: StepSolution { link: [Stages::ZERO; N], motor: [Stages::ZERO; N] },
             last: 0.0,
         }
     }
@@ -138,13 +138,16 @@ where
         for i in 0..S {
             // The same instant in that step, whose end is the end of this one.
             let at = 1.0 + (self.scheme.nodes[i] - 1.0) * ratio;
-            let value = |values: &[Vector<f64, N>; 4]| match past.stages {
-                2 => sum(&integrator.low.scheme.at(at), values),
-                _ => sum(&integrator.high.scheme.at(at), values),
+            let weights: Stages<4> = match past.stages {
+                2 => {
+                    let two = integrator.low.scheme.at(at);
+                    Vector([two[0], two[1], 0.0, 0.0])
+                }
+                _ => integrator.high.scheme.at(at),
             };
             for (own, values) in [(&mut self.past.link, &past.link), (&mut self.past.motor, &past.motor)] {
-                for (own, value) in own[i].0.iter_mut().zip(value(values).0) {
-                    put(own, lane, value);
+                for (own, values) in own.iter_mut().zip(values) {
+                    put(&mut own[i], lane, weighted(&weights, values));
                 }
             }
         }
@@ -166,10 +169,17 @@ where
         // Not of a number, before the first step.
         let led_on = ratio <= FARTHEST;
         if !led_on {
-            self.past = StepSolution { link: [Vector::ZERO; S], motor: [Vector::ZERO; S] };
+            self.past = StepSolution { link: [Stages::ZERO; N], motor: [Stages::ZERO; N] };
         }
         let past = [&self.past.link, &self.past.motor];
-        let start = span.start(u_m, past.map(|values| sum(&self.at_end, values)));
+        let led_to = |values: &[Stages<S, Lanes<f64, W>>; N]| {
+            let mut led = Vector::ZERO;
+            for (led, values) in led.0.iter_mut().zip(values) {
+                *led = weighted(&self.at_end, values);
+            }
+            led
+        };
+        let start = span.start(u_m, past.map(led_to));
         let other;
         #[expect(clippy::float_cmp, reason = "exactly the same length")]
         let ahead = if ratio == 1.0 || !led_on {
@@ -178,8 +188,13 @@ where
             other = ahead(&self.scheme, ratio);
             &other
         };
-        let [link, motor] =
-            array::from_fn(|side| ahead.map(|weights| start[side] + sum(&weights, past[side])));
+        let [link, motor] = array::from_fn(|side| {
+            let mut led = [Stages::ZERO; N];
+            for (k, led) in led.iter_mut().enumerate() {
+                *led = Vector::from_fn(|i| start[side][k] + weighted(&ahead[i], &past[side][k]));
+            }
+            led
+        });
         let mut solution = StepSolution { link, motor };
         let speeds = span.speeds(&start);
         let felt = span.felt(&start);
@@ -189,22 +204,21 @@ where
             .map(|speeds| speeds.map(|speed| Lanes::splat(h) / (speed + Lanes::splat(STILL / accuracy))));
         let (mut before, mut size) = (Lanes::ZERO, Lanes::ZERO);
         for _ in 0..self.effort.corrections + if led_on { 0 } else { UNKNOWN } {
-            let (mut link, mut motor) = ([Stages::ZERO; N], [Stages::ZERO; N]);
+            let [mut link, mut motor] = [[Stages::ZERO; N]; 2];
             for i in 0..S {
-                let motion = span.stage(&solution, i);
-                let [missing_l, missing_m] = span.unbalanced(&solution, i, &motion, &felt[i], u_m);
+                let [missing_l, missing_m] = span.unbalanced(&solution, i, &felt, u_m);
                 for k in 0..N {
                     link[k][i] = missing_l[k];
                     motor[k][i] = missing_m[k];
                 }
             }
-            let (link, motor) = solver.correction(&link, &motor);
+            let [link, motor] = solver.correction(&link, &motor);
             (before, size) = (size, Lanes::ZERO);
             for k in 0..plant.robot.links.joints() {
                 let (mut of_link, mut of_motor) = (Lanes::ZERO, Lanes::ZERO);
                 for i in 0..S {
-                    solution.link[i][k] += link[k][i];
-                    solution.motor[i][k] += motor[k][i];
+                    solution.link[k][i] += link[k][i];
+                    solution.motor[k][i] += motor[k][i];
                     of_link = of_link.max(link[k][i].abs());
                     of_motor = of_motor.max(motor[k][i].abs());
                 }
@@ -221,7 +235,7 @@ where
         let error = estimate::<S, _, S, N, Lanes<f64, W>>(&span, &speeds, &values, |k| {
             solver.damped[k].error_of_defect
         });
-        strode.work.add(&span.work(&solution, &end, &[*u_m; S]));
+        strode.work.add(&span.work(&solution, &end, &u_m.0.map(|u| Vector([u; S]))));
         let sum = [&end.q_l, &end.q_m, &end.v_l, &end.v_m]
             .iter()
             .flat_map(|v| v.iter())

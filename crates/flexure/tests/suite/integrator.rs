@@ -126,6 +126,27 @@ fn one_step_goes_through_a_stiff_damper() {
     }
 }
 
+/// What an integrator keeps from step to step is of the plant that it moved.
+#[test]
+fn a_damper_that_changes_is_the_new_one() {
+    let [mut integrator, mut other] = [Integrator::new(1e-10), Integrator::new(1e-10)];
+    let start = Motion { v_m: Vector([0.5]), ..Motion::at_rest(Vector([0.1])) };
+    let [before, after] = [9.0, 2.0].map(|damping| joint(0.0107, 0.01, 4.0, [0.55, damping]));
+    let advance = |integrator: &mut Integrator<1>, robot: &Fjr<_, _, 1>, x| {
+        integrator
+            .advance(&(*robot).into(), x, 0.0, 1e-3, &|_, _: &_| Vector([0.2]), &mut Ledger::default())
+            .expect("linear")
+    };
+    let x = advance(&mut integrator, &before, start);
+    for (got, expected) in flat(&advance(&mut integrator, &after, x)).iter().zip(exact(&after, &x, 0.2, 1e-3))
+    {
+        assert!((got - expected).abs() < 1e-10, "{got} {expected}");
+    }
+    // Of another damper it would be seen.
+    let [wrong, right] = [&before, &after].map(|robot| flat(&advance(&mut other, robot, x))[3]);
+    assert!((wrong - right).abs() > 1e-3, "{wrong} {right}");
+}
+
 /// After each jump of the torque the motor's speed is another within a ninth of the step, and what its spring gives to the link
 /// meanwhile adds up over the run.
 #[test]

@@ -178,40 +178,39 @@ impl<C: Scalar> Joint<C> {
         }
     }
 
-    /// The motion of the child in its own axes, from that of the parent and what the joint adds: velocity, velocity of the reference,
+    /// Writes to `child` its motion in its own axes, from that of the parent and what the joint adds: velocity, velocity of the reference,
     /// acceleration of the reference. `OWN`: the reference is the motion itself.
     #[inline]
-    pub(super) fn carried<T: Over<C>, const OWN: bool>(
+    pub(super) fn carry<T: Over<C>, const OWN: bool>(
         &self,
         pose: &Pose<T>,
         parent: &Carried<T>,
         [v, v_r, a_r]: [T; 3],
-    ) -> Carried<T> {
-        let linear = self.unrotate(pose, parent.at(&self.translation));
-        let mut spin = self.unrotate(pose, parent.spin);
-        let mut spin_r = if OWN { spin } else { self.unrotate(pose, parent.spin_r) };
-        let mut spin_rate = self.unrotate(pose, parent.spin_rate);
+        child: &mut Carried<T>,
+    ) {
+        let Carried { spin, spin_r, spin_rate, spread, linear } = child;
+        *linear = self.unrotate(pose, parent.at(&self.translation));
+        *spin = self.unrotate(pose, parent.spin);
+        *spin_r = if OWN { *spin } else { self.unrotate(pose, parent.spin_r) };
+        *spin_rate = self.unrotate(pose, parent.spin_rate);
         if self.kind == JointKind::Revolute {
             // + z a_r + ω × z v_r
-            spin_rate = Vec3::new(spin_rate.x + spin.y * v_r, spin_rate.y - spin.x * v_r, spin_rate.z + a_r);
+            *spin_rate = Vec3::new(spin_rate.x + spin.y * v_r, spin_rate.y - spin.x * v_r, spin_rate.z + a_r);
             spin.z += v;
             spin_r.z += v_r;
         }
-        let spread =
-            if OWN { Carried::own_spread(spin, spin_rate) } else { Carried::spread(spin, spin_r, spin_rate) };
-        let linear = match self.kind {
-            JointKind::Revolute => linear,
-            // + A z q + z a_r + ω × z v_r + ω_r × z v
-            JointKind::Prismatic => {
-                let (q, [x, y, z]) = (pose.slide, &spread);
-                Vec3::new(
-                    linear.x + x.z * q + spin.y * v_r + spin_r.y * v,
-                    linear.y + y.z * q - spin.x * v_r - spin_r.x * v,
-                    linear.z + z.z * q + a_r,
-                )
-            }
+        *spread = if OWN {
+            Carried::own_spread(*spin, *spin_rate)
+        } else {
+            Carried::spread(*spin, *spin_r, *spin_rate)
         };
-        Carried { spin, spin_r, spin_rate, spread, linear }
+        if self.kind == JointKind::Prismatic {
+            // + A z q + z a_r + ω × z v_r + ω_r × z v
+            let (q, [x, y, z]) = (pose.slide, &*spread);
+            linear.x = linear.x + x.z * q + spin.y * v_r + spin_r.y * v;
+            linear.y = linear.y + y.z * q - spin.x * v_r - spin_r.x * v;
+            linear.z = linear.z + z.z * q + a_r;
+        }
     }
 
     /// What moves the body like this.

@@ -53,18 +53,21 @@ impl<C: Scalar, const N: usize> Tree<C, N> {
         let mut bodies = Vector([ground; N]);
         let mut force = Vector([Wrench::ZERO; N]);
         for (i, (joint, pose)) in self.chain(poses) {
-            let carrier = bodies.0.get(joint.parent).unwrap_or(&ground);
-            let body = joint.carried::<T, OWN>(pose, carrier, [v[i], v_r[i], a_r[i]]);
-            force[i] = joint.wrench(&body);
-            bodies[i] = body;
+            // Written where it stays: series in lanes are kilobytes.
+            let (carriers, rest) = bodies.0.split_at_mut(i);
+            let Some(body) = rest.first_mut() else { break };
+            let carrier = carriers.get(joint.parent).unwrap_or(&ground);
+            joint.carry::<T, OWN>(pose, carrier, [v[i], v_r[i], a_r[i]], body);
+            force[i] = joint.wrench(body);
         }
         // Phantoms: unit inertia.
         let mut torque = *a_r;
         for (i, (joint, pose)) in self.chain(poses).rev() {
-            torque[i] = joint.project(&force[i]);
-            let passed = force[i];
-            if let Some(parent) = force.0.get_mut(joint.parent) {
-                *parent += joint.wrench_to_parent(pose, &passed);
+            let (carriers, rest) = force.0.split_at_mut(i);
+            let Some(passed) = rest.first() else { break };
+            torque[i] = joint.project(passed);
+            if let Some(parent) = carriers.get_mut(joint.parent) {
+                *parent += joint.wrench_to_parent(pose, passed);
             }
         }
         torque

@@ -2,9 +2,11 @@
 //! tube and the run in them.
 
 use super::error_path::ErrorPath;
+use super::run::BOUND;
 use crate::files::Problems;
 use crate::files::number::{engineering, power_of_ten, short, significant};
 use crate::progress::Progress;
+use crate::prove::decay::ROUNDING;
 use crate::prove::summary::ProofSummary;
 use crate::report::draw::axes::{Axes, Axis, BOTTOM};
 use crate::report::draw::curve::Curve;
@@ -26,8 +28,6 @@ const COLUMNS: usize = 4;
 const PLANE: f64 = 330.0;
 /// So many times what is proved is shown of a run that leaves it.
 const OUTSIDE: f64 = 3.0;
-/// Up to so much W is the rounding of a start on the reference \[J\]: nothing decays from there.
-const ROUNDING: f64 = 1e-15;
 /// The region is shown where it is no more than so many times the level set.
 const FAR: f64 = 2.5;
 /// Decades of W below its largest that are shown.
@@ -39,8 +39,6 @@ const LEVEL: Stroke = Stroke::solid(HOLDS, 2.4);
 fn run_stroke() -> Stroke {
     Stroke::solid(hue(0), 2.2)
 }
-
-const DECAY: Stroke = Stroke { color: INK, width: 1.4, dash: &[8.0, 4.0, 2.0, 4.0] };
 
 /// Runs `scenario` as its file says, and draws what `summary` tells of it around that run.
 ///
@@ -130,7 +128,7 @@ impl<'a> Told<'a> {
 
     fn legend(&self) -> Vec<(String, Stroke)> {
         let decay = self.start.zip(self.rate).map(|(_, rate)| {
-            (format!("W(0) e^(−2 · {} t), proved in continuous time", significant(rate, 3)), DECAY)
+            (format!("W(0) e^(−2 · {} t), proved in continuous time", significant(rate, 3)), BOUND)
         });
         let region = self.region.map(|errors| (region_in_words(errors), REGION));
         let levels = self.levels.iter().map(|Set { what, level, stroke, .. }| {
@@ -159,7 +157,7 @@ fn proved_decay(level: f64, rate: f64, run: &Curve) -> Curve {
     let Range { low, high } = span(&run.t);
     let t: Vec<f64> = (0..=400).map(|k| low + (high - low) * f64::from(k) / 400.0).collect();
     let values = t.iter().map(|t| level * (-2.0 * rate * (t - low)).exp()).collect();
-    Curve { t, values, stroke: DECAY }
+    Curve { t, values, stroke: BOUND }
 }
 
 fn draw_storage(scene: &mut Scene, top: f64, told: &Told, run: &Curve, decay: Option<&Curve>) {

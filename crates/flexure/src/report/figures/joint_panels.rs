@@ -1,6 +1,6 @@
 //! The figure of a run with many joints: a row of small panels for each.
 
-use super::run::FigureOptions;
+use super::run::{BOUND, FigureOptions, bound, legend_of_bound, over};
 use crate::files::number::{power_of_ten, significant};
 use crate::report::Sketch;
 use crate::report::draw::axes::{Axes, Axis};
@@ -67,7 +67,8 @@ pub fn joint_panels(run: &Sketch, options: &FigureOptions) -> Scene {
             units::ANGLE.of(marks.kind).raised,
             &marks.positions,
         );
-        marked.settled |= row.errors(&mut scene, place(1), &drawn(&errors, joint), &marks, options.settled);
+        let errors = over(drawn(&errors, joint), bounds(run, options, joint));
+        marked.settled |= row.errors(&mut scene, place(1), &errors, &marks, options.settled);
         let (torques, unit, limits) = share(drawn(&[("u_m", side(LINK))], joint), &marks);
         marked.limit |= row.linear(&mut scene, place(2), "", &torques, unit, &limits);
     }
@@ -93,6 +94,15 @@ fn share(mut curves: Vec<Curve>, marks: &JointMarks) -> (Vec<Curve>, &'static st
         .flat_map(|curve| &mut curve.values)
         .for_each(|value| *value *= 100.0 / marks.torque_limit);
     (curves, "% of the limit", [-100.0, 100.0])
+}
+
+/// What is proved of the errors of a joint.
+fn bounds(run: &Sketch, options: &FigureOptions, joint: usize) -> Vec<Curve> {
+    let Some(decay) = &options.decay else { return Vec::new() };
+    let of = |errors: &[f64], width: f64| {
+        errors.get(joint).map(|start| bound(run, decay, *start, Stroke { width, ..BOUND }))
+    };
+    [of(&decay.motors, MOTOR), of(&decay.links, LINK)].into_iter().flatten().collect()
 }
 
 /// The panels of a joint.
@@ -238,6 +248,7 @@ fn legend(marked: Marked, options: &FigureOptions, happenings: &[Happening]) -> 
     if marked.limit {
         entries.push(entry("limit", LIMIT));
     }
+    entries.extend(legend_of_bound(options));
     entries.extend(marks::legend(happenings));
     entries
 }

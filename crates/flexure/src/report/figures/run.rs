@@ -5,11 +5,13 @@
 //! Errors and momentum errors are absolute values on a logarithmic axis: an exponential decay is a straight line.
 
 use super::joint_panels::joint_panels;
+use crate::files::number::significant;
+use crate::prove::decay::Decay;
 use crate::report::Sketch;
 use crate::report::draw::curve::Curve;
 use crate::report::draw::marks::{self, Happening, JointMarks, What};
 use crate::report::draw::panel::{self, HEIGHT, Limit, Panel, Scale, View};
-use crate::report::draw::range::Range;
+use crate::report::draw::range::{Range, decades};
 use crate::report::draw::scene::Scene;
 use crate::report::draw::sheet::{MARGIN, line_legend, page};
 use crate::report::draw::style::{INK, LIMIT, Stroke, hue};
@@ -29,6 +31,8 @@ pub struct FigureOptions {
     pub happenings: Vec<Happening>,
     /// Time after which the links stay within 1 mrad of the reference \[s\], if they do.
     pub settled: Option<f64>,
+    /// What is proved of the position errors of this loop, if anything is.
+    pub decay: Option<Decay>,
 }
 
 impl FigureOptions {
@@ -66,6 +70,11 @@ pub fn run_figure(run: &Sketch, options: &FigureOptions) -> Scene {
 }
 
 const WIDTH: f64 = 1200.0;
+/// Points of a proved bound, which is a straight line on a logarithmic axis.
+const POINTS: u32 = 60;
+/// A proved bound is drawn down to the least of the largest errors in so many parts of a run.
+const BUCKETS: usize = 60;
+pub(crate) const BOUND: Stroke = Stroke { color: INK, width: 1.8, dash: &[8.0, 4.0, 2.0, 4.0] };
 
 /// Positions, errors, momentum errors and torques of `run` over time.
 ///
@@ -95,7 +104,7 @@ pub fn four_panel(run: &Sketch, options: &FigureOptions) -> Scene {
             scale: Scale::Decades,
             window: None,
             limits: Vec::new(),
-            curves: over(motor("e_m"), link("e_l")),
+            curves: over(over(motor("e_m"), link("e_l")), bounds(run, options)),
         },
         Panel {
             title: "(c) momentum errors σₗ, σₘ",
@@ -124,6 +133,33 @@ pub fn four_panel(run: &Sketch, options: &FigureOptions) -> Scene {
         happenings: options.happenings(run),
     };
     four(&view, &panels, options, &legend(joints, options, &view.happenings))
+}
+
+/// What is proved of the errors of all links and of all motors: the bounds of the joints that may have the largest.
+fn bounds(run: &Sketch, options: &FigureOptions) -> Vec<Curve> {
+    let Some(decay) = &options.decay else { return Vec::new() };
+    let largest = |errors: &[f64]| errors.iter().copied().fold(0.0, f64::max);
+    let [links, motors] = [&decay.links, &decay.motors].map(|errors| largest(errors));
+    vec![bound(run, decay, motors, Stroke { width: 1.2, ..BOUND }), bound(run, decay, links, BOUND)]
+}
+
+/// A proved bound of errors, `start` at the start, as long as it is above what is seen of them.
+pub(crate) fn bound(run: &Sketch, decay: &Decay, start: f64, stroke: Stroke) -> Curve {
+    let seen = ["e_l", "e_m"].into_iter().flat_map(|prefix| run.curves(prefix, |_, _| stroke));
+    let seen: Vec<Curve> = seen.map(|curve| curve.exponents(BUCKETS)).collect();
+    let least = 10f64.powf(decades(&seen).low);
+    let Range { low, high } = run.span();
+    let end = if least < start { ((start / least).ln() / decay.rate).min(high - low) } else { high - low };
+    let t: Vec<f64> = (0..=POINTS).map(|k| end * f64::from(k) / f64::from(POINTS)).collect();
+    let values = t.iter().map(|t| start * (-decay.rate * t).exp()).collect();
+    Curve { t: t.into_iter().map(|t| low + t).collect(), values, stroke }
+}
+
+/// A proved bound in the legend: none of a run of which nothing is proved.
+pub(crate) fn legend_of_bound(options: &FigureOptions) -> Option<(String, Stroke)> {
+    let decay = options.decay.as_ref()?;
+    let words = format!("proved bound in continuous time, shrinking at {} 1/s", significant(decay.rate, 3));
+    Some((words, BOUND))
 }
 
 /// Four panels on one page, with a title and one legend.
@@ -164,5 +200,10 @@ fn legend(joints: usize, options: &FigureOptions, happenings: &[Happening]) -> V
         side("motor side", Stroke::motor(0, 1)),
         side("reference", Stroke::reference()),
     ];
-    (0..joints).map(joint).chain(sides).chain(marks::legend(happenings)).collect()
+    (0..joints)
+        .map(joint)
+        .chain(sides)
+        .chain(legend_of_bound(options))
+        .chain(marks::legend(happenings))
+        .collect()
 }

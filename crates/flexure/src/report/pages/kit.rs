@@ -102,7 +102,9 @@ pub(crate) fn figure(svg: &str, caption: &Markup) -> Markup {
 pub(crate) fn numbers(grid: &Grid) -> Markup {
     markup! {
         div.scroll { table.numbers {
-            thead { tr { @for heading in &grid.headings { th { (heading.replace('\n', " ")) } } } }
+            thead { tr { @for (column, heading) in grid.headings.iter().enumerate() {
+                th.word[(1..grid.words).contains(&column)] { (heading.replace('\n', " ")) }
+            } } }
             tbody { @for row in &grid.rows { tr {
                 @for (column, text) in row.iter().enumerate() {
                     @if column == 0 { th scope="row" { (text) } } @else if column < grid.words { td.word { (text) } } @else { td { (text) } }

@@ -186,7 +186,10 @@ fn strides_go_where_the_integrator_goes() {
 }
 
 /// Each stride that is trusted is the scalar step that is accepted, its equations solved as far as was asked for.
-fn is_solved_as_asked<K: Kind<N>, const S: usize, const N: usize>(corrections: usize) {
+fn is_solved_as_asked<K: Kind<N>, const S: usize, const N: usize>(corrections: usize)
+where
+    f64: Lane<S> + Lane<2>,
+{
     let numbers = [0, 1];
     let plants = numbers.map(K::plant);
     let plant = Plant::together(K::links(numbers), plants.each_ref()).expect("smooth");
@@ -279,7 +282,10 @@ fn a_lane_is_what_it_is_whatever_its_neighbours_are() {
 }
 
 /// One step after a few that lead on, by strides with many corrections and by the scalar code.
-fn as_the_scalar_step<K: Kind<N>, const S: usize, const N: usize>() {
+fn as_the_scalar_step<K: Kind<N>, const S: usize, const N: usize>()
+where
+    f64: Lane<S> + Lane<2>,
+{
     let effort = Effort { corrections: 12, ..EFFORT };
     let numbers = [0, 1];
     let plants = numbers.map(K::plant);
