@@ -10,7 +10,7 @@ use std::sync::{Arc, LazyLock};
 use std::thread;
 use std::time::Duration;
 
-use flexure::files::Problems;
+use flexure::files::{Problems, remove_unfinished};
 use signal_hook::consts::SIGINT;
 use signal_hook::flag::{register, register_conditional_shutdown};
 
@@ -81,6 +81,7 @@ fn watch(json: bool) {
     match WORD.compare_exchange(NOBODY, END, Ordering::SeqCst, Ordering::SeqCst) {
         Ok(_) => {
             progress::clear();
+            remove_unfinished();
             let failure = Failure::from(Problems::interrupted());
             if let Some(errors) = failure.errors().filter(|_| json) {
                 let document = serde_json::to_string_pretty(&errors).unwrap_or_default();

@@ -27,25 +27,25 @@ impl Paged {
         }
     }
 
-    /// That a page about `name` with so many figures can be written, if one is asked for, and that it is not in the place of the file `out`:
+    /// That a page about `name` with so many figures can be written, if one is asked for, and that it is not in the place of one of the other `files`:
     /// said before the work, not after.
     pub fn prepare(
         &self,
         name: &str,
         command: &str,
         figures: usize,
-        out: Option<&Path>,
+        files: &[impl AsRef<Path>],
     ) -> Result<(), Failure> {
         let Some(folder) = &self.page else { return Ok(()) };
         let names = page_names(&stem(name, command), figures);
         let place = |path: &Path| std::path::absolute(path).ok();
-        let taken = |out: &&Path| {
+        let taken = |file: &&Path| {
             std::iter::once(folder.clone())
                 .chain(names.iter().map(|name| folder.join(name)))
-                .any(|path| place(&path) == place(out))
+                .any(|path| place(&path) == place(file))
         };
-        if let Some(out) = out.filter(taken) {
-            let message = format!("{} is what --out writes, and where the page goes", out.display());
+        if let Some(file) = files.iter().map(AsRef::as_ref).find(taken) {
+            let message = format!("{} is what --out writes, and where the page goes", file.display());
             return Err(Failure::input("usage", message, "give the page a folder of its own"));
         }
         Ok(prepare_for(folder, names)?)

@@ -39,7 +39,7 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
     // Said before minutes of proof, not after.
     spare(&path, "certificate", |text| text.contains("flexure-certificate"), &[])?;
     prepare(folder_of(&path))?;
-    options.paged.prepare(&scenario.name, "certify", 1, Some(&path))?;
+    options.paged.prepare(&scenario.name, "certify", 1, &[&path])?;
     let proof = {
         let progress = Progress::of_one(&scenario.name);
         prove_watched(&scenario, &question, &|fraction| progress.set(0, fraction))?

@@ -43,7 +43,7 @@ pub fn identify(options: &Identify, outside: Outside, json: bool) -> Result<(), 
         prepare(folder_of(out))?;
         file.fits(out, outside)?;
     }
-    options.paged.prepare(&file.robot.name, "identify", 1, options.out.as_deref())?;
+    options.paged.prepare(&file.robot.name, "identify", 1, options.out.as_slice())?;
     let settings =
         Settings { hold_out: options.hold_out, accuracy: options.accuracy, gaps: file.gaps.clone() };
     let found = {

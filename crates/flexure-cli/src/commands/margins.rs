@@ -35,7 +35,7 @@ pub fn margins(options: &Margins, reading: Reading<'_>, json: bool) -> Result<()
     let chosen = if options.controllers.is_empty() { Vec::new() } else { entrants(&options.controllers)? };
     let scenario = load_scenario_with(&options.scenario, reading)?;
     say(&scenario.warnings);
-    options.paged.prepare(&scenario.name, "margins", chosen.len().max(1), None)?;
+    options.paged.prepare(&scenario.name, "margins", chosen.len().max(1), &[""; 0])?;
     let (loops, is_whole) = {
         let each = [options.budget as f64, RUNS];
         let weights = if chosen.is_empty() { vec![RUNS] } else { each.repeat(chosen.len()) };

@@ -111,7 +111,9 @@ pub fn told(
     let view = traced.view.then(|| view_name(scenarios.iter()));
     prepare_for(&traced.output.out, files.chain(view))?;
     for scenario in &scenarios {
-        traced.paged.prepare(&scenario.name, "run", 1, None)?;
+        let own = ["csv", "svg", "png", "view.html"];
+        let own = own.map(|ending| traced.output.out.join(format!("{}.{ending}", scenario.name)));
+        traced.paged.prepare(&scenario.name, "run", 1, &own)?;
     }
     let mut finished: Vec<Finished> = Vec::new();
     for scenario in scenarios {
@@ -202,13 +204,20 @@ fn page_of(run: &Finished, folder: &Path, motion: Option<&Path>) -> Result<Vec<P
         .filter(|(path, _)| folder_of(path) == folder)
         .filter_map(name)
         .collect();
+    let warnings = run.experiment.exceeded.iter().cloned().chain(unbalanced(&run.experiment));
+    let warned = if ran.divergence.is_none() {
+        warnings.map(|warning| format!("Warning: {warning}.")).collect()
+    } else {
+        Vec::new()
+    };
     let told = RunTold {
         scenario,
         summary: &ran.summary,
+        end: ran.divergence.map(|divergence| divergence.time).or(ran.broken_off).unwrap_or(scenario.duration),
         verdict: &run.verdict(),
         figure,
         proved: *proved,
-        notes: &run.notes(),
+        notes: &[warned, run.notes()].concat(),
         beside: &beside,
     };
     Ok(write_ran(folder, &told)?)

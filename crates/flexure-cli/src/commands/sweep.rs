@@ -49,7 +49,7 @@ pub fn sweep(options: &Sweep, reading: Reading<'_>, json: bool) -> Result<(), Fa
             OfFolder::Replay { folder, row, traced } => replay(folder, *row, traced, json),
             OfFolder::Show { folder, paged } => {
                 let (folder, sweep) = Folder::open(folder)?;
-                paged.prepare(sweep.name(), "sweep", 1, None)?;
+                paged.prepare(sweep.name(), "sweep", 1, &[""; 0])?;
                 show(&sweep, &folder, 0, paged.page.as_deref(), json)
             }
         };
@@ -58,7 +58,7 @@ pub fn sweep(options: &Sweep, reading: Reading<'_>, json: bool) -> Result<(), Fa
     say(sweep.warnings());
     let range = shards(options.shards.as_deref(), sweep.shards())?;
     let path = options.out.clone().unwrap_or_else(|| PathBuf::from("out").join(sweep.name()));
-    options.paged.prepare(sweep.name(), "sweep", 1, None)?;
+    options.paged.prepare(sweep.name(), "sweep", 1, &[""; 0])?;
     let folder = Folder::of(&sweep, &path)?;
     let there = || folder.parts().map(|parts| parts.range(range.clone()).count());
     let before = there()?;

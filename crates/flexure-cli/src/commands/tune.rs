@@ -43,7 +43,7 @@ pub fn tune(options: &Tune, reading: Reading<'_>, json: bool) -> Result<(), Fail
     spare_out(&out, &inputs)?;
     specified.belongs(&out, reading.outside)?;
     prepare(folder_of(&out))?;
-    options.paged.prepare(&scenario.name, "tune", 1, Some(&out))?;
+    options.paged.prepare(&scenario.name, "tune", 1, &[&out])?;
     let found = {
         let progress = Progress::of_one(&scenario.name);
         design(&specified, &spec, options.budget, options.seed, &|fraction| progress.set(0, fraction))?

@@ -69,8 +69,22 @@ fn a_run_ends_where_it_is_and_leaves_its_trace() {
     assert!(!outcome.stdout.contains("follows its reference"), "{outcome:?}");
     let page = place.read("pages/long.run.html");
     assert!(page.contains("<strong>– no verdict</strong> long: broken off at t = "), "{page}");
+    assert!(
+        page.contains("whether it follows its reference is not known") && !page.contains("does not follow")
+    );
     // Nothing is proved of what was not looked at.
     assert!(!page.contains("proved bound"), "{page}");
+}
+
+/// Before its first instant a run has nothing, and leaves nothing.
+#[test]
+fn what_was_not_begun_leaves_no_file() {
+    let place = Place::new();
+    place.write("long.toml", long());
+    for seconds in [0.05, 0.1, 0.2, 0.4] {
+        broken_off(&place, &["run", "long.toml"], seconds);
+        assert!(place.names("out").iter().all(|name| name.starts_with("long.")), "{:?}", place.names("out"));
+    }
 }
 
 #[test]

@@ -76,7 +76,10 @@ fn a_run_has_a_page() {
     let (outcome, page) = paged(&place, &args, "two-link-tanh.run");
     let expected = if outcome.code == Some(0) { "✓ good" } else { "✕ bad" };
     assert_eq!(mark(&page), expected);
-    assert!(page.contains("proved bound in continuous time") && page.contains("What it takes of its limits"));
+    assert!(
+        page.contains("proved bound of eₗ in continuous time")
+            && page.contains("No measure of the run exceeds")
+    );
     assert!(page.contains("href=\"two-link-tanh.csv\"") && page.contains("href=\"two-link-tanh.view.html\""));
     // Elsewhere there is nothing to link to; what is proved is proved of the loop in the file.
     let args = ["run", "two-link-hardware", "--set", "duration=1", "--out", "out"];
@@ -87,6 +90,44 @@ fn a_run_has_a_page() {
     let json =
         place.run(&["run", "two-link-hardware", "--set", "duration=1", "--page", "pages", "--json"]).json();
     assert_eq!(json["pages"][0], "pages/two-link-hardware.run.html");
+}
+
+/// A certificate says nothing of a slide beyond its travel, and so the figure and the numbers of a run that is there have nothing proved.
+#[test]
+fn nothing_is_proved_of_a_run_beyond_the_travel_of_a_slide() {
+    let place = Place::new();
+    let robot = "name = \"rp\"\n[links]\nkind = \"tree\"\n\
+        [[links.joint]]\nname = \"turn\"\nkind = \"revolute\"\naxis = [0.0, 0.0, 1.0]\nmass = 1.0\ncom = [0.0, 0.0, 0.0]\n\
+        inertia = [0.05, 0.0, 0.0, 0.05, 0.0, 0.05]\n\
+        [[links.joint]]\nname = \"slide\"\nparent = \"turn\"\nkind = \"prismatic\"\naxis = [1.0, 0.0, 0.0]\nmass = 3.0\n\
+        com = [0.0, 0.0, 0.0]\ninertia = [0.02, 0.0, 0.0, 0.02, 0.0, 0.02]\n\
+        [joints]\nstiffness = [2000.0, 5000.0]\nmotor_inertia = [0.3, 2.0]\nlink_damping = 0.1\nmotor_damping = 1.0\n\
+        [joints.slide]\nposition_lower = -0.03\nposition_upper = 0.03\n";
+    let scenario = "robot = \"rp.toml\"\nduration = 1.0\ncontrol_period = 0.0005\n\
+        [initial]\nq_l = [0.3, 0.02]\nq_m = [0.3, 0.02]\n\
+        [reference]\nkind = \"sine\"\namplitude = [0.2, 0.005]\nfrequency = [2.0, 1.5]\n\
+        [controller]\nkind = \"vcbc\"\nphi = \"linear\"\n";
+    place
+        .write("rp.toml", robot)
+        .write("inside.toml", scenario)
+        .write("beyond.toml", scenario.replace("0.02", "0.49"));
+    let (_, page) = paged(&place, &["run", "inside.toml"], "inside.run");
+    assert!(page.contains("proved bound of eₗ"), "{page}");
+    let (outcome, page) = paged(&place, &["run", "beyond.toml"], "beyond.run");
+    assert!(!page.contains("proved bound of eₗ"), "{page}");
+    assert!(page.contains("Warning: joint slide: link position exceeds position_upper"), "{page}");
+    assert!(!outcome.stdout.contains("proved"), "{outcome:?}");
+}
+
+/// A page is not put where the run has its files.
+#[test]
+fn a_page_of_a_run_has_a_place_of_its_own() {
+    let place = Place::new();
+    let args = ["run", "pendulum-tanh", "--out", "x", "--page", "x/pendulum-tanh.csv"];
+    let outcome = place.run(&args);
+    assert_eq!(outcome.code, Some(2), "{outcome:?}");
+    outcome.said(&["is what --out writes, and where the page goes"]);
+    assert!(place.names("x").is_empty(), "{:?}", place.names("x"));
 }
 
 #[test]

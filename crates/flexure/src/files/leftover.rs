@@ -1,7 +1,8 @@
 //! Temporary files of runs that were killed: known by their names, and by nobody holding them.
 
 use std::fs::{self, File, TryLockError};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use tempfile::{Builder, NamedTempFile};
@@ -15,6 +16,17 @@ const RANDOM: usize = 6;
 /// A process of this number may be another one after so long.
 const OLD: Duration = Duration::from_hours(1);
 
+/// The temporary files of this process, those that have another name by now among them.
+static OWN: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Removes what this process has not finished writing: for a process that is about to end.
+pub fn remove_unfinished() {
+    for path in OWN.lock().unwrap_or_else(PoisonError::into_inner).drain(..) {
+        // What was finished has another name.
+        let _ = fs::remove_file(path);
+    }
+}
+
 /// A temporary file in `folder`, `.flexure-`, the number of the process, six random characters, `.tmp`, locked as long as it is open.
 pub(crate) fn create(folder: &Path) -> std::io::Result<NamedTempFile> {
     let before = format!("{BEFORE}{}-", std::process::id());
@@ -26,6 +38,7 @@ pub(crate) fn create(folder: &Path) -> std::io::Result<NamedTempFile> {
     let file = builder.tempfile_in(folder)?;
     // Where there are no locks, nothing is ever removed either.
     let _ = file.as_file().try_lock();
+    OWN.lock().unwrap_or_else(PoisonError::into_inner).push(file.path().to_owned());
     Ok(file)
 }
 

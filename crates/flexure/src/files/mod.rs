@@ -42,6 +42,7 @@ pub(crate) use diagnostic::INTERRUPTED;
 pub use diagnostic::{Problem, Problems};
 pub use document::Places;
 pub use entry::Entry;
+pub use leftover::remove_unfinished;
 pub use provenance::Assumption;
 pub use source::read_text;
 pub use spare::spare;

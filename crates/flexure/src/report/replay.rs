@@ -41,6 +41,7 @@ pub fn replay_figure(replay: &Replay) -> Scene {
             window: None,
             limits: Vec::new(),
             curves: centred(over(over(logged(side), predicted(side)), closed(side)), trace, side),
+            bounds: Vec::new(),
         },
         Panel {
             title: "(b) deflections qₘ − qₗ",
@@ -50,6 +51,7 @@ pub fn replay_figure(replay: &Replay) -> Scene {
             window,
             limits: Vec::new(),
             curves: over(over(logged("deflection"), predicted("deflection")), closed("deflection")),
+            bounds: Vec::new(),
         },
         Panel {
             title: "(c) motor torques uₘ",
@@ -59,6 +61,7 @@ pub fn replay_figure(replay: &Replay) -> Scene {
             window,
             limits: Vec::new(),
             curves: over(logged("u_m"), closed("u_m")),
+            bounds: Vec::new(),
         },
         Panel {
             title: if side == "q_l" {
@@ -72,6 +75,7 @@ pub fn replay_figure(replay: &Replay) -> Scene {
             window: None,
             limits: Vec::new(),
             curves: residuals(trace, &format!("{side}_residual"), Stroke::link),
+            bounds: Vec::new(),
         },
     ];
     let options = FigureOptions {

@@ -72,10 +72,11 @@ impl Experiment {
             all.push(&mut **sink);
         }
         let mut run = run_into(&scenario, &mut all, progress)?;
-        let exceeded = watch.warnings();
+        let (exceeded, has_left_travel) = (watch.warnings(), watch.has_left_travel());
         let sampled = if run.broken_off.is_some() { None } else { probe(&scenario)? };
         let mut decay = None;
         if run.broken_off.is_none()
+            && !has_left_travel
             && is_about(&scenario, sampled.as_ref())
             && let Some((certificate, proved)) = certified(&scenario)?
         {

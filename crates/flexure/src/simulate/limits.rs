@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crate::feasible::limit_words;
 use crate::files::Problem;
-use crate::robot::Robot;
+use crate::robot::{JointKind, Robot};
 use crate::simulate::interface::{Signal, of_joints};
 use crate::simulate::sink::Sink;
 use crate::simulate::trace::Trace;
@@ -57,6 +57,15 @@ impl<'a> LimitWatch<'a> {
         let joints = sides.map(|((q_l, q_m), v_l)| Watched { q_l, q_m, v_l, excesses: [None; 4] });
         let time = signals.iter().position(|signal| signal.name == "t");
         Self { robot, time, joints: joints.take(robot.joints.len()).collect() }
+    }
+
+    /// Whether a sliding joint was outside of its travel: certificates say nothing of robots that are.
+    pub fn has_left_travel(&self) -> bool {
+        let outside = |excesses: &[Option<Excess>; 4]| excesses[..2].iter().any(Option::is_some);
+        let sides = self.robot.joints.iter().zip(&self.joints);
+        sides
+            .filter(|(joint, _)| joint.kind == JointKind::Prismatic)
+            .any(|(_, watched)| outside(&watched.excesses))
     }
 
     /// A warning for each joint and limit that was exceeded: from when on, and how far. For torques there is

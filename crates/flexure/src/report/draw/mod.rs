@@ -4,6 +4,7 @@ pub(crate) mod axes;
 pub(crate) mod chatter;
 pub(crate) mod curve;
 pub mod decimate;
+pub(crate) mod falling;
 pub(crate) mod marker;
 pub(crate) mod marks;
 pub(crate) mod panel;

@@ -3,6 +3,7 @@
 use super::axes::{Axes, Axis, BOTTOM};
 use super::curve::Curve;
 use super::decimate::bucket_size;
+use super::falling::Falling;
 use super::marks::{Happening, shade};
 use super::range::{Linear, Range, decades};
 use super::scene::{Anchor, Point, Scene};
@@ -59,6 +60,8 @@ pub(crate) struct Panel {
     /// Values that linear axes mark, where they are inside.
     pub limits: Vec<Limit>,
     pub curves: Vec<Curve>,
+    /// Bounds of what is on an axis of decades.
+    pub bounds: Vec<Falling>,
 }
 
 /// Runs of samples that are drawn as two points each: fine for few signals, coarser for many, so that files stay small.
@@ -93,8 +96,9 @@ impl Panel {
     }
 
     fn decades(&self, scene: &mut Scene, place: [f64; 4], view: &View) -> String {
-        let curves: Vec<Curve> = self.curves.iter().map(|curve| curve.exponents(view.buckets)).collect();
-        let range = decades(&curves);
+        let mut curves: Vec<Curve> = self.curves.iter().map(|curve| curve.exponents(view.buckets)).collect();
+        let range = self.bounds.iter().fold(decades(&curves), |range, bound| bound.seen_on(range));
+        curves.extend(self.bounds.iter().map(|bound| bound.line(view.t, range)));
         let label = format!("{} [{}]", self.quantity, self.unit);
         let y = Axis { range, ticks: ticks::decades(range), label: &label };
         draw(scene, &over_time(place, LEFT, view.t, TIME, y), &[], &curves, view);

@@ -21,6 +21,12 @@ pub(crate) fn even_by(axis: Range, most: f64, power: i32) -> Vec<Tick> {
     every(axis, round_step(axis, most)).map(|at| Tick { at, name: even_name(at / unit) }).collect()
 }
 
+/// The same of at most about `most`, but of three at least: one number says nothing of the scale.
+pub(crate) fn several(axis: Range, most: u8, power: i32) -> Vec<Tick> {
+    let by = |most| even_by(axis, f64::from(most), power);
+    (most..12).map(by).find(|ticks| ticks.len() > 2).unwrap_or_else(|| by(most))
+}
+
 /// The power of ten, in steps of three, in which the numbers of an axis are short; 0 for most.
 #[expect(clippy::cast_possible_truncation, reason = "an exponent of ten of an f64: within ±308")]
 pub(crate) fn power(axis: Range) -> i32 {

@@ -213,11 +213,7 @@ impl Plane {
             power => format!("{of} [{} {unit}]", power_of_ten(power)),
         };
         let labels = [label("link error", x), label("motor error", y)];
-        // One number says nothing of the scale.
-        let ticks = |range: Range, most: u8| {
-            let by = |most| ticks::even_by(range, f64::from(most), ticks::power(range));
-            (most..12).map(by).find(|ticks| ticks.len() > 2).unwrap_or_else(|| by(most))
-        };
+        let ticks = |range: Range, most: u8| ticks::several(range, most, ticks::power(range));
         scene.text([left + LEFT, top + 16.0], name, bold(15.0, INK), Anchor::Start);
         let axes = Axes {
             frame: [left + LEFT, top + 26.0, width - LEFT - 14.0, PLANE - 26.0 - BOTTOM - 8.0],

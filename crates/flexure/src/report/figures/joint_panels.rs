@@ -1,10 +1,11 @@
 //! The figure of a run with many joints: a row of small panels for each.
 
-use super::run::{BOUND, FigureOptions, bound, legend_of_bound, over};
+use super::run::{FigureOptions, falling, legend_of_bounds};
 use crate::files::number::{power_of_ten, significant};
 use crate::report::Sketch;
 use crate::report::draw::axes::{Axes, Axis};
 use crate::report::draw::curve::Curve;
+use crate::report::draw::falling::Falling;
 use crate::report::draw::marks::{self, Happening, JointMarks, shade};
 use crate::report::draw::panel::buckets;
 use crate::report::draw::range::{Linear, Range, decades};
@@ -67,8 +68,12 @@ pub fn joint_panels(run: &Sketch, options: &FigureOptions) -> Scene {
             units::ANGLE.of(marks.kind).raised,
             &marks.positions,
         );
-        let errors = over(drawn(&errors, joint), bounds(run, options, joint));
-        marked.settled |= row.errors(&mut scene, place(1), &errors, &marks, options.settled);
+        let seen = Errors {
+            curves: &drawn(&errors, joint),
+            bounds: &bounds(options, joint),
+            settled: options.settled,
+        };
+        marked.settled |= row.errors(&mut scene, place(1), &seen, &marks);
         let (torques, unit, limits) = share(drawn(&[("u_m", side(LINK))], joint), &marks);
         marked.limit |= row.linear(&mut scene, place(2), "", &torques, unit, &limits);
     }
@@ -97,12 +102,18 @@ fn share(mut curves: Vec<Curve>, marks: &JointMarks) -> (Vec<Curve>, &'static st
 }
 
 /// What is proved of the errors of a joint.
-fn bounds(run: &Sketch, options: &FigureOptions, joint: usize) -> Vec<Curve> {
+fn bounds(options: &FigureOptions, joint: usize) -> Vec<Falling> {
     let Some(decay) = &options.decay else { return Vec::new() };
-    let of = |errors: &[f64], width: f64| {
-        errors.get(joint).map(|start| bound(run, decay, *start, Stroke { width, ..BOUND }))
-    };
-    [of(&decay.motors, MOTOR), of(&decay.links, LINK)].into_iter().flatten().collect()
+    let starts = decay.links.get(joint).zip(decay.motors.get(joint));
+    starts.map_or_else(Vec::new, |(link, motor)| falling(decay, [*link, *motor]))
+}
+
+/// What the panel of a joint's errors shows.
+struct Errors<'a> {
+    curves: &'a [Curve],
+    bounds: &'a [Falling],
+    /// Time after which the links stay within what counts as settled \[s\].
+    settled: Option<f64>,
 }
 
 /// The panels of a joint.
@@ -128,7 +139,7 @@ impl Row<'_> {
         let of = if self.run.diverged().is_some() { Linear::of_diverged } else { Linear::of };
         let Linear { range, clipped } = of(&mut values);
         let power = ticks::power(range);
-        let axes = self.axes(place, range, ticks::even_by(range, 4.0, power));
+        let axes = self.axes(place, range, ticks::several(range, 4, power));
         shade(scene, &axes, self.happenings);
         axes.draw(scene);
         for limit in limits.iter().filter(|limit| range.contains(**limit)) {
@@ -151,14 +162,15 @@ impl Row<'_> {
         &self,
         scene: &mut Scene,
         place: [f64; 3],
-        curves: &[Curve],
+        Errors { curves, bounds, settled }: &Errors<'_>,
         marks: &JointMarks,
-        settled: Option<f64>,
     ) -> bool {
-        let exponents: Vec<Curve> =
+        let mut exponents: Vec<Curve> =
             curves.iter().map(|curve| curve.exponents(buckets(2 * COLUMNS.len()))).collect();
         let range = decades(&exponents);
         let range = Range { low: range.low.max(range.high - 9.0), ..range };
+        let range = bounds.iter().fold(range, |range, bound| bound.seen_on(range));
+        exponents.extend(bounds.iter().map(|bound| bound.line(self.run.span(), range)));
         let axes = self.axes(place, range, every_other(ticks::decades(range)));
         shade(scene, &axes, self.happenings);
         axes.draw(scene);
@@ -248,7 +260,7 @@ fn legend(marked: Marked, options: &FigureOptions, happenings: &[Happening]) -> 
     if marked.limit {
         entries.push(entry("limit", LIMIT));
     }
-    entries.extend(legend_of_bound(options));
+    entries.extend(legend_of_bounds(options));
     entries.extend(marks::legend(happenings));
     entries
 }

@@ -9,9 +9,10 @@ use crate::files::number::significant;
 use crate::prove::decay::Decay;
 use crate::report::Sketch;
 use crate::report::draw::curve::Curve;
+use crate::report::draw::falling::Falling;
 use crate::report::draw::marks::{self, Happening, JointMarks, What};
 use crate::report::draw::panel::{self, HEIGHT, Limit, Panel, Scale, View};
-use crate::report::draw::range::{Range, decades};
+use crate::report::draw::range::Range;
 use crate::report::draw::scene::Scene;
 use crate::report::draw::sheet::{MARGIN, line_legend, page};
 use crate::report::draw::style::{INK, LIMIT, Stroke, hue};
@@ -70,11 +71,9 @@ pub fn run_figure(run: &Sketch, options: &FigureOptions) -> Scene {
 }
 
 const WIDTH: f64 = 1200.0;
-/// Points of a proved bound, which is a straight line on a logarithmic axis.
-const POINTS: u32 = 60;
-/// A proved bound is drawn down to the least of the largest errors in so many parts of a run.
-const BUCKETS: usize = 60;
 pub(crate) const BOUND: Stroke = Stroke { color: INK, width: 1.8, dash: &[8.0, 4.0, 2.0, 4.0] };
+/// Of links and of motors.
+const BOUNDS: [Stroke; 2] = [BOUND, Stroke { width: 1.0, dash: &[4.0, 3.0, 1.0, 3.0], ..BOUND }];
 
 /// Positions, errors, momentum errors and torques of `run` over time.
 ///
@@ -96,6 +95,7 @@ pub fn four_panel(run: &Sketch, options: &FigureOptions) -> Scene {
             window: None,
             limits: options.limits(|joint| joint.positions),
             curves: positions,
+            bounds: Vec::new(),
         },
         Panel {
             title: "(b) position errors eₗ, eₘ",
@@ -104,7 +104,8 @@ pub fn four_panel(run: &Sketch, options: &FigureOptions) -> Scene {
             scale: Scale::Decades,
             window: None,
             limits: Vec::new(),
-            curves: over(over(motor("e_m"), link("e_l")), bounds(run, options)),
+            curves: over(motor("e_m"), link("e_l")),
+            bounds: bounds(options),
         },
         Panel {
             title: "(c) momentum errors σₗ, σₘ",
@@ -114,6 +115,7 @@ pub fn four_panel(run: &Sketch, options: &FigureOptions) -> Scene {
             window: None,
             limits: Vec::new(),
             curves: over(motor("sigma_m"), link("sigma_l")),
+            bounds: Vec::new(),
         },
         Panel {
             title: "(d) motor torques uₘ",
@@ -123,6 +125,7 @@ pub fn four_panel(run: &Sketch, options: &FigureOptions) -> Scene {
             window: None,
             limits: options.limits(|joint| [-joint.torque_limit, joint.torque_limit]),
             curves: link("u_m"),
+            bounds: Vec::new(),
         },
     ];
     let view = View {
@@ -136,30 +139,27 @@ pub fn four_panel(run: &Sketch, options: &FigureOptions) -> Scene {
 }
 
 /// What is proved of the errors of all links and of all motors: the bounds of the joints that may have the largest.
-fn bounds(run: &Sketch, options: &FigureOptions) -> Vec<Curve> {
+fn bounds(options: &FigureOptions) -> Vec<Falling> {
     let Some(decay) = &options.decay else { return Vec::new() };
     let largest = |errors: &[f64]| errors.iter().copied().fold(0.0, f64::max);
-    let [links, motors] = [&decay.links, &decay.motors].map(|errors| largest(errors));
-    vec![bound(run, decay, motors, Stroke { width: 1.2, ..BOUND }), bound(run, decay, links, BOUND)]
+    falling(decay, [largest(&decay.links), largest(&decay.motors)])
 }
 
-/// A proved bound of errors, `start` at the start, as long as it is above what is seen of them.
-pub(crate) fn bound(run: &Sketch, decay: &Decay, start: f64, stroke: Stroke) -> Curve {
-    let seen = ["e_l", "e_m"].into_iter().flat_map(|prefix| run.curves(prefix, |_, _| stroke));
-    let seen: Vec<Curve> = seen.map(|curve| curve.exponents(BUCKETS)).collect();
-    let least = 10f64.powf(decades(&seen).low);
-    let Range { low, high } = run.span();
-    let end = if least < start { ((start / least).ln() / decay.rate).min(high - low) } else { high - low };
-    let t: Vec<f64> = (0..=POINTS).map(|k| end * f64::from(k) / f64::from(POINTS)).collect();
-    let values = t.iter().map(|t| start * (-decay.rate * t).exp()).collect();
-    Curve { t: t.into_iter().map(|t| low + t).collect(), values, stroke }
+/// The proved bounds of errors that start with these, of a link and of a motor.
+pub(crate) fn falling(decay: &Decay, starts: [f64; 2]) -> Vec<Falling> {
+    let bound = |(start, stroke)| Falling { start, rate: decay.rate, stroke };
+    starts.into_iter().zip(BOUNDS).map(bound).collect()
 }
 
-/// A proved bound in the legend: none of a run of which nothing is proved.
-pub(crate) fn legend_of_bound(options: &FigureOptions) -> Option<(String, Stroke)> {
-    let decay = options.decay.as_ref()?;
-    let words = format!("proved bound in continuous time, shrinking at {} 1/s", significant(decay.rate, 3));
-    Some((words, BOUND))
+/// Proved bounds in the legend: none of a run of which nothing is proved.
+pub(crate) fn legend_of_bounds(options: &FigureOptions) -> Vec<(String, Stroke)> {
+    let Some(decay) = &options.decay else { return Vec::new() };
+    let rate = significant(decay.rate, 3);
+    let words = [
+        format!("proved bound of eₗ in continuous time, shrinking at {rate} 1/s"),
+        "the same of eₘ".to_owned(),
+    ];
+    words.into_iter().zip(BOUNDS).collect()
 }
 
 /// Four panels on one page, with a title and one legend.
@@ -203,7 +203,7 @@ fn legend(joints: usize, options: &FigureOptions, happenings: &[Happening]) -> V
     (0..joints)
         .map(joint)
         .chain(sides)
-        .chain(legend_of_bound(options))
+        .chain(legend_of_bounds(options))
         .chain(marks::legend(happenings))
         .collect()
 }

@@ -20,6 +20,8 @@ pub struct RunTold<'a> {
     pub scenario: &'a Scenario,
     /// What came of it.
     pub summary: &'a Summary,
+    /// When it ended \[s\]: at the end of the scenario, or where it diverged or was broken off.
+    pub end: f64,
     /// The same in a sentence.
     pub verdict: &'a Verdict,
     /// Its figure.
@@ -34,11 +36,12 @@ pub struct RunTold<'a> {
 
 /// The page: what came of the run, its figure, what it took of its limits.
 pub(crate) fn run_page(told: &RunTold<'_>) -> String {
-    let RunTold { scenario, summary, verdict, figure: picture, proved, notes, beside } = *told;
+    let RunTold { scenario, summary, end, verdict, figure: picture, proved, notes, beside } = *told;
     let caption = markup! {
         "Errors are on logarithmic axes, where an exponential decay is a straight line."
         @if proved {
-            " What is proved is proved of the law in continuous time; a loop that holds its torque for a control period is left with an error of its own."
+            " What is proved is proved of the law in continuous time: what holding the torque for a control period leaves, and what the simulation's own tolerance does, "
+            "is not in it."
         }
     };
     let lead = markup! {
@@ -46,7 +49,7 @@ pub(crate) fn run_page(told: &RunTold<'_>) -> String {
         @for note in notes { p.note { (note) } }
     };
     let mut sections = vec![
-        Section::new("limits", "What it takes of its limits", limits(summary)),
+        Section::new("limits", "What it takes of its limits", limits(told)),
         Section::new("numbers", "All numbers", numbers(&all(summary))),
     ];
     if !beside.is_empty() {
@@ -56,9 +59,11 @@ pub(crate) fn run_page(told: &RunTold<'_>) -> String {
     }
     let assumed = assumptions([scenario].into_iter());
     sections.push(Section::new("assumptions", "Assumptions", runs::assumptions(&assumed)).folded());
+    let of =
+        if end < scenario.duration { format!(" of {}", short(scenario.duration, 4)) } else { String::new() };
     let lines = [format!(
-        "{} s of the loop in {} integration steps. The same build makes the same run, bit for bit, on any number of threads.",
-        short(scenario.duration, 4),
+        "{}{of} s of the loop in {} integration steps. The same build makes the same run, bit for bit, on any number of threads.",
+        short(end, 4),
         summary.steps
     )];
     Page {
@@ -72,24 +77,29 @@ pub(crate) fn run_page(told: &RunTold<'_>) -> String {
 }
 
 /// What the run came to of each limit, and what the limits are.
-fn limits(summary: &Summary) -> Markup {
+fn limits(RunTold { summary, verdict, end, .. }: &RunTold<'_>) -> Markup {
     let following = &summary.following;
     let row = |used: &Used| {
         let unit = if used.unit.is_empty() { NONE } else { used.unit };
+        // Of what counts from some time on nothing is known before.
+        let counts = !used.measure.is_settled() || *end > following.accepted.settling;
+        let or_none = |text: String| if counts { text } else { NONE.to_owned() };
         vec![
             used.measure.what().trim_end_matches(',').to_owned(),
             used.joint.clone(),
-            engineering(used.value),
+            or_none(engineering(used.value)),
             engineering(used.limit),
             unit.to_owned(),
-            share(100.0 * used.value / used.limit),
+            or_none(share(100.0 * used.value / used.limit)),
         ]
     };
     let headings = ["", "joint", "at most", "limit", "unit", "share [%]"];
     let grid = Grid { words: 2, ..Grid::new(&headings, following.used.iter().map(row).collect()) };
     markup! {
-        @if following.reasons.is_empty() {
-            p { "It follows its reference: every measure stays below its limit." }
+        @if verdict.good.is_none() {
+            p { "As far as it went; whether it follows its reference is not known." }
+        } @else if following.reasons.is_empty() {
+            p { "No measure of the run exceeds its limit." }
         } @else {
             p { "It does not follow its reference:" }
             ul { @for reason in &following.reasons { li { (reason.words) } } }
@@ -109,6 +119,7 @@ fn all(summary: &Summary) -> Grid {
     let unit = |unit: Unit| of_joints(unit, "", &summary.kinds);
     let [angle, torque] = [units::ANGLE, units::TORQUE].map(unit);
     let [time, rate, percent, none] = [units::TIME.plain, units::RATE.plain, "%", NONE].map(str::to_owned);
+    let settled = format!("every error below 1 {} after", of_joints(units::ANGLE, "m", &summary.kinds));
     let optional = |value: Option<f64>| value.map_or(NONE.to_owned(), engineering);
     let number = |value: f64| optional(Some(value).filter(|value| value.is_finite()));
     let part = |value: f64| number(100.0 * value);
@@ -116,7 +127,7 @@ fn all(summary: &Summary) -> Grid {
         ("largest position error of the links", number(summary.max_abs_e_l), &angle),
         ("the same, root mean square over time", number(summary.rms_e_l), &angle),
         ("position error of the links at the end", number(summary.final_abs_e_l), &angle),
-        ("every error below 0.001 after", optional(summary.settling_time), &time),
+        (&settled, optional(summary.settling_time), &time),
         ("largest motor torque", number(summary.max_abs_u_m), &torque),
         ("the same, root mean square over time", number(summary.rms_u_m), &torque),
         ("its change a control period, root mean square", number(summary.rms_torque_change), &torque),
