@@ -61,9 +61,9 @@ pub fn of_joints(unit: Unit, prefix: &str, kinds: &[JointKind]) -> String {
     let [turning, sliding] =
         [JointKind::Revolute, JointKind::Prismatic].map(|kind| format!("{prefix}{}", unit.of(kind).raised));
     match (turns, slides) {
-        (true, true) => format!("{turning} or {sliding}"),
+        (true, true) if turning != sliding => format!("{turning} or {sliding}"),
         (false, true) => sliding,
-        (_, false) => turning,
+        _ => turning,
     }
 }
 
@@ -146,6 +146,7 @@ mod tests {
         assert_eq!(units(&[Prismatic]), "mm");
         assert_eq!(units(&[Prismatic, Revolute]), "mrad or mm");
         assert_eq!(of_joints(TORQUE, "", &[Prismatic, Revolute]), "N m or N");
+        assert_eq!(of_joints(TIME, "m", &[Prismatic, Revolute]), "ms", "the same of both");
     }
 
     /// Every unit, and for those of joints the power of rad that is the same power of m at a joint that slides: torque is energy

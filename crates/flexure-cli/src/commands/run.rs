@@ -10,7 +10,7 @@ use flexure::report::{RunTold, Verdict, summary_table, view_name, write_ran, wri
 use flexure::reproduce::{Experiment, trace_file, write_experiment};
 use flexure::sampled::{Sampled, not_looked_at};
 use flexure::scenario::{Scenario, load_scenario_with};
-use flexure::simulate::{Excerpt, FaultLog, Following, Summary, preload};
+use flexure::simulate::{Excerpt, FaultLog, Summary, preload};
 use serde::Serialize;
 
 use super::objections::objections;
@@ -286,7 +286,7 @@ fn in_words(finished: &Finished) -> Result<(), Failure> {
     print::line(&summary_table(std::slice::from_ref(&experiment.run.summary), print::columns()))?;
     finished.notes().iter().try_for_each(|line| print::line(line))?;
     if broken_off.is_none() {
-        print::line(&verdict(&experiment.run.summary.following))?;
+        print::line(&verdict(&experiment.run.summary))?;
     }
     print::wrote(files)?;
     print::wrote(pages)
@@ -336,8 +336,9 @@ fn summary_line(summary: &Summary) -> Option<String> {
 }
 
 /// Whether it follows, and what it was held to.
-fn verdict(following: &Following) -> String {
+fn verdict(summary: &Summary) -> String {
+    let following = &summary.following;
     let answer = if following.follows { "yes" } else { "no" };
-    let accepted = following.accepted.words().into_iter().map(|words| format!("\n  {words}"));
+    let accepted = following.accepted.words(&summary.kinds).into_iter().map(|words| format!("\n  {words}"));
     format!("follows its reference: {answer}; accepted are{}", accepted.collect::<String>())
 }

@@ -51,6 +51,9 @@ const LEVELS: [RangeInclusive<i32>; 2] = [1..=3, 3..=4];
 /// Other levels that an estimate without link encoders is held against.
 const DOUBTING: [i32; 2] = [3, 5];
 
+/// The least noise of encoders, as a part of what they have.
+const LEAST: f64 = 1e-3;
+
 /// Rounds of noise and values before the last, looks beyond the minimum after it, and Gauss–Newton steps in each, at most.
 const ROUNDS: usize = 3;
 const LOOKS: usize = 4;
@@ -181,7 +184,7 @@ impl Search<'_> {
     fn weighed(&self, values: &Values, levels: &[i32]) -> Weighing {
         let weighing = self.weighing(values, levels);
         let innovations = self.total(values, &weighing, false);
-        Weighing { weights: weights(&innovations), ..weighing }
+        Weighing { weights: self.weights(&innovations), ..weighing }
     }
 
     /// The first round, from `values`: numbers, levels and weighing.
@@ -226,7 +229,7 @@ impl Search<'_> {
         let surprises: Vec<(i32, Vec<f64>)> = tried
             .map(|level| {
                 let innovations = self.total(values, &self.weighing(values, &vec![level; n]), false);
-                (level, (0..n).map(|i| determinant(innovations.covariance(i)).ln()).collect())
+                (level, (0..n).map(|i| determinant(self.covariance(&innovations, i)).ln()).collect())
             })
             .collect();
         let best = |of: &dyn Fn(&[f64]) -> f64, otherwise: i32| {
@@ -253,7 +256,7 @@ impl Search<'_> {
         let mut damping = 1e-4;
         for step in 0..STEPS {
             told(step)?;
-            weighing.weights = weights(&innovations);
+            weighing.weights = self.weights(&innovations);
             let cost = self.cost(&innovations, &values);
             let (information, score) = self.with_prior(&self.total(&values, weighing, true), &values);
             // What a step promises that is held back by nothing but its bounds.
@@ -287,7 +290,7 @@ impl Search<'_> {
             let Some((there, total)) = moved else { return Ok((values, false)) };
             (values, innovations) = (there, total);
         }
-        weighing.weights = weights(&innovations);
+        weighing.weights = self.weights(&innovations);
         Ok((values, false))
     }
 
@@ -315,9 +318,36 @@ impl Search<'_> {
         }
     }
 
+    /// Covariance of a joint's innovations, with that of the least that encoders could have: a log without noise would else be believed to the
+    /// rounding of its simulation, where the likelihood is rough and has no end.
+    fn covariance(&self, total: &Total, joint: usize) -> [f64; 3] {
+        let [l, both, m] = total.covariance(joint);
+        let [of_link, of_motor] = self.position_noise[joint].map(|noise| {
+            let least = LEAST * noise;
+            if least.is_finite() { least * least } else { 0.0 }
+        });
+        [if l > 0.0 { l + of_link } else { l }, both, m + of_motor]
+    }
+
+    /// Inverse covariances of the innovations, joint by joint.
+    fn weights(&self, total: &Total) -> Vec<[f64; 3]> {
+        (0..total.squares.len())
+            .map(|i| {
+                let [l, both, m] = self.covariance(total, i);
+                let inverse = |x: f64| if x > 0.0 { x.recip() } else { 0.0 };
+                if l > 0.0 && m > 0.0 && l * m > both * both {
+                    let determinant = l * m - both * both;
+                    [m / determinant, -both / determinant, l / determinant]
+                } else {
+                    [inverse(l), 0.0, inverse(m)]
+                }
+            })
+            .collect()
+    }
+
     /// Minus the logarithm of the likelihood, each joint's innovations normal with the covariance that they have.
     fn cost(&self, total: &Total, values: &Values) -> f64 {
-        let surprise = |i: usize| 0.5 * total.samples as f64 * determinant(total.covariance(i)).ln();
+        let surprise = |i: usize| 0.5 * total.samples as f64 * determinant(self.covariance(total, i)).ln();
         let cost = (0..values.joints.len()).map(surprise).sum::<f64>()
             + self.prior.distance(values).iter().map(|x| 0.5 * x * x).sum::<f64>();
         if cost.is_finite() { cost } else { f64::INFINITY }
@@ -358,20 +388,4 @@ fn valleys(information: &Symmetric<f64>, joints: usize) -> Vec<Vec<f64>> {
 /// Determinant of a covariance of link and motor; of the one that is measured if the other is not.
 fn determinant([l, both, m]: [f64; 3]) -> f64 {
     if l > 0.0 { l * m - both * both } else { m }
-}
-
-/// Inverse covariances of the innovations, joint by joint.
-fn weights(total: &Total) -> Vec<[f64; 3]> {
-    (0..total.squares.len())
-        .map(|i| {
-            let [l, both, m] = total.covariance(i);
-            let inverse = |x: f64| if x > 0.0 { x.recip() } else { 0.0 };
-            if l > 0.0 && m > 0.0 && l * m > both * both {
-                let determinant = l * m - both * both;
-                [m / determinant, -both / determinant, l / determinant]
-            } else {
-                [inverse(l), 0.0, inverse(m)]
-            }
-        })
-        .collect()
 }

@@ -18,7 +18,7 @@ use crate::report::{
 };
 use crate::sampled::{Sampled, probe};
 use crate::scenario::{Hold, Scenario, load_scenario};
-use crate::simulate::{Excerpt, Following, LimitWatch, Run, Sink, Summary, TraceFile, run_into};
+use crate::simulate::{Excerpt, LimitWatch, Run, Sink, Summary, TraceFile, run_into};
 
 pub use outputs::{trace_file, write_certificates, write_experiment, write_report};
 
@@ -321,18 +321,19 @@ fn from_rest(Experiment { scenario, run, .. }: &Experiment) -> String {
 }
 
 /// Whether a run follows, why not, and what it was held to.
-fn verdict(following: &Following) -> String {
+fn verdict(summary: &Summary) -> String {
+    let following = &summary.following;
     let reasons: Vec<&str> = following.reasons.iter().map(|reason| reason.words.as_str()).collect();
     let answer = match reasons.as_slice() {
         [] => "It follows its reference".to_owned(),
         reasons => format!("It does not follow its reference: {}", reasons.join("; ")),
     };
-    format!("{answer}. Accepted are {}.", following.accepted.words().join("; "))
+    format!("{answer}. Accepted are {}.", following.accepted.words(&summary.kinds).join("; "))
 }
 
 /// What a run came to, in a sentence.
 fn outcome(summary: &Summary) -> String {
     let law = summary.phi.as_ref().map_or_else(|| summary.controller.clone(), |phi| format!("φ = {phi}"));
     let unknown = unknown(&summary.plant).map(|unknown| format!("; {unknown}")).unwrap_or_default();
-    format!("{law}: {}{unknown}. {}", summary.in_words(), verdict(&summary.following))
+    format!("{law}: {}{unknown}. {}", summary.in_words(), verdict(&summary))
 }

@@ -77,13 +77,17 @@ impl Measure {
 
     /// Its unit at a joint of the kind `kind`.
     pub fn unit(self, kind: JointKind) -> &'static str {
-        let unit: Unit = match self {
+        self.measured_in().of(kind).plain
+    }
+
+    /// How it is measured.
+    pub(crate) fn measured_in(self) -> Unit {
+        match self {
             Self::Error | Self::Deflection => units::ANGLE,
             Self::Torque | Self::TorqueChange => units::TORQUE,
             Self::Speed => units::SPEED,
             Self::AtLimit => units::NONE,
-        };
-        unit.of(kind).plain
+        }
     }
 
     /// Whether it counts from [`settling`](Criteria::settling) on only.

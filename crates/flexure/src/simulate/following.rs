@@ -3,10 +3,11 @@
 use serde::Serialize;
 
 use crate::files::number::short;
-use crate::robot::MovingJoint;
+use crate::robot::{JointKind, MovingJoint};
 use crate::simulate::criteria::{Bound, Criteria, Measure};
 use crate::simulate::interface::Observed;
 use crate::simulate::simulation::Divergence;
+use crate::units::of_joints;
 
 /// The verdict on a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -259,7 +260,7 @@ impl Reason {
 
 impl Accepted {
     /// In words, a limit each: what is accepted and where that is from.
-    pub fn words(&self) -> Vec<String> {
+    pub fn words(&self, kinds: &[JointKind]) -> Vec<String> {
         let from = format!("from t = {} s on ({})", short(self.settling, 4), self.because);
         let limited = self.bounds.iter().filter(|bound| bound.limit.iter().any(|limit| limit.is_finite()));
         let bound = |bound: &Bound| {
@@ -267,7 +268,7 @@ impl Accepted {
             if limits.windows(2).all(|pair| pair[0] == pair[1]) {
                 limits.truncate(1);
             }
-            let unit = bound.measure.unit(crate::robot::JointKind::Revolute);
+            let unit = of_joints(bound.measure.measured_in(), "", kinds);
             let from = if bound.measure.is_settled() { format!(" {from}") } else { String::new() };
             let what = bound.measure.what().trim_end_matches(',');
             format!("{what} up to {} {unit}{from}: {}", limits.join(", "), bound.because).replace("  ", " ")

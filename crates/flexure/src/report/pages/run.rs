@@ -105,7 +105,7 @@ fn limits(RunTold { summary, verdict, end, .. }: &RunTold<'_>) -> Markup {
             ul { @for reason in &following.reasons { li { (reason.words) } } }
         }
         @if !grid.rows.is_empty() { (numbers(&grid)) }
-        ul { @for line in following.accepted.words() { li { (line) } } }
+        ul { @for line in following.accepted.words(&summary.kinds) { li { (line) } } }
     }
 }
 
