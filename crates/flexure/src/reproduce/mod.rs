@@ -335,5 +335,5 @@ fn verdict(summary: &Summary) -> String {
 fn outcome(summary: &Summary) -> String {
     let law = summary.phi.as_ref().map_or_else(|| summary.controller.clone(), |phi| format!("φ = {phi}"));
     let unknown = unknown(&summary.plant).map(|unknown| format!("; {unknown}")).unwrap_or_default();
-    format!("{law}: {}{unknown}. {}", summary.in_words(), verdict(&summary))
+    format!("{law}: {}{unknown}. {}", summary.in_words(), verdict(summary))
 }
