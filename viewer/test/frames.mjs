@@ -1,6 +1,7 @@
 // Frames a second of pages in motion, as Chromium of this machine draws them: node test/frames.mjs PAGE… [--seconds S] [--software]
 // At several sizes, with what draws: on a machine without a graphics processor that is software, and says little of one with.
 
+import { existsSync, readFileSync, statSync } from 'node:fs';
 import { basename } from 'node:path';
 import { parseArgs } from 'node:util';
 import { pathToFileURL } from 'node:url';
@@ -11,6 +12,13 @@ const { values: { seconds, software }, positionals: pages } = parseArgs({ allowP
 if (!pages.length || !(Number(seconds) > 0)) {
   console.error('node test/frames.mjs PAGE… [--seconds S] [--software]: pages that `flexure run --view` wrote');
   process.exit(2);
+}
+for (const path of pages) {
+  const is = existsSync(path) && statSync(path).isFile() && readFileSync(path, 'utf8').includes('id="flexure-runs"');
+  if (!is) {
+    console.error(`${path}: no page in motion; \`flexure run SCENARIO --view\` writes NAME.view.html`);
+    process.exit(2);
+  }
 }
 
 const drawn = software ? ['--use-angle=swiftshader', '--enable-unsafe-swiftshader'] : ['--ignore-gpu-blocklist', '--enable-gpu', '--enable-unsafe-swiftshader'];

@@ -142,11 +142,7 @@ fn all(summary: &Summary) -> Grid {
             number(summary.rate_pointwise),
             &rate,
         ),
-        (
-            "contraction rate proved of this loop in continuous time",
-            proved_rate(summary.rate_certified),
-            &rate,
-        ),
+        ("contraction rate proved of the law in continuous time", proved_rate(summary.rate_certified), &rate),
         (
             "what the energy balance is off, as a part of what went through the robot",
             number(summary.energy_drift),
