@@ -1,14 +1,13 @@
 //! What every tracking law has in common.
 
-use super::{Input, Shaping, Vcbc};
+use super::{Input, Shaping, Signals, Vcbc};
 use crate::linalg::Vector;
 use crate::model::{Fjr, Links, Motion};
 use crate::scalar::{Jet, Over, Scalar};
 
 /// A tracking law: from where the robot is, how it moves and where it shall be, to motor torque.
 ///
-/// Every law of this folder is static: it has no memory, so that the closed loop is an ordinary differential equation and
-/// runs on every number type.
+/// It is static: it has no memory. Laws with one are [`DynamicLaw`](super::DynamicLaw)s.
 ///
 /// A law of one's own:
 ///
@@ -49,6 +48,9 @@ use crate::scalar::{Jet, Over, Scalar};
 /// assert_eq!(u, Vector([-6.0]));
 /// ```
 pub trait ControlLaw<C: Scalar, const N: usize> {
+    /// What it reads of the motion.
+    const READS: Signals = Signals::ALL;
+
     /// Motor torque [N m] at the motion `x`; `q_ld` is the reference of the links in rad to order 4.
     fn torque<T: Over<C>, L: Links<C, N>>(
         &self,

@@ -2,6 +2,7 @@
 
 mod backstepping;
 mod cascade;
+mod dynamic;
 mod esp;
 mod feedback_linearization;
 mod feedforward_pd;
@@ -15,6 +16,7 @@ mod pd;
 mod pd_online_gravity;
 mod rigid;
 mod shaping;
+mod signals;
 mod singular_perturbation;
 mod sliding;
 mod torque_feedback;
@@ -22,6 +24,7 @@ mod vcbc;
 
 pub use backstepping::Backstepping;
 pub use cascade::Cascade;
+pub use dynamic::{Applied, DynamicLaw, MotorPositionPd, MotorPositionPdCapped, PositionFeedback, Running};
 pub use esp::Esp;
 pub use feedback_linearization::FeedbackLinearization;
 pub use feedforward_pd::FeedforwardPd;
@@ -35,6 +38,7 @@ pub use pd::Pd;
 pub use pd_online_gravity::PdOnlineGravity;
 pub use rigid::RigidVcbc;
 pub use shaping::{CoupledTanh, Linear, OddSeries, Shaping, TERMS, Tanh};
+pub use signals::Signals;
 pub use singular_perturbation::SingularPerturbation;
 pub use torque_feedback::TorqueFeedback;
 pub use vcbc::{Command, Input, Vcbc};

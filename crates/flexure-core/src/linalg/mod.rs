@@ -4,11 +4,13 @@
     reason = "indices run over const dimensions; the no-panic check covers them"
 )]
 
+mod blocks;
 mod ldl;
 mod matrix;
 mod series;
 mod vector;
 
+pub use blocks::eliminate;
 pub use ldl::Ldl;
 pub use matrix::Matrix;
 pub use vector::Vector;

@@ -1,0 +1,180 @@
+//! Laws against `golden/laws/`: torque and rate of the memory at random states of two arms, from an independent symbolic implementation.
+
+use std::collections::BTreeMap;
+use std::fs;
+
+use flexure_core::control::{
+    Applied, ControlLaw, DynamicLaw, MotorPd, MotorPositionPd, MotorPositionPdCapped, PositionFeedback,
+};
+use flexure_core::linalg::{Ldl, Matrix, Vector};
+use flexure_core::model::{Fjr, Links, Motion};
+use flexure_core::scalar::{Jet, Over, Scalar};
+use serde::Deserialize;
+
+/// Of the largest number of a case: both sides are double precision, through cutoffs to the third power (10⁷) times errors.
+const TOLERANCE: f64 = 1e-9;
+
+/// The paper's links with gravity along them: a robot of one's own.
+#[derive(Clone, Copy, Deserialize)]
+pub struct TwoLink {
+    a1: f64,
+    a2: f64,
+    b: f64,
+    g1: f64,
+    g2: f64,
+}
+
+impl Links<f64, 2> for TwoLink {
+    type Factor<'a, T: Over<f64>> = Ldl<T, 2>;
+
+    fn mass_matrix<T: Over<f64>>(&self, q: &Vector<T, 2>) -> Matrix<T, 2, 2> {
+        let coupling = q[1].cos().scale(self.b);
+        let off = T::from_f64(self.a2) + coupling;
+        Matrix([[T::from_f64(self.a1) + coupling + off, off], [off, T::from_f64(self.a2)]])
+    }
+
+    fn potential_energy<T: Over<f64>>(&self, q: &Vector<T, 2>) -> T {
+        q[0].sin().scale(self.g1) + (q[0] + q[1]).sin().scale(self.g2)
+    }
+
+    fn carrier_rates<T: Over<f64>>(&self, _: &Vector<T, 2>, v: &Vector<T, 2>) -> Vector<T, 2> {
+        Vector([T::ZERO, v[0]])
+    }
+
+    fn factor<T: Over<f64>>(&self, q: &Vector<T, 2>) -> Ldl<T, 2> {
+        self.mass_matrix(q).ldl()
+    }
+}
+
+#[derive(Deserialize)]
+struct Golden {
+    cases: Vec<Case>,
+}
+
+#[derive(Deserialize)]
+struct Case {
+    robot: Robot,
+    reference: String,
+    gains: BTreeMap<String, Gain>,
+    t: f64,
+    q_l: [f64; 2],
+    q_m: [f64; 2],
+    v_l: [f64; 2],
+    v_m: [f64; 2],
+    memory: Vec<f64>,
+    torque: [f64; 2],
+    memory_rate: Vec<f64>,
+}
+
+#[derive(Deserialize)]
+struct Robot {
+    #[serde(flatten)]
+    links: TwoLink,
+    stiffness: [f64; 2],
+    motor_inertia: [f64; 2],
+    link_damping: [f64; 2],
+    motor_damping: [f64; 2],
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Gain {
+    Number(f64),
+    List(Vec<f64>),
+}
+
+type Arm = Fjr<f64, TwoLink, 2>;
+
+impl Case {
+    /// The gain `name`, a number per joint.
+    fn gain(&self, name: &str) -> Vector<f64, 2> {
+        match &self.gains[name] {
+            Gain::Number(x) => Vector([*x; 2]),
+            Gain::List(list) => Vector(list.as_slice().try_into().expect("a number per joint")),
+        }
+    }
+
+    fn motor(&self, [stiffness, damping]: [&str; 2]) -> MotorPd<f64, 2> {
+        MotorPd { stiffness: self.gain(stiffness), damping: self.gain(damping) }
+    }
+
+    fn arm(&self) -> Arm {
+        let Robot { links, stiffness, motor_inertia, link_damping, motor_damping } = &self.robot;
+        let [motor_inertia, stiffness, link_damping, motor_damping] =
+            [motor_inertia, stiffness, link_damping, motor_damping].map(|x| Vector(*x));
+        Fjr { links: *links, motor_inertia, stiffness, link_damping, motor_damping }
+    }
+
+    fn motion(&self) -> Motion<f64, 2> {
+        let [q_l, q_m, v_l, v_m] = [self.q_l, self.q_m, self.v_l, self.v_m].map(Vector);
+        Motion { q_l, q_m, v_l, v_m }
+    }
+
+    fn q_ld<const K: usize>(&self) -> Vector<Jet<f64, K>, 2> {
+        match self.reference.as_str() {
+            "q_ld = (sin 0.6 t, sin 0.6 t)" => Vector([Jet::variable(self.t).scale(0.6).sin(); 2]),
+            "q_ld = (0.5, -0.4) at rest" => Vector([0.5, -0.4]).map(Jet::value),
+            other => panic!("{other}"),
+        }
+    }
+
+    fn agrees(&self, law: &str, torque: &Vector<f64, 2>, rate: &[Vector<f64, 2>]) {
+        let found: Vec<f64> = torque.iter().chain(rate.iter().flat_map(|part| part.iter())).collect();
+        let expected: Vec<f64> = self.torque.iter().chain(&self.memory_rate).copied().collect();
+        assert_eq!(found.len(), expected.len(), "{law}");
+        let scale = expected.iter().fold(1.0, |m: f64, x| m.max(x.abs()));
+        for (x, y) in found.iter().zip(&expected) {
+            assert!((x - y).abs() <= TOLERANCE * scale, "{law}: {found:?} against {expected:?}");
+        }
+    }
+}
+
+fn cases(law: &str) -> Vec<Case> {
+    let path = format!("{}/tests/golden/laws/{law}.json", env!("CARGO_MANIFEST_DIR"));
+    let text = fs::read_to_string(path).expect("a golden file");
+    let golden: Golden = serde_json::from_str(&text).expect("cases");
+    assert_eq!(golden.cases.len(), 4);
+    golden.cases
+}
+
+/// A law with memory at every case of its file.
+fn dynamic<F: DynamicLaw<f64, 2, K>, const K: usize>(name: &str, law: impl Fn(&Case) -> F) {
+    for case in cases(name) {
+        let (law, robot, x, q_ld) = (law(&case), case.arm(), case.motion(), case.q_ld());
+        let z: [_; K] = std::array::from_fn(|k| Vector([case.memory[2 * k], case.memory[2 * k + 1]]));
+        let torque = law.torque(&robot, &x, &q_ld, &z);
+        let rate = law.rate(&robot, &x, &q_ld, &z, &Applied::fully(torque));
+        case.agrees(name, &torque, &rate);
+    }
+}
+
+/// A static law at every case of its file.
+fn fixed<F: ControlLaw<f64, 2>>(name: &str, law: impl Fn(&Case) -> F) {
+    for case in cases(name) {
+        case.agrees(name, &law(&case).torque(&case.arm(), &case.motion(), &case.q_ld()), &[]);
+    }
+}
+
+#[test]
+fn motor_position_pd() {
+    dynamic("motor-position-pd", |case| MotorPositionPd {
+        motor: case.motor(["stiffness", "damping"]),
+        cutoff: case.gain("cutoff"),
+    });
+    dynamic("motor-position-pd-capped", |case| MotorPositionPdCapped {
+        motor: case.motor(["stiffness", "damping"]),
+        cutoff: case.gain("cutoff"),
+        stiffness_cap: case.gain("cap_p"),
+        damping_cap: case.gain("cap_d"),
+    });
+}
+
+#[test]
+fn position_feedback() {
+    dynamic("position-feedback", |case| PositionFeedback {
+        link: case.motor(["link_stiffness", "link_damping"]),
+        link_cutoff: case.gain("link_cutoff"),
+        motor: case.motor(["motor_stiffness", "motor_damping"]),
+        motor_cutoff: case.gain("motor_cutoff"),
+    });
+}

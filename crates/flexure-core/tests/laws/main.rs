@@ -1,0 +1,5 @@
+//! The cited laws and those with memory: golden values, identities, what they read, how memory moves from instant to instant.
+
+#[path = "../suite/common/mod.rs"]
+mod common;
+mod golden;
