@@ -1,6 +1,6 @@
 //! Spring torques by an inner loop of motor positions.
 
-use flexure_core::control;
+use flexure_core::control::{self, InnerLoop};
 use flexure_core::linalg::Vector;
 use flexure_core::scalar::Scalar;
 
@@ -29,6 +29,6 @@ impl LawKind for Cascade {
         vector: impl Fn(&Vec<f64>) -> Vector<C, N>,
     ) -> Self::Core<C, N> {
         let [shaping, link_damping, position, velocity] = gains.each_ref().map(vector);
-        control::Cascade { shaping, link_damping, position, velocity }
+        control::Cascade { shaping, link_damping, inner: InnerLoop { position, velocity } }
     }
 }

@@ -39,7 +39,7 @@ pub struct MotorPositionPdCapped<C, const N: usize> {
 
 /// Gravity g(q_0) [N m] of the goal and e_m = θ − θ_0 in rad.
 #[inline]
-pub(super) fn motor_error<C: Scalar, T: Over<C>, L: Links<C, N>, const N: usize>(
+pub(in crate::control) fn motor_error<C: Scalar, T: Over<C>, L: Links<C, N>, const N: usize>(
     robot: &Fjr<C, L, N>,
     q_m: &Vector<T, N>,
     q_ld: &Vector<Jet<T, 5>, N>,
