@@ -48,6 +48,7 @@ impl<C: Scalar, F, const N: usize> DisturbanceRejecting<C, F, N> {
 
 impl<C: Scalar, F: LoadedLaw<C, N>, const N: usize> DynamicLaw<C, N, 2> for DisturbanceRejecting<C, F, N> {
     const READS: Signals = Signals::ALL;
+    const JOINTWISE: bool = true;
 
     #[inline]
     fn start<T: Over<C>, L: Links<C, N>>(

@@ -28,6 +28,7 @@ use crate::scalar::{Jet, Over, Scalar};
 ///
 /// impl<C: Scalar, const N: usize> DynamicLaw<C, N, 1> for Brake<C, N> {
 ///     const READS: Signals = Signals::MOTOR_POSITIONS;
+///     const JOINTWISE: bool = true;
 ///
 ///     fn start<T: Over<C>, L: Links<C, N>>(
 ///         &self,
@@ -77,6 +78,10 @@ use crate::scalar::{Jet, Over, Scalar};
 pub trait DynamicLaw<C: Scalar, const N: usize, const K: usize> {
     /// What it reads of the motion.
     const READS: Signals;
+
+    /// Whether the memory of a joint is all of the memory that moves the rate of its own: filters and integrators joint by joint. The step is then
+    /// found joint by joint.
+    const JOINTWISE: bool;
 
     /// The memory that a robot which moves as `x` starts with: without a jump of the torque, as far as the law can see to it.
     fn start<T: Over<C>, L: Links<C, N>>(

@@ -42,6 +42,7 @@ fn seen<T: Scalar, const N: usize>(q_l: &Vector<T, N>, [_, v, theta, w]: &[Vecto
 
 impl<C: Scalar, F: ControlLaw<C, N>, const N: usize> DynamicLaw<C, N, 4> for LinkPositionFeedback<C, F, N> {
     const READS: Signals = Signals::LINK_POSITIONS;
+    const JOINTWISE: bool = false;
 
     /// For a robot that rests on its springs.
     #[inline]

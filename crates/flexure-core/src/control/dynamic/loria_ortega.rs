@@ -61,6 +61,7 @@ impl<C: Scalar, const N: usize> LoriaOrtega<C, N> {
 
 impl<C: Scalar, const N: usize> DynamicLaw<C, N, 2> for LoriaOrtega<C, N> {
     const READS: Signals = Signals { q_l: true, q_m: true, v_l: true, v_m: false };
+    const JOINTWISE: bool = true;
 
     #[inline]
     fn start<T: Over<C>, L: Links<C, N>>(

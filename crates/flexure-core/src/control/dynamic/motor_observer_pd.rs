@@ -29,6 +29,7 @@ pub struct MotorObserverPd<C, const N: usize> {
 
 impl<C: Scalar, const N: usize> DynamicLaw<C, N, 2> for MotorObserverPd<C, N> {
     const READS: Signals = Signals::MOTOR_POSITIONS;
+    const JOINTWISE: bool = true;
 
     #[inline]
     fn start<T: Over<C>, L: Links<C, N>>(

@@ -51,6 +51,7 @@ pub(in crate::control) fn motor_error<C: Scalar, T: Over<C>, L: Links<C, N>, con
 
 impl<C: Scalar, const N: usize> DynamicLaw<C, N, 1> for MotorPositionPd<C, N> {
     const READS: Signals = Signals::MOTOR_POSITIONS;
+    const JOINTWISE: bool = true;
 
     #[inline]
     fn start<T: Over<C>, L: Links<C, N>>(
@@ -96,6 +97,7 @@ impl<C: Scalar, const N: usize> MotorPositionPdCapped<C, N> {
 
 impl<C: Scalar, const N: usize> DynamicLaw<C, N, 1> for MotorPositionPdCapped<C, N> {
     const READS: Signals = Signals::MOTOR_POSITIONS;
+    const JOINTWISE: bool = true;
 
     #[inline]
     fn start<T: Over<C>, L: Links<C, N>>(

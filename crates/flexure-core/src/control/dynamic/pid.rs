@@ -20,6 +20,7 @@ pub struct Pid<C, const N: usize> {
 
 impl<C: Scalar, const N: usize> DynamicLaw<C, N, 1> for Pid<C, N> {
     const READS: Signals = Signals { q_l: true, q_m: true, v_l: false, v_m: true };
+    const JOINTWISE: bool = true;
 
     #[inline]
     fn start<T: Over<C>, L: Links<C, N>>(

@@ -47,6 +47,7 @@ impl<C: Scalar, const N: usize> SeaCascade<C, N> {
 
 impl<C: Scalar, const N: usize> DynamicLaw<C, N, 2> for SeaCascade<C, N> {
     const READS: Signals = Signals::ALL;
+    const JOINTWISE: bool = true;
 
     #[inline]
     fn start<T: Over<C>, L: Links<C, N>>(

@@ -1,7 +1,11 @@
 //! How memory gets from one control instant to the next.
+#![expect(
+    clippy::indexing_slicing,
+    reason = "indices run over const dimensions; the no-panic check covers them"
+)]
 
 use super::{Applied, DynamicLaw};
-use crate::linalg::{Matrix, Vector, eliminate};
+use crate::linalg::{Matrix, Vector, eliminate, eliminate_each};
 use crate::model::{Fjr, Links, Motion};
 use crate::scalar::{Dual, Float, Jet, Over, Scalar};
 
@@ -15,27 +19,45 @@ const CORRECTIONS: usize = 2;
 /// Of a linear filter this is Tustin's, which keeps passivity and is stable for any period. z⁺ is found by Newton's method from Euler's step, with the
 /// Jacobian of ż by dual numbers.
 #[inline]
-pub fn advanced<C: Scalar, T: Over<C>, L: Links<C, N>, const N: usize, const K: usize>(
-    law: &impl DynamicLaw<C, N, K>,
+pub fn advanced<C: Scalar, T: Over<C>, L: Links<C, N>, F, const N: usize, const K: usize>(
+    law: &F,
     robot: &Fjr<C, L, N>,
-    before: &Seen<T, N>,
-    now: &Seen<T, N>,
+    [before, now]: [&Seen<T, N>; 2],
     z: &[Vector<T, N>; K],
     applied: &Applied<T, N>,
     period: T,
-) -> [Vector<T, N>; K] {
+) -> [Vector<T, N>; K]
+where
+    F: DynamicLaw<C, N, K>,
+{
     let half = period * T::from_ratio(1, 2);
     let at = |seen: &Seen<T, N>, z: &[Vector<T, N>; K]| law.rate(robot, &seen.x, &seen.q_ld, z, applied);
     let first = at(before, z);
-    let mut next = added(z, &first, period);
-    let matrix = implicit(law, robot, now, &next, applied, half);
-    for _ in 0..CORRECTIONS {
-        let last = at(now, &next);
-        let missing: [Vector<T, N>; K] =
-            core::array::from_fn(|k| z[k] - next[k] + (first[k] + last[k]).scaled(half));
-        next = added(&next, &eliminate(matrix, missing), T::ONE);
+    let next = added(z, &first, period);
+    let missing = |next: &[Vector<T, N>; K]| -> [Vector<T, N>; K] {
+        let last = at(now, next);
+        core::array::from_fn(|k| z[k] - next[k] + (first[k] + last[k]).scaled(half))
+    };
+    let slope = Slope { law, robot, now, z: &next, applied };
+    if F::JOINTWISE {
+        let matrix = slope.implicit_of_joints(half);
+        corrected(next, |next| eliminate_each(matrix, missing(next)))
+    } else {
+        let matrix = slope.implicit(half);
+        corrected(next, |next| eliminate(matrix, missing(next)))
     }
-    next
+}
+
+/// `z` after [`CORRECTIONS`].
+#[inline]
+fn corrected<T: Scalar, const N: usize, const K: usize>(
+    mut z: [Vector<T, N>; K],
+    correction: impl Fn(&[Vector<T, N>; K]) -> [Vector<T, N>; K],
+) -> [Vector<T, N>; K] {
+    for _ in 0..CORRECTIONS {
+        z = added(&z, &correction(&z), T::ONE);
+    }
+    z
 }
 
 /// a + s b.
@@ -48,34 +70,67 @@ fn added<T: Scalar, const N: usize, const K: usize>(
     core::array::from_fn(|k| a[k] + b[k].scaled(s))
 }
 
-/// 1 − T/2 ∂ż/∂z in `N` × `N` blocks, a block of columns at a time.
-#[inline]
-fn implicit<C: Scalar, T: Over<C>, L: Links<C, N>, const N: usize, const K: usize>(
-    law: &impl DynamicLaw<C, N, K>,
-    robot: &Fjr<C, L, N>,
-    now: &Seen<T, N>,
-    z: &[Vector<T, N>; K],
-    applied: &Applied<T, N>,
-    half: T,
-) -> [[Matrix<T, N, N>; K]; K] {
-    let lift = |v: &Vector<T, N>| v.map(Dual::<T, N>::constant);
-    let x = now.x.map(Dual::constant);
-    let q_ld = now.q_ld.map(|q| Jet::from_fn(|k| Dual::constant(q.coefficient(k))));
-    let applied = Applied { asked: lift(&applied.asked), given: lift(&applied.given) };
-    let mut matrix = [[Matrix::ZERO; K]; K];
-    for column in 0..K {
-        let seeded = core::array::from_fn(|k| {
-            if k == column { Vector::from_fn(|i| Dual::variable(z[k][i], i)) } else { lift(&z[k]) }
+/// Where ż is differentiated.
+struct Slope<'a, C, T, L, F, const N: usize, const K: usize> {
+    law: &'a F,
+    robot: &'a Fjr<C, L, N>,
+    now: &'a Seen<T, N>,
+    z: &'a [Vector<T, N>; K],
+    applied: &'a Applied<T, N>,
+}
+
+impl<C: Scalar, T: Over<C>, L: Links<C, N>, F, const N: usize, const K: usize> Slope<'_, C, T, L, F, N, K>
+where
+    F: DynamicLaw<C, N, K>,
+{
+    /// How ż moves with z, of which the numbers that `moves` chooses move at the rate 1.
+    #[inline]
+    fn along(&self, moves: impl Fn(usize, usize) -> bool) -> [Vector<T, N>; K] {
+        type Tangent<T> = Dual<T, 1>;
+        let lift = |v: &Vector<T, N>| v.map(Tangent::constant);
+        let x = self.now.x.map(Tangent::constant);
+        let q_ld = self.now.q_ld.map(|q| Jet::from_fn(|k| Tangent::constant(q.coefficient(k))));
+        let applied = Applied { asked: lift(&self.applied.asked), given: lift(&self.applied.given) };
+        let z = core::array::from_fn(|k| {
+            Vector::from_fn(|i| {
+                if moves(k, i) { Tangent::variable(self.z[k][i], 0) } else { Tangent::constant(self.z[k][i]) }
+            })
         });
-        let rate = law.rate(robot, &x, &q_ld, &seeded, &applied);
-        for (row, (blocks, rate)) in matrix.iter_mut().zip(&rate).enumerate() {
-            blocks[column] = Matrix::from_fn(|i, j| {
-                let unit = if row == column && i == j { T::ONE } else { T::ZERO };
-                unit - half * rate[i].gradient[j]
-            });
-        }
+        let rate = self.law.rate(self.robot, &x, &q_ld, &z, &applied);
+        rate.map(|part| part.map(|Dual { gradient: [slope], .. }| slope))
     }
-    matrix
+
+    /// 1 − T/2 ∂ż/∂z in `N` × `N` blocks.
+    #[inline]
+    fn implicit(&self, half: T) -> [[Matrix<T, N, N>; K]; K] {
+        let mut matrix = [[Matrix::ZERO; K]; K];
+        for column in 0..K {
+            for j in 0..N {
+                let slope = self.along(|k, i| k == column && i == j);
+                for (row, (blocks, slope)) in matrix.iter_mut().zip(&slope).enumerate() {
+                    for i in 0..N {
+                        let unit = if row == column && i == j { T::ONE } else { T::ZERO };
+                        blocks[column][(i, j)] = unit - half * slope[i];
+                    }
+                }
+            }
+        }
+        matrix
+    }
+
+    /// The same where no joint moves another's: a `K` × `K` matrix a joint, all of whose columns come at once.
+    #[inline]
+    fn implicit_of_joints(&self, half: T) -> [[Vector<T, N>; K]; K] {
+        let mut matrix = [[Vector::ZERO; K]; K];
+        for column in 0..K {
+            let slope = self.along(|k, _| k == column);
+            for (row, (entries, slope)) in matrix.iter_mut().zip(&slope).enumerate() {
+                let unit = if row == column { T::ONE } else { T::ZERO };
+                entries[column] = slope.map(|slope| unit - half * slope);
+            }
+        }
+        matrix
+    }
 }
 
 /// What a law sees at an instant.
@@ -120,7 +175,7 @@ impl<C: Float, const N: usize, const K: usize> Running<C, N, K> {
         period: C,
     ) {
         let now = Seen { x: *x, q_ld: *q_ld };
-        let next = advanced(law, robot, &self.seen, &now, &self.memory, applied, period);
+        let next = advanced(law, robot, [&self.seen, &now], &self.memory, applied, period);
         if next.iter().all(|part| part.iter().all(C::is_finite)) {
             *self = Self { memory: next, seen: now };
         }
