@@ -4,8 +4,9 @@ use flexure_core::control::{self, InnerLoop};
 use flexure_core::linalg::Vector;
 use flexure_core::scalar::Scalar;
 
-use crate::laws::gain::{Gain, LINK_DAMPING, POSITION, RATE, SHAPING};
+use crate::laws::gain::{Gain, INNER, LINK_DAMPING, SHAPING};
 use crate::laws::registry::LawKind;
+use crate::robot::Robot;
 
 /// The kind `cascade`: [`control::Cascade`].
 pub struct Cascade;
@@ -18,14 +19,15 @@ impl LawKind for Cascade {
     const GAINS: [Gain; 4] = [
         SHAPING,
         LINK_DAMPING,
-        Gain::new("position", POSITION, |drive| drive.inner_bandwidth().powi(2)),
-        Gain::new("velocity", RATE, |drive| 2.0 * drive.inner_bandwidth()),
+        INNER[0],
+        INNER[1],
     ];
 
     type Core<C: Scalar, const N: usize> = control::Cascade<C, N>;
 
     fn core<C: Scalar, const N: usize>(
         gains: &Self::Gains,
+        _: &Robot,
         vector: impl Fn(&Vec<f64>) -> Vector<C, N>,
     ) -> Self::Core<C, N> {
         let [shaping, link_damping, position, velocity] = gains.each_ref().map(vector);

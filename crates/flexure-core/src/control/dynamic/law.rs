@@ -91,6 +91,17 @@ pub trait DynamicLaw<C: Scalar, const N: usize, const K: usize> {
         q_ld: &Vector<Jet<T, 5>, N>,
     ) -> [Vector<T, N>; K];
 
+    /// The memory of a loop that has followed for long and moves as `x`: what small errors are about.
+    #[inline]
+    fn settled<T: Over<C>, L: Links<C, N>>(
+        &self,
+        robot: &Fjr<C, L, N>,
+        x: &Motion<T, N>,
+        q_ld: &Vector<Jet<T, 5>, N>,
+    ) -> [Vector<T, N>; K] {
+        self.start(robot, x, q_ld)
+    }
+
     /// Motor torque [N m] at the motion `x` with the memory `z`; `q_ld` is the reference of the links in rad to order 4.
     fn torque<T: Over<C>, L: Links<C, N>>(
         &self,

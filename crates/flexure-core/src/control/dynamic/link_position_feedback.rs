@@ -55,6 +55,17 @@ impl<C: Scalar, F: ControlLaw<C, N>, const N: usize> DynamicLaw<C, N, 4> for Lin
         [x.q_l, Vector::ZERO, robot.motors_at_rest(&x.q_l), Vector::ZERO]
     }
 
+    /// An estimate without errors.
+    #[inline]
+    fn settled<T: Over<C>, L: Links<C, N>>(
+        &self,
+        _: &Fjr<C, L, N>,
+        x: &Motion<T, N>,
+        _: &Vector<Jet<T, 5>, N>,
+    ) -> [Vector<T, N>; 4] {
+        [x.q_l, x.v_l, x.q_m, x.v_m]
+    }
+
     #[inline]
     fn torque<T: Over<C>, L: Links<C, N>>(
         &self,
