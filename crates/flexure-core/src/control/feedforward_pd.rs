@@ -1,6 +1,6 @@
 //! Nominal torque of the reference and PD control of the motors around it.
 
-use super::{ControlLaw, MotorPd};
+use super::{ControlLaw, MotorPd, Signals};
 use crate::linalg::Vector;
 use crate::model::{Fjr, Links, Motion};
 use crate::scalar::{Jet, Over, Scalar};
@@ -17,6 +17,8 @@ pub struct FeedforwardPd<C, const N: usize> {
 }
 
 impl<C: Scalar, const N: usize> ControlLaw<C, N> for FeedforwardPd<C, N> {
+    const READS: Signals = Signals::MOTORS;
+
     #[inline]
     fn torque<T: Over<C>, L: Links<C, N>>(
         &self,

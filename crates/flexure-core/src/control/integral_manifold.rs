@@ -1,6 +1,6 @@
 //! Composite control on an integral manifold.
 
-use super::ControlLaw;
+use super::{ControlLaw, Signals};
 use crate::linalg::Vector;
 use crate::model::{Fjr, Links, Motion};
 use crate::scalar::{Jet, Over, Scalar};
@@ -46,6 +46,8 @@ impl<C: Scalar, const N: usize> IntegralManifold<C, N> {
 }
 
 impl<C: Scalar, const N: usize> ControlLaw<C, N> for IntegralManifold<C, N> {
+    const READS: Signals = Signals { q_l: true, q_m: false, v_l: true, v_m: true };
+
     #[inline]
     fn torque<T: Over<C>, L: Links<C, N>>(
         &self,

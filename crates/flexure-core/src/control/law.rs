@@ -1,6 +1,6 @@
 //! What every tracking law has in common.
 
-use super::{Input, Shaping, Signals, Vcbc};
+use super::{Input, LoadedLaw, Shaping, Signals, Vcbc};
 use crate::linalg::Vector;
 use crate::model::{Fjr, Links, Motion};
 use crate::scalar::{Jet, Over, Scalar};
@@ -71,5 +71,18 @@ impl<C: Scalar, Pl: Shaping<C, N>, Pm: Shaping<C, N>, const N: usize> ControlLaw
         q_ld: &Vector<Jet<T, 5>, N>,
     ) -> Vector<T, N> {
         self.command(robot, x, q_ld, &Input::ZERO).u_m
+    }
+}
+
+impl<C: Scalar, Pl: Shaping<C, N>, Pm: Shaping<C, N>, const N: usize> LoadedLaw<C, N> for Vcbc<C, Pl, Pm, N> {
+    #[inline]
+    fn torque_under<T: Over<C>, L: Links<C, N>>(
+        &self,
+        robot: &Fjr<C, L, N>,
+        x: &Motion<T, N>,
+        q_ld: &Vector<Jet<T, 5>, N>,
+        load: &Vector<T, N>,
+    ) -> Vector<T, N> {
+        self.command_under(robot, x, q_ld, &Input::ZERO, load).u_m
     }
 }

@@ -1,6 +1,6 @@
 //! PD control of the motors with the gravity of the goal.
 
-use super::{ControlLaw, MotorPd};
+use super::{ControlLaw, MotorPd, Signals};
 use crate::linalg::Vector;
 use crate::model::{Fjr, Links, Motion};
 use crate::scalar::{Jet, Over, Scalar};
@@ -31,6 +31,8 @@ impl<C: Scalar, const N: usize> Pd<C, N> {
 }
 
 impl<C: Scalar, const N: usize> ControlLaw<C, N> for Pd<C, N> {
+    const READS: Signals = Signals::MOTORS;
+
     #[inline]
     fn torque<T: Over<C>, L: Links<C, N>>(
         &self,

@@ -1,6 +1,6 @@
 //! PD control of the motors with the gravity of where they are.
 
-use super::{ControlLaw, MotorPd};
+use super::{ControlLaw, MotorPd, Signals};
 use crate::linalg::Vector;
 use crate::model::{Fjr, Links, Motion};
 use crate::scalar::{Jet, Over, Scalar};
@@ -32,6 +32,8 @@ pub(super) fn regulate<C: Scalar, T: Over<C>, L: Links<C, N>, const N: usize>(
 }
 
 impl<C: Scalar, const N: usize> ControlLaw<C, N> for PdOnlineGravity<C, N> {
+    const READS: Signals = Signals::MOTORS;
+
     #[inline]
     fn torque<T: Over<C>, L: Links<C, N>>(
         &self,

@@ -1,6 +1,6 @@
 //! The v-CBC law for a fully actuated rigid robot.
 
-use super::{ControlLaw, LinkGains, LinkTorque, Shaping};
+use super::{ControlLaw, LinkGains, LinkTorque, Shaping, Signals};
 use crate::linalg::Vector;
 use crate::model::{Fjr, Links, Motion};
 use crate::scalar::{Jet, Over, Scalar};
@@ -38,6 +38,8 @@ impl<C: Scalar, P: Shaping<C, N>, const N: usize> RigidVcbc<C, P, N> {
 /// Applied to the motors as if the springs were rigid: positions and velocities are those of the motors, whose inertia and
 /// damping add to the links'. The baseline that shows what flexibility costs.
 impl<C: Scalar, P: Shaping<C, N>, const N: usize> ControlLaw<C, N> for RigidVcbc<C, P, N> {
+    const READS: Signals = Signals::MOTORS;
+
     #[inline]
     fn torque<T: Over<C>, L: Links<C, N>>(
         &self,

@@ -1,6 +1,6 @@
 //! A law for rigid robots with damping of the springs.
 
-use super::ControlLaw;
+use super::{ControlLaw, Signals};
 use crate::linalg::Vector;
 use crate::model::{Fjr, Links, Motion};
 use crate::scalar::{Jet, Over, Scalar};
@@ -20,6 +20,8 @@ pub struct SingularPerturbation<C, const N: usize> {
 }
 
 impl<C: Scalar, const N: usize> ControlLaw<C, N> for SingularPerturbation<C, N> {
+    const READS: Signals = Signals { q_l: true, q_m: false, v_l: true, v_m: true };
+
     #[inline]
     fn torque<T: Over<C>, L: Links<C, N>>(
         &self,

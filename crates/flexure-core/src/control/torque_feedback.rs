@@ -1,7 +1,7 @@
 //! Feedback of the spring torques that shapes the motor inertias.
 
 use super::pd_online_gravity::regulate;
-use super::{ControlLaw, MotorPd};
+use super::{ControlLaw, MotorPd, Signals};
 use crate::linalg::Vector;
 use crate::model::{Fjr, Links, Motion};
 use crate::scalar::{Jet, Over, Scalar};
@@ -19,6 +19,8 @@ pub struct TorqueFeedback<C, const N: usize> {
 }
 
 impl<C: Scalar, const N: usize> ControlLaw<C, N> for TorqueFeedback<C, N> {
+    const READS: Signals = Signals { q_l: true, q_m: true, v_l: false, v_m: true };
+
     #[inline]
     fn torque<T: Over<C>, L: Links<C, N>>(
         &self,

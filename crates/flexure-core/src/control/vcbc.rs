@@ -89,12 +89,26 @@ impl<C: Scalar, Pl: Shaping<C, N>, Pm: Shaping<C, N>, const N: usize> Vcbc<C, Pl
         q_ld: &Vector<Jet<T, 5>, N>,
         omega: &Input<T, N>,
     ) -> Command<T, N> {
+        self.command_under(robot, x, q_ld, omega, &Vector::ZERO)
+    }
+
+    /// [`command`](Self::command) of a robot whose links bear the constant torque `load` [N m] besides: accelerations are those under it, and the springs are to
+    /// carry its opposite.
+    #[inline]
+    pub fn command_under<T: Over<C>, L: Links<C, N>>(
+        &self,
+        robot: &Fjr<C, L, N>,
+        x: &Motion<T, N>,
+        q_ld: &Vector<Jet<T, 5>, N>,
+        omega: &Input<T, N>,
+        load: &Vector<T, N>,
+    ) -> Command<T, N> {
         let links = &robot.links;
         let factor = links.factor(&x.q_l);
-        let motion = robot.link_motion(&factor, x);
+        let motion = robot.link_motion_under(&factor, x, load);
         let (q, v) = (motion.map(|x| x.truncate::<3>()), motion.map(|x| x.differentiate::<3>()));
         let link = self.link.torque(&robot.link_damping, &motion, q_ld, |v_r, a_r| {
-            links.reference_torque(&factor, &q, &v, v_r, a_r)
+            links.reference_torque(&factor, &q, &v, v_r, a_r) - load.map(Jet::value)
         });
         self.motor_side(robot, x, &q, link, omega)
     }

@@ -16,33 +16,77 @@ use crate::common::{Numbers, branched, flexible, moving_motion, planar, rate, se
 /// Of the largest term: a few hundred operations, each to 10⁻¹⁶, on what cancels.
 const ROUNDING: f64 = 1e-12;
 
-/// Runs a check ten times on each of three robots.
+/// Ten times on each of three robots.
 macro_rules! everywhere {
-    ($check:ident) => {
-        #[test]
-        fn $check() {
-            let r = &mut Numbers(5);
-            for _ in 0..10 {
-                checks::$check(planar, r);
-                checks::$check(|| branched::<5>(2), r);
-                checks::$check(serial::<7>, r);
-            }
+    ($check:path) => {{
+        let r = &mut Numbers(5);
+        for _ in 0..10 {
+            $check(planar, r);
+            $check(|| branched::<5>(2), r);
+            $check(serial::<7>, r);
         }
-    };
+    }};
 }
 
-everywhere!(motor_position_pd);
-everywhere!(motor_position_pd_capped);
-everywhere!(motor_observer_pd);
-everywhere!(control_by_interconnection);
-everywhere!(ida_pbc);
-everywhere!(link_impedance);
-everywhere!(loria_ortega);
-everywhere!(position_feedback);
-everywhere!(link_position_feedback);
-everywhere!(immersion_invariance);
-everywhere!(disturbance_rejecting);
-everywhere!(sliding_mode);
+#[test]
+fn motor_position_pd() {
+    everywhere!(checks::motor_position_pd);
+}
+
+#[test]
+fn motor_position_pd_capped() {
+    everywhere!(checks::motor_position_pd_capped);
+}
+
+#[test]
+fn motor_observer_pd() {
+    everywhere!(checks::motor_observer_pd);
+}
+
+#[test]
+fn control_by_interconnection() {
+    everywhere!(checks::control_by_interconnection);
+}
+
+#[test]
+fn ida_pbc() {
+    everywhere!(checks::ida_pbc);
+}
+
+#[test]
+fn link_impedance() {
+    everywhere!(checks::link_impedance);
+}
+
+#[test]
+fn loria_ortega() {
+    everywhere!(checks::loria_ortega);
+}
+
+#[test]
+fn position_feedback() {
+    everywhere!(checks::position_feedback);
+}
+
+#[test]
+fn link_position_feedback() {
+    everywhere!(checks::link_position_feedback);
+}
+
+#[test]
+fn immersion_invariance() {
+    everywhere!(checks::immersion_invariance);
+}
+
+#[test]
+fn disturbance_rejecting() {
+    everywhere!(checks::disturbance_rejecting);
+}
+
+#[test]
+fn sliding_mode() {
+    everywhere!(checks::sliding_mode);
+}
 
 /// Σ d/dt of the terms is `rate`, to rounding of the largest.
 fn adds_up(terms: &[Jet<f64, 2>], rate: f64) {
@@ -246,8 +290,7 @@ pub mod checks {
 
     pub fn ida_pbc<L: Links<f64, N>, const N: usize>(links: fn() -> L, r: &mut Numbers) {
         let (robot, goal) = (flexible(links(), r), r.vector(1.0));
-        let law =
-            IdaPbc { inertia: r.between(0.05, 0.3), motor: motor(r), cross: r.between(0.1, 1.0) };
+        let law = IdaPbc { inertia: r.between(0.05, 0.3), motor: motor(r), cross: r.between(0.1, 1.0) };
         let x = r.motion(1.0);
         let course = Course::new(&robot, &x, &law.torque(&robot, &x, &resting(&goal)));
         let along = course.motion();
@@ -270,10 +313,7 @@ pub mod checks {
         robot.stiffness = robot.stiffness.scaled(20.0);
         let goal = r.vector(1.0);
         let stiffness = robot.stiffness.scaled(0.3);
-        let law = LinkImpedance {
-            inertia: r.between(0.05, 0.3),
-            motor: MotorPd { stiffness, ..motor(r) },
-        };
+        let law = LinkImpedance { inertia: r.between(0.05, 0.3), motor: MotorPd { stiffness, ..motor(r) } };
         let x = r.motion(1.0);
         let course = Course::new(&robot, &x, &law.torque(&robot, &x, &resting(&goal)));
         let along = course.motion();
@@ -392,9 +432,8 @@ pub mod checks {
 
     pub fn link_position_feedback<L: Links<f64, N>, const N: usize>(links: fn() -> L, r: &mut Numbers) {
         let (robot, q_ld) = (flexible(links(), r), r.series::<5, N>(1.0));
-        let joints: [[f64; 4]; N] = core::array::from_fn(|i| {
-            observer_gains(20.0, robot.motor_damping[i] / robot.motor_inertia[i])
-        });
+        let joints: [[f64; 4]; N] =
+            core::array::from_fn(|i| observer_gains(20.0, robot.motor_damping[i] / robot.motor_inertia[i]));
         let observer = core::array::from_fn(|k| Vector(joints.map(|joint| joint[k])));
         let law = LinkPositionFeedback { law: immersion(r), observer };
         let closed = Loop::new(&robot, &law, &q_ld, 0.5, r);
@@ -404,9 +443,8 @@ pub mod checks {
         let (dv, dtheta, dw) = (x.v_l - v, x.q_m - theta, x.v_m - w);
         let links = &robot.links;
         let mass = |a: &Vector<f64, N>| links.mass_mul(&x.q_l, a);
-        let coriolis = |v: &Vector<f64, N>, v_r: &Vector<f64, N>| {
-            links.inertial_torque(&x.q_l, v, v_r, &Vector::ZERO)
-        };
+        let coriolis =
+            |v: &Vector<f64, N>, v_r: &Vector<f64, N>| links.inertial_torque(&x.q_l, v, v_r, &Vector::ZERO);
         agree(&(x.v_l - rates[0]), &(dv - l_1), 1.0);
         let accelerations = robot.link_acceleration(x);
         let left = mass(&(accelerations - rates[1]))
@@ -448,13 +486,11 @@ pub mod checks {
         // On and off the manifold: the target's storage.
         let short = |x: Vector<Jet<f64, 3>, N>| x.map(|x| x.truncate::<2>());
         let (e, de, q) = (short(e), short(de), short(q));
-        let terms =
-            [de.dot(&robot.links.mass_mul(&q, &de)).scale(0.5), half(&law.link.stiffness, &e)];
+        let terms = [de.dot(&robot.links.mass_mul(&q, &de)).scale(0.5), half(&law.link.stiffness, &e)];
         let rate = value(&de);
         adds_up(
             &terms,
-            -power(&(robot.link_damping + law.link.damping), &rate)
-                + rate.dot(&robot.stiffness.diag_mul(&z)),
+            -power(&(robot.link_damping + law.link.damping), &rate) + rate.dot(&robot.stiffness.diag_mul(&z)),
         );
     }
 
@@ -470,9 +506,7 @@ pub mod checks {
         let a_l = robot.link_acceleration(&x) + robot.links.factor(&x.q_l).solve(&d_l);
         let a_m = robot.motor_acceleration(&x, &(u_m + d_m));
         let moving = moving_motion(&x, &Motion { q_l: x.v_l, q_m: x.v_m, v_l: a_l, v_m: a_m });
-        let with_rate = |k: usize| {
-            Vector::from_fn(|i| Dual { value: sigma[k][i], gradient: [rates[k][i]] })
-        };
+        let with_rate = |k: usize| Vector::from_fn(|i| Dual { value: sigma[k][i], gradient: [rates[k][i]] });
         let moved = law.residuals(&robot, &moving, &[with_rate(0), with_rate(1)]);
         let [r_l, r_m] = law.residuals(&robot, &x, &sigma);
         let momenta = robot.state(&moving);

@@ -1,6 +1,12 @@
 //! The cited laws and those with memory: golden values, identities, what they read, how memory moves from instant to instant.
 
+mod all;
 #[path = "../suite/common/mod.rs"]
 mod common;
 mod golden;
 mod identities;
+mod limits;
+mod reads;
+mod soft_springs;
+mod step;
+mod unknown_torques;

@@ -1,7 +1,7 @@
 //! The laws that take part, by name.
 
 use crate::files::{Problem, Problems, suggest};
-use crate::laws::{CONTROLLERS, Controller, Phi};
+use crate::laws::{self, About, CONTROLLERS, Controller, Phi};
 use crate::robot::Robot;
 
 /// A law that takes part: a registered controller, v-CBC with one of its shaping functions.
@@ -42,6 +42,11 @@ impl Entrant {
     /// Name as in `flexure list controllers`, with the shaping function of v-CBC: `vcbc:tanh`.
     pub fn name(self) -> String {
         self.phi.map_or_else(|| self.kind.to_owned(), vcbc)
+    }
+
+    /// What the law reads, and what is proved of it.
+    pub fn about(self) -> Option<About> {
+        laws::about(self.kind)
     }
 
     /// The law with its starting gains for `robot`. Of the shaping functions, Λ of tanh is that of φ linear, its slope at

@@ -1,7 +1,9 @@
 //! From scores to positions.
 
+use flexure_core::control::Signals;
 use serde::Serialize;
 
+use crate::compare::entrant::Entrant;
 use crate::compare::leaderboard::TaskScores;
 use crate::compare::score::Score;
 
@@ -59,6 +61,10 @@ pub struct Standing {
     pub median_factor: f64,
     /// Tasks on which it does not follow with every seed, or could not be run.
     pub unfinished: usize,
+    /// What the law reads of the motion: `q_l`, `dq_l`, `q_m`, `dq_m`.
+    pub reads: Vec<&'static str>,
+    /// What is proved of it, in continuous time and for the robot of its model: tracking, regulation, part of the errors, or nothing; none of unknown laws.
+    pub proved: Option<&'static str>,
 }
 
 /// Positions by the median of the error, the smallest first. What overlaps with the first of a group, or is within [`TIE`] of it,
@@ -131,6 +137,7 @@ fn standing(tasks: &[TaskScores], by_seed: &[Vec<f64>], law: usize) -> Standing 
         if factor.is_nan() { f64::INFINITY } else { factor }
     };
     let mean_rank = scores.iter().map(|score| score.rank).sum::<f64>() / tasks.len() as f64;
+    let about = Entrant::named(&scores[0].law).ok().and_then(Entrant::about);
     let alone = || by_seed.iter().map(|ranks| ranks[law]);
     Standing {
         law: scores[0].law.clone(),
@@ -141,7 +148,16 @@ fn standing(tasks: &[TaskScores], by_seed: &[Vec<f64>], law: usize) -> Standing 
         wins: pairs().filter(|(task, score)| task.is_best(score)).count(),
         median_factor: median(pairs().map(factor).collect()),
         unfinished: scores.iter().filter(|score| !score.finished()).count(),
+        reads: about.map(|about| signals(&about.reads)).unwrap_or_default(),
+        proved: about.map(|about| about.claim.in_words()),
     }
+}
+
+/// The signals that are read, as traces name them.
+fn signals(reads: &Signals) -> Vec<&'static str> {
+    let Signals { q_l, q_m, v_l, v_m } = *reads;
+    let named = [(q_l, "q_l"), (v_l, "dq_l"), (q_m, "q_m"), (v_m, "dq_m")];
+    named.into_iter().filter(|(read, _)| *read).map(|(_, name)| name).collect()
 }
 
 /// Of at least one value.

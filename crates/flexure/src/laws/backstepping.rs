@@ -7,7 +7,7 @@ use flexure_core::scalar::Scalar;
 use crate::files::quantity::Quantity;
 use crate::laws::Drive;
 use crate::laws::gain::{Gain, LINK_DAMPING, SHAPING};
-use crate::laws::registry::LawKind;
+use crate::laws::registry::{Claim, LawKind};
 use crate::robot::Robot;
 use crate::units;
 
@@ -17,6 +17,7 @@ pub struct Backstepping;
 impl LawKind for Backstepping {
     const NAME: &'static str = "backstepping";
     const SUMMARY: &'static str = "from links to motors (Brogliato, Ortega, Lozano 1995)";
+    const CLAIM: Claim = Claim::Tracking;
 
     type Gains = [Vec<f64>; 4];
     const GAINS: [Gain; 4] = [

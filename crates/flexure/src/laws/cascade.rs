@@ -5,7 +5,7 @@ use flexure_core::linalg::Vector;
 use flexure_core::scalar::Scalar;
 
 use crate::laws::gain::{Gain, INNER, LINK_DAMPING, SHAPING};
-use crate::laws::registry::LawKind;
+use crate::laws::registry::{Claim, LawKind};
 use crate::robot::Robot;
 
 /// The kind `cascade`: [`control::Cascade`].
@@ -14,14 +14,10 @@ pub struct Cascade;
 impl LawKind for Cascade {
     const NAME: &'static str = "cascade";
     const SUMMARY: &'static str = "spring torques by an inner loop of motor positions";
+    const CLAIM: Claim = Claim::Tracking;
 
     type Gains = [Vec<f64>; 4];
-    const GAINS: [Gain; 4] = [
-        SHAPING,
-        LINK_DAMPING,
-        INNER[0],
-        INNER[1],
-    ];
+    const GAINS: [Gain; 4] = [SHAPING, LINK_DAMPING, INNER[0], INNER[1]];
 
     type Core<C: Scalar, const N: usize> = control::Cascade<C, N>;
 

@@ -7,7 +7,7 @@ use flexure_core::scalar::Scalar;
 use crate::files::quantity::Quantity;
 use crate::laws::Drive;
 use crate::laws::gain::{Gain, SHAPING};
-use crate::laws::registry::LawKind;
+use crate::laws::registry::{Claim, LawKind};
 use crate::robot::Robot;
 use crate::units;
 
@@ -16,15 +16,31 @@ pub struct CompositePh;
 
 impl LawKind for CompositePh {
     const NAME: &'static str = "composite-ph";
-    const SUMMARY: &'static str = "rigid port-Hamiltonian law and a fast one (after Jardón-Kojakhmetov et al. 2016)";
+    const SUMMARY: &'static str =
+        "rigid port-Hamiltonian law and a fast one (after Jardón-Kojakhmetov et al. 2016)";
+    const CLAIM: Claim = Claim::Nothing;
 
     type Gains = [Vec<f64>; 5];
     const GAINS: [Gain; 5] = [
         SHAPING,
-        Gain::new("metric", Quantity::positive("metric Π of link errors", units::STIFFNESS), Drive::motor_stiffness),
-        Gain::new("damping", Quantity::non_negative("injected damping K_d", units::DAMPING), |drive| drive.inertia() * drive.bandwidth()),
-        Gain::new("fast_stiffness", Quantity::non_negative("stiffness K_z beside the springs", units::STIFFNESS), |drive| 0.5 * drive.stiffness),
-        Gain::new("fast_damping", Quantity::non_negative("damping K_f of the springs", units::DAMPING), |drive| (drive.stiffness * drive.motor_inertia).sqrt()),
+        Gain::new(
+            "metric",
+            Quantity::positive("metric Π of link errors", units::STIFFNESS),
+            Drive::motor_stiffness,
+        ),
+        Gain::new("damping", Quantity::non_negative("injected damping K_d", units::DAMPING), |drive| {
+            drive.inertia() * drive.bandwidth()
+        }),
+        Gain::new(
+            "fast_stiffness",
+            Quantity::non_negative("stiffness K_z beside the springs", units::STIFFNESS),
+            |drive| 0.5 * drive.stiffness,
+        ),
+        Gain::new(
+            "fast_damping",
+            Quantity::non_negative("damping K_f of the springs", units::DAMPING),
+            |drive| (drive.stiffness * drive.motor_inertia).sqrt(),
+        ),
     ];
 
     type Core<C: Scalar, const N: usize> = control::CompositePh<C, N>;

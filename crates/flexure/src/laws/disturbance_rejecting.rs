@@ -6,7 +6,7 @@ use flexure_core::scalar::Scalar;
 
 use crate::files::quantity::Quantity;
 use crate::laws::gain::{Gain, INNER, LINK};
-use crate::laws::registry::LawKind;
+use crate::laws::registry::{Claim, LawKind};
 use crate::robot::Robot;
 use crate::units;
 
@@ -16,6 +16,7 @@ pub struct DisturbanceRejecting;
 impl LawKind for DisturbanceRejecting {
     const NAME: &'static str = "disturbance-rejecting";
     const SUMMARY: &'static str = "immersion-invariance with the momentum residuals of both sides inside";
+    const CLAIM: Claim = Claim::Errors;
     const MEMORY: &'static [(&'static str, &'static str)] = &[("sigma_l", "kg m²/s"), ("sigma_m", "kg m²/s")];
 
     type Gains = [Vec<f64>; 5];
@@ -24,7 +25,9 @@ impl LawKind for DisturbanceRejecting {
         LINK[1],
         INNER[0],
         INNER[1],
-        Gain::new("bandwidth", Quantity::positive("bandwidth ω of the residuals", units::RATE), |drive| 2.0 * drive.bandwidth()),
+        Gain::new("bandwidth", Quantity::positive("bandwidth ω of the residuals", units::RATE), |drive| {
+            2.0 * drive.bandwidth()
+        }),
     ];
 
     type Core<C: Scalar, const N: usize> = control::DisturbanceRejecting<C, ImmersionInvariance<C, N>, N>;
@@ -35,7 +38,10 @@ impl LawKind for DisturbanceRejecting {
         vector: impl Fn(&Vec<f64>) -> Vector<C, N>,
     ) -> Self::Core<C, N> {
         let [stiffness, damping, position, velocity, bandwidth] = gains.each_ref().map(vector);
-        let law = ImmersionInvariance { link: MotorPd { stiffness, damping }, inner: InnerLoop { position, velocity } };
+        let law = ImmersionInvariance {
+            link: MotorPd { stiffness, damping },
+            inner: InnerLoop { position, velocity },
+        };
         control::DisturbanceRejecting { law, bandwidth }
     }
 }

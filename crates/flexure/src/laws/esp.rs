@@ -5,7 +5,7 @@ use flexure_core::linalg::Vector;
 use flexure_core::scalar::Scalar;
 
 use crate::laws::gain::{Gain, LINK_DAMPING, MOTOR};
-use crate::laws::registry::LawKind;
+use crate::laws::registry::{Claim, LawKind};
 use crate::robot::Robot;
 
 /// The kind `esp`: [`control::Esp`].
@@ -14,6 +14,7 @@ pub struct Esp;
 impl LawKind for Esp {
     const NAME: &'static str = "esp";
     const SUMMARY: &'static str = "elastic structure preserving damping injection (Keppler et al. 2018)";
+    const CLAIM: Claim = Claim::Tracking;
 
     type Gains = [Vec<f64>; 3];
     const GAINS: [Gain; 3] = [LINK_DAMPING, MOTOR[0], MOTOR[1]];

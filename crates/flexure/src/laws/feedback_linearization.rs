@@ -6,7 +6,7 @@ use flexure_core::scalar::Scalar;
 
 use crate::files::quantity::Quantity;
 use crate::laws::gain::Gain;
-use crate::laws::registry::LawKind;
+use crate::laws::registry::{Claim, LawKind};
 use crate::robot::Robot;
 use crate::units;
 
@@ -16,6 +16,7 @@ pub struct FeedbackLinearization;
 impl LawKind for FeedbackLinearization {
     const NAME: &'static str = "feedback-linearization";
     const SUMMARY: &'static str = "four integrators per joint (Spong 1987)";
+    const CLAIM: Claim = Claim::Tracking;
 
     type Gains = [Vec<f64>; 4];
     const GAINS: [Gain; 4] = [

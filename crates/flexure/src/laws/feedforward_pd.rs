@@ -5,7 +5,7 @@ use flexure_core::linalg::Vector;
 use flexure_core::scalar::Scalar;
 
 use crate::laws::gain::{Gain, MOTOR};
-use crate::laws::registry::LawKind;
+use crate::laws::registry::{Claim, LawKind};
 use crate::robot::Robot;
 
 /// The kind `feedforward-pd`: [`control::FeedforwardPd`].
@@ -14,6 +14,7 @@ pub struct FeedforwardPd;
 impl LawKind for FeedforwardPd {
     const NAME: &'static str = "feedforward-pd";
     const SUMMARY: &'static str = "nominal torque of the reference and PD of the motors (De Luca 2000)";
+    const CLAIM: Claim = Claim::Nothing;
 
     type Gains = [Vec<f64>; 2];
     const GAINS: [Gain; 2] = MOTOR;

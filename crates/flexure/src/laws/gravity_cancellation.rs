@@ -5,7 +5,7 @@ use flexure_core::linalg::Vector;
 use flexure_core::scalar::Scalar;
 
 use crate::laws::gain::{Gain, MOTOR};
-use crate::laws::registry::LawKind;
+use crate::laws::registry::{Claim, LawKind};
 use crate::robot::Robot;
 
 /// The kind `gravity-cancellation`: [`control::GravityCancellation`].
@@ -14,6 +14,7 @@ pub struct GravityCancellation;
 impl LawKind for GravityCancellation {
     const NAME: &'static str = "gravity-cancellation";
     const SUMMARY: &'static str = "regulation after gravity is cancelled (De Luca, Flacco 2010)";
+    const CLAIM: Claim = Claim::Regulation;
 
     type Gains = [Vec<f64>; 2];
     const GAINS: [Gain; 2] = MOTOR;

@@ -7,7 +7,7 @@ use flexure_core::scalar::Scalar;
 use crate::files::quantity::Quantity;
 use crate::laws::Drive;
 use crate::laws::gain::{Gain, MOTOR, SHAPED_INERTIA};
-use crate::laws::registry::LawKind;
+use crate::laws::registry::{Claim, LawKind};
 use crate::robot::Robot;
 use crate::units;
 
@@ -16,14 +16,20 @@ pub struct IdaPbc;
 
 impl LawKind for IdaPbc {
     const NAME: &'static str = "ida-pbc";
-    const SUMMARY: &'static str = "regulation by interconnection and damping assignment (after Zhang et al. 2014)";
+    const SUMMARY: &'static str =
+        "regulation by interconnection and damping assignment (after Zhang et al. 2014)";
+    const CLAIM: Claim = Claim::Regulation;
 
     type Gains = [Vec<f64>; 4];
     const GAINS: [Gain; 4] = [
         SHAPED_INERTIA,
         MOTOR[0],
         MOTOR[1],
-        Gain::new("cross", Quantity::non_negative("damping R of links, fed to the motors", units::DAMPING), Drive::cross_damping),
+        Gain::new(
+            "cross",
+            Quantity::non_negative("damping R of links, fed to the motors", units::DAMPING),
+            Drive::cross_damping,
+        ),
     ];
 
     type Core<C: Scalar, const N: usize> = control::IdaPbc<C, N>;

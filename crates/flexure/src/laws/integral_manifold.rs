@@ -5,7 +5,7 @@ use flexure_core::linalg::Vector;
 use flexure_core::scalar::Scalar;
 
 use crate::laws::gain::{Gain, TWO_TIME_SCALES};
-use crate::laws::registry::LawKind;
+use crate::laws::registry::{Claim, LawKind};
 use crate::robot::Robot;
 
 /// The kind `integral-manifold`: [`control::IntegralManifold`].
@@ -15,6 +15,7 @@ impl LawKind for IntegralManifold {
     const NAME: &'static str = "integral-manifold";
     const SUMMARY: &'static str =
         "rigid computed torque corrected for compliance (Spong, Khorasani, Kokotović 1987)";
+    const CLAIM: Claim = Claim::Nothing;
 
     type Gains = [Vec<f64>; 3];
     const GAINS: [Gain; 3] = TWO_TIME_SCALES;

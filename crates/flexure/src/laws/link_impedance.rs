@@ -6,7 +6,7 @@ use flexure_core::scalar::Scalar;
 
 use crate::files::quantity::Quantity;
 use crate::laws::gain::{Gain, MOTOR, SHAPED_INERTIA};
-use crate::laws::registry::LawKind;
+use crate::laws::registry::{Claim, LawKind};
 use crate::robot::Robot;
 use crate::units;
 
@@ -16,11 +16,19 @@ pub struct LinkImpedance;
 impl LawKind for LinkImpedance {
     const NAME: &'static str = "link-impedance";
     const SUMMARY: &'static str = "impedance of the links (after Ott, Albu-Schäffer, Kugi, Hirzinger 2008)";
+    const CLAIM: Claim = Claim::Regulation;
 
     type Gains = [Vec<f64>; 3];
     const GAINS: [Gain; 3] = [
         SHAPED_INERTIA,
-        Gain::new("stiffness", Quantity::positive("stiffness K_des of the links at rest, below that of the springs", units::STIFFNESS), |drive| 0.5 * drive.stiffness),
+        Gain::new(
+            "stiffness",
+            Quantity::positive(
+                "stiffness K_des of the links at rest, below that of the springs",
+                units::STIFFNESS,
+            ),
+            |drive| 0.5 * drive.stiffness,
+        ),
         MOTOR[1],
     ];
 

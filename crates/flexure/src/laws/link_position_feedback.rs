@@ -6,7 +6,7 @@ use flexure_core::scalar::Scalar;
 
 use crate::files::quantity::Quantity;
 use crate::laws::gain::{Gain, INNER, LINK};
-use crate::laws::registry::LawKind;
+use crate::laws::registry::{Claim, LawKind};
 use crate::robot::Robot;
 use crate::units;
 
@@ -15,8 +15,11 @@ pub struct LinkPositionFeedback;
 
 impl LawKind for LinkPositionFeedback {
     const NAME: &'static str = "link-position-feedback";
-    const SUMMARY: &'static str = "tracking from link encoders alone, with an observer (after Nicosia, Tomei 1995)";
-    const MEMORY: &'static [(&'static str, &'static str)] = &[("q_l", "rad"), ("dq_l", "rad/s"), ("q_m", "rad"), ("dq_m", "rad/s")];
+    const SUMMARY: &'static str =
+        "tracking from link encoders alone, with an observer (after Nicosia, Tomei 1995)";
+    const CLAIM: Claim = Claim::Errors;
+    const MEMORY: &'static [(&'static str, &'static str)] =
+        &[("q_l", "rad"), ("dq_l", "rad/s"), ("q_m", "rad"), ("dq_m", "rad/s")];
 
     type Gains = [Vec<f64>; 5];
     const GAINS: [Gain; 5] = [
@@ -24,7 +27,9 @@ impl LawKind for LinkPositionFeedback {
         LINK[1],
         INNER[0],
         INNER[1],
-        Gain::new("bandwidth", Quantity::positive("bandwidth ℓ of the observer", units::RATE), |drive| 6.0 * drive.bandwidth()),
+        Gain::new("bandwidth", Quantity::positive("bandwidth ℓ of the observer", units::RATE), |drive| {
+            6.0 * drive.bandwidth()
+        }),
     ];
 
     type Core<C: Scalar, const N: usize> = control::LinkPositionFeedback<C, ImmersionInvariance<C, N>, N>;
@@ -41,7 +46,10 @@ impl LawKind for LinkPositionFeedback {
         let joints: Vec<[f64; 4]> = bandwidth.iter().enumerate().map(of_joint).collect();
         let rows: [Vec<f64>; 4] = std::array::from_fn(|k| joints.iter().map(|joint| joint[k]).collect());
         let [stiffness, damping, position, velocity, _] = gains.each_ref().map(&vector);
-        let law = ImmersionInvariance { link: MotorPd { stiffness, damping }, inner: InnerLoop { position, velocity } };
+        let law = ImmersionInvariance {
+            link: MotorPd { stiffness, damping },
+            inner: InnerLoop { position, velocity },
+        };
         control::LinkPositionFeedback { law, observer: rows.each_ref().map(&vector) }
     }
 }

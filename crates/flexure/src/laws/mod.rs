@@ -47,8 +47,8 @@ use flexure_core::model::{Fjr, Links, Motion};
 use flexure_core::scalar::{Jet, Over, Scalar};
 
 use crate::files::Entry;
-use gain::{GainSet, ReadGains};
 use crate::robot::Robot;
+use gain::{GainSet, ReadGains};
 use std::marker::PhantomData;
 
 use registry::{LawKind, Maker, all, constants, first, laws, reads};
@@ -56,7 +56,7 @@ use registry::{LawKind, Maker, all, constants, first, laws, reads};
 pub use drive::Drive;
 pub use gain::Gain;
 pub use rates::BlockRates;
-pub use registry::{LawMemory, PARTS};
+pub use registry::{About, Claim, LawMemory, PARTS};
 pub use shaping::{AnyShaping, Extra, Phi, SHAPING};
 pub use side::SideGains;
 pub(crate) use starting::drives;
@@ -95,6 +95,11 @@ laws! {
         disturbance_rejecting::DisturbanceRejecting,
         sea_cascade::SeaCascade,
         pid::Pid;
+}
+
+/// What is known of the kind of law `kind`; none for names that are not registered.
+pub fn about(kind: &str) -> Option<About> {
+    ABOUT.iter().find(|(name, _)| *name == kind).map(|(_, about)| *about)
 }
 
 /// The memory of `law` in a loop that starts with the robot at `x`: [`AnyLaw::start`], compiled once per robot.

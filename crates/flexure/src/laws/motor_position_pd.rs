@@ -6,7 +6,7 @@ use flexure_core::scalar::Scalar;
 
 use crate::files::quantity::Quantity;
 use crate::laws::gain::{Gain, MOTOR};
-use crate::laws::registry::LawKind;
+use crate::laws::registry::{Claim, LawKind};
 use crate::robot::Robot;
 use crate::units;
 
@@ -16,13 +16,16 @@ pub struct MotorPositionPd;
 impl LawKind for MotorPositionPd {
     const NAME: &'static str = "motor-position-pd";
     const SUMMARY: &'static str = "regulation from motor encoders alone (Kelly, Ortega, Ailon, Loría 1994)";
+    const CLAIM: Claim = Claim::Regulation;
     const MEMORY: &'static [(&'static str, &'static str)] = &[("z", "rad")];
 
     type Gains = [Vec<f64>; 3];
     const GAINS: [Gain; 3] = [
         MOTOR[0],
         MOTOR[1],
-        Gain::new("cutoff", Quantity::positive("cutoff a of differentiation", units::RATE), |drive| 10.0 * drive.bandwidth()),
+        Gain::new("cutoff", Quantity::positive("cutoff a of differentiation", units::RATE), |drive| {
+            10.0 * drive.bandwidth()
+        }),
     ];
 
     type Core<C: Scalar, const N: usize> = control::MotorPositionPd<C, N>;

@@ -6,7 +6,7 @@ use flexure_core::scalar::Scalar;
 
 use crate::files::quantity::Quantity;
 use crate::laws::gain::{Gain, MOTOR};
-use crate::laws::registry::LawKind;
+use crate::laws::registry::{Claim, LawKind};
 use crate::robot::Robot;
 use crate::units;
 
@@ -16,15 +16,26 @@ pub struct MotorPositionPdCapped;
 impl LawKind for MotorPositionPdCapped {
     const NAME: &'static str = "motor-position-pd-capped";
     const SUMMARY: &'static str = "the same with feedback that saturates smoothly";
+    const CLAIM: Claim = Claim::Regulation;
     const MEMORY: &'static [(&'static str, &'static str)] = &[("z", "rad")];
 
     type Gains = [Vec<f64>; 5];
     const GAINS: [Gain; 5] = [
         MOTOR[0],
         MOTOR[1],
-        Gain::new("cutoff", Quantity::positive("cutoff a of differentiation", units::RATE), |drive| 10.0 * drive.bandwidth()),
-        Gain::new("stiffness_cap", Quantity::positive("most torque T_P against position errors", units::TORQUE), |drive| 0.25 * drive.motor_stiffness()),
-        Gain::new("damping_cap", Quantity::positive("most torque T_D against their derivative", units::TORQUE), |drive| 0.125 * drive.motor_stiffness()),
+        Gain::new("cutoff", Quantity::positive("cutoff a of differentiation", units::RATE), |drive| {
+            10.0 * drive.bandwidth()
+        }),
+        Gain::new(
+            "stiffness_cap",
+            Quantity::positive("most torque T_P against position errors", units::TORQUE),
+            |drive| 0.25 * drive.motor_stiffness(),
+        ),
+        Gain::new(
+            "damping_cap",
+            Quantity::positive("most torque T_D against their derivative", units::TORQUE),
+            |drive| 0.125 * drive.motor_stiffness(),
+        ),
     ];
 
     type Core<C: Scalar, const N: usize> = control::MotorPositionPdCapped<C, N>;

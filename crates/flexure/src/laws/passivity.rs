@@ -6,7 +6,7 @@ use flexure_core::scalar::Scalar;
 
 use crate::files::quantity::Quantity;
 use crate::laws::gain::{Gain, LINK_DAMPING, SHAPING};
-use crate::laws::registry::LawKind;
+use crate::laws::registry::{Claim, LawKind};
 use crate::robot::Robot;
 use crate::units;
 
@@ -16,6 +16,7 @@ pub struct Passivity;
 impl LawKind for Passivity {
     const NAME: &'static str = "passivity";
     const SUMMARY: &'static str = "passivity-based tracking (Brogliato, Ortega, Lozano 1995)";
+    const CLAIM: Claim = Claim::Tracking;
 
     type Gains = [Vec<f64>; 3];
     const GAINS: [Gain; 3] = [

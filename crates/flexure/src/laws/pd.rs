@@ -5,7 +5,7 @@ use flexure_core::linalg::Vector;
 use flexure_core::scalar::Scalar;
 
 use crate::laws::gain::{Gain, MOTOR};
-use crate::laws::registry::LawKind;
+use crate::laws::registry::{Claim, LawKind};
 use crate::robot::Robot;
 
 /// The kind `pd`: [`control::Pd`].
@@ -14,6 +14,7 @@ pub struct Pd;
 impl LawKind for Pd {
     const NAME: &'static str = "pd";
     const SUMMARY: &'static str = "PD of the motors with the gravity of the goal (Tomei 1991)";
+    const CLAIM: Claim = Claim::Regulation;
 
     type Gains = [Vec<f64>; 2];
     const GAINS: [Gain; 2] = MOTOR;

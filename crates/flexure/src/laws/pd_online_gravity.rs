@@ -5,7 +5,7 @@ use flexure_core::linalg::Vector;
 use flexure_core::scalar::Scalar;
 
 use crate::laws::gain::{Gain, MOTOR};
-use crate::laws::registry::LawKind;
+use crate::laws::registry::{Claim, LawKind};
 use crate::robot::Robot;
 
 /// The kind `pd-online-gravity`: [`control::PdOnlineGravity`].
@@ -15,6 +15,7 @@ impl LawKind for PdOnlineGravity {
     const NAME: &'static str = "pd-online-gravity";
     const SUMMARY: &'static str =
         "PD of the motors with the gravity of where they are (De Luca, Siciliano, Zollo 2005)";
+    const CLAIM: Claim = Claim::Regulation;
 
     type Gains = [Vec<f64>; 2];
     const GAINS: [Gain; 2] = MOTOR;

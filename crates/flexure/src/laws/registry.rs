@@ -21,6 +21,9 @@ pub trait LawKind {
     /// One line about it.
     const SUMMARY: &'static str;
 
+    /// What is proved of it.
+    const CLAIM: Claim;
+
     /// What a law with memory keeps from one instant to the next: names and units, a number per joint each.
     const MEMORY: &'static [(&'static str, &'static str)] = &[];
 
@@ -39,6 +42,40 @@ pub trait LawKind {
         robot: &Robot,
         vector: impl Fn(&Vec<f64>) -> Vector<C, N>,
     ) -> Self::Core<C, N>;
+}
+
+/// What is proved of a law, in continuous time and for the robot of its model; all else that is said of it is simulated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Claim {
+    /// Errors decay along moving references: an error equation or a storage function that a test takes along the closed loop.
+    Tracking,
+    /// The robot comes to rest at a goal that stays, likewise.
+    Regulation,
+    /// Errors of a part of the loop, exactly; what they make of the rest is small where gains are large.
+    Errors,
+    /// Nothing: stable near the reference at best.
+    Nothing,
+}
+
+impl Claim {
+    /// In a few words.
+    pub fn in_words(self) -> &'static str {
+        match self {
+            Self::Tracking => "tracking",
+            Self::Regulation => "regulation",
+            Self::Errors => "part of the errors",
+            Self::Nothing => "nothing",
+        }
+    }
+}
+
+/// What is known of a kind of law.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct About {
+    /// What it reads of the motion of the robot.
+    pub reads: Signals,
+    /// What is proved of it.
+    pub claim: Claim,
 }
 
 /// How the data of a kind of law come about.
@@ -174,19 +211,17 @@ macro_rules! laws {
             }
         }
 
-        impl Controller {
-            /// What the law reads of the motion of the robot.
-            pub fn reads(&self) -> Signals {
-                match self {
-                    $(Self::$kind(_) => {
-                        <<$file::$kind as LawKind>::Core<f64, 1> as control::ControlLaw<f64, 1>>::READS
-                    })+
-                    $(Self::$dynamic(_) => {
-                        reads(PhantomData::<<$dynamic_file::$dynamic as LawKind>::Core<f64, 1>>)
-                    })+
-                }
-            }
-        }
+        /// What is known of each kind of law, by name.
+        const ABOUT: &[(&str, About)] = &[
+            $((<$file::$kind as LawKind>::NAME, About {
+                reads: <<$file::$kind as LawKind>::Core<f64, 1> as control::ControlLaw<f64, 1>>::READS,
+                claim: <$file::$kind as LawKind>::CLAIM,
+            }),)+
+            $((<$dynamic_file::$dynamic as LawKind>::NAME, About {
+                reads: reads(PhantomData::<<$dynamic_file::$dynamic as LawKind>::Core<f64, 1>>),
+                claim: <$dynamic_file::$dynamic as LawKind>::CLAIM,
+            }),)+
+        ];
 
         /// The law that `controller` describes for `robot`, with every gain through `number`.
         pub fn any_law<C: Scalar, const N: usize>(
@@ -299,7 +334,7 @@ pub(super) fn all<T: Scalar, const N: usize, const K: usize>(z: [Vector<T, N>; K
 }
 
 /// What a law with memory reads.
-pub(super) fn reads<F: DynamicLaw<f64, 1, K>, const K: usize>(_: PhantomData<F>) -> Signals {
+pub(super) const fn reads<F: DynamicLaw<f64, 1, K>, const K: usize>(_: PhantomData<F>) -> Signals {
     F::READS
 }
 

@@ -6,7 +6,7 @@ use flexure_core::scalar::Scalar;
 
 use crate::laws::Drive;
 use crate::laws::gain::{Gain, INJECTED, METRIC, SHAPING};
-use crate::laws::registry::LawKind;
+use crate::laws::registry::{Claim, LawKind};
 use crate::robot::Robot;
 
 /// The kind `rigid-vcbc`: [`control::RigidVcbc`] with φ linear.
@@ -16,6 +16,7 @@ impl LawKind for RigidVcbc {
     const NAME: &'static str = "rigid-vcbc";
     const SUMMARY: &'static str =
         "virtual-contraction law of rigid robots on the motors, as if the springs were rigid";
+    const CLAIM: Claim = Claim::Nothing;
 
     type Gains = [Vec<f64>; 3];
     const GAINS: [Gain; 3] = [

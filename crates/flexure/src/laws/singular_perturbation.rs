@@ -5,7 +5,7 @@ use flexure_core::linalg::Vector;
 use flexure_core::scalar::Scalar;
 
 use crate::laws::gain::{Gain, TWO_TIME_SCALES};
-use crate::laws::registry::LawKind;
+use crate::laws::registry::{Claim, LawKind};
 use crate::robot::Robot;
 
 /// The kind `singular-perturbation`: [`control::SingularPerturbation`].
@@ -14,6 +14,7 @@ pub struct SingularPerturbation;
 impl LawKind for SingularPerturbation {
     const NAME: &'static str = "singular-perturbation";
     const SUMMARY: &'static str = "rigid computed torque with damping of the springs (Spong 1987)";
+    const CLAIM: Claim = Claim::Nothing;
 
     type Gains = [Vec<f64>; 3];
     const GAINS: [Gain; 3] = TWO_TIME_SCALES;

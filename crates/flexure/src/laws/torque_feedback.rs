@@ -5,7 +5,7 @@ use flexure_core::linalg::Vector;
 use flexure_core::scalar::Scalar;
 
 use crate::laws::gain::{Gain, MOTOR, SHAPED_INERTIA};
-use crate::laws::registry::LawKind;
+use crate::laws::registry::{Claim, LawKind};
 use crate::robot::Robot;
 
 /// The kind `torque-feedback`: [`control::TorqueFeedback`].
@@ -14,13 +14,10 @@ pub struct TorqueFeedback;
 impl LawKind for TorqueFeedback {
     const NAME: &'static str = "torque-feedback";
     const SUMMARY: &'static str = "regulation with shaped motor inertia (Albu-Schäffer, Ott, Hirzinger 2007)";
+    const CLAIM: Claim = Claim::Regulation;
 
     type Gains = [Vec<f64>; 3];
-    const GAINS: [Gain; 3] = [
-        SHAPED_INERTIA,
-        MOTOR[0],
-        MOTOR[1],
-    ];
+    const GAINS: [Gain; 3] = [SHAPED_INERTIA, MOTOR[0], MOTOR[1]];
 
     type Core<C: Scalar, const N: usize> = control::TorqueFeedback<C, N>;
 

@@ -7,7 +7,7 @@ use flexure_core::scalar::{Jet, Scalar};
 
 use crate::files::field::{Field, Joints};
 use crate::laws::gain::{GainSet, ReadGains};
-use crate::laws::registry::{LawKind, constants};
+use crate::laws::registry::{Claim, LawKind, constants};
 use crate::laws::side::{self, SideGains};
 use crate::laws::starting::Starting;
 use crate::laws::{AnyShaping, Drive, Extra, Phi};
@@ -19,6 +19,7 @@ pub struct Vcbc;
 impl LawKind for Vcbc {
     const NAME: &'static str = "vcbc";
     const SUMMARY: &'static str = "virtual-contraction law of flexible-joint robots: (φ, Π, K_d) per side";
+    const CLAIM: Claim = Claim::Tracking;
 
     type Gains = VcbcGains;
     const GAINS: () = ();
@@ -46,9 +47,8 @@ fn made<C: Scalar, const N: usize>(
         None => Metric::Constant(base),
     };
     let shaping = |side: &SideGains| {
-        let extra = |extra: &Extra| {
-            vector(side.extra(extra.key).expect("the reader asks for what φ has beside Λ"))
-        };
+        let extra =
+            |extra: &Extra| vector(side.extra(extra.key).expect("the reader asks for what φ has beside Λ"));
         AnyShaping::new(*phi, side.metric.len(), vector(&side.shaping), &extra)
     };
     control::Vcbc {

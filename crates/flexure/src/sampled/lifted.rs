@@ -65,13 +65,7 @@ pub(crate) trait Lifted: Send + Sync {
 
     /// The memory of `law` in a loop that was at `before` a control period before the time `t` in s and is at `now`; none if it has no memory. `settled`: the
     /// loop has followed for long, or it starts.
-    fn memory(
-        &self,
-        law: &Controller,
-        t: f64,
-        moments: [&Nominal; 2],
-        settled: bool,
-    ) -> Option<LawDevice>;
+    fn memory(&self, law: &Controller, t: f64, moments: [&Nominal; 2], settled: bool) -> Option<LawDevice>;
 
     /// The estimator of a loop that was at `before` a period ago and is at `now`; none if the law sees readings.
     fn estimator(&self, before: &Nominal, now: &Nominal) -> Option<Device>;
@@ -232,13 +226,7 @@ where
         Dense::from_columns(&columns)
     }
 
-    fn memory(
-        &self,
-        law: &Controller,
-        t: f64,
-        moments: [&Nominal; 2],
-        settled: bool,
-    ) -> Option<LawDevice> {
+    fn memory(&self, law: &Controller, t: f64, moments: [&Nominal; 2], settled: bool) -> Option<LawDevice> {
         let (n, parts, period) = (self.joints(), law.memory().len(), self.scenario.control_period);
         if parts == 0 {
             return None;
@@ -315,11 +303,8 @@ impl<'a, L: Links<f64, N>, M: Links<Tangent, N>, const N: usize> Remembering<'a,
     ) -> Self {
         let n = parts.joints();
         let (q_ld, x) = (parts.q_ld(t), parts.motion(&moment.motion, usize::MAX));
-        let z = if settled {
-            law.settled(&parts.robot, &x, &q_ld)
-        } else {
-            law.start(&parts.robot, &x, &q_ld)
-        };
+        let z =
+            if settled { law.settled(&parts.robot, &x, &q_ld) } else { law.start(&parts.robot, &x, &q_ld) };
         let memory = z.iter().take(count).flat_map(|part| part.iter().take(n)).map(|x| x.value).collect();
         Self { parts, law, q_ld, motion: &moment.motion, memory, u_m: &moment.u_m }
     }
@@ -362,8 +347,7 @@ impl<'a, L: Links<f64, N>, M: Links<Tangent, N>, const N: usize> Remembering<'a,
         let n = self.parts.joints();
         let columns: Vec<_> = (0..4 * n + self.memory.len())
             .map(|moving| {
-                let (x, z) =
-                    (self.parts.motion(self.motion, moving), self.z(moving.wrapping_sub(4 * n)));
+                let (x, z) = (self.parts.motion(self.motion, moving), self.z(moving.wrapping_sub(4 * n)));
                 let u_m = self.law.torque(&self.parts.robot, &x, &self.q_ld, &z);
                 u_m.iter().take(n).map(|u| u.gradient[0]).collect()
             })

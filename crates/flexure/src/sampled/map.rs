@@ -112,7 +112,8 @@ impl Around {
 
     fn next(&self, before: State, law: &LawSlope, k: u32) -> State {
         let n = self.joints;
-        let State { motion, mut held, estimator, disturbance, mut law_s, reported, mut kept, mut waiting } = before;
+        let State { motion, mut held, estimator, disturbance, mut law_s, reported, mut kept, mut waiting } =
+            before;
         let mut readings = motion.clone();
         for (side, held) in held.iter_mut().enumerate() {
             let Some(held) = held else { continue };

@@ -262,6 +262,18 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base, of_robot: &[Change])
     let timed = reference_field.as_ref().and_then(|field| reference::read(field, &joints, base, end));
     let controller = root.required("controller", "a table with the kind");
     let controller = controller.and_then(|field| controller::read(&field, &joints, robot.as_ref()));
+    if let (Some(controller), Some(Hold::Continuous), Some(field)) = (&controller, hold, root.get("hold"))
+        && !controller.memory().is_empty()
+    {
+        let kind = controller.kind();
+        let message =
+            format!("hold is \"continuous\", but the memory of '{kind}' moves from instant to instant");
+        field.error(
+            "contradiction",
+            message,
+            "remove hold: the torque is then held between control instants",
+        );
+    }
     let plant = plant::read(root, &joints, robot.as_ref());
     let context = Context { joints: &joints, robot: robot.as_ref(), times, base };
     let real = real_loop(root, &context, hold, plant.as_ref());

@@ -61,12 +61,7 @@ pub trait Feedback<L, const N: usize> {
     }
 
     /// The memory that a loop starts with.
-    fn start(
-        &self,
-        _: &Fjr<f64, L, N>,
-        _: &Motion<f64, N>,
-        _: &Vector<Jet<f64, 5>, N>,
-    ) -> LawMemory<f64, N> {
+    fn start(&self, _: &Fjr<f64, L, N>, _: &Motion<f64, N>, _: &Vector<Jet<f64, 5>, N>) -> LawMemory<f64, N> {
         [Vector::ZERO; PARTS]
     }
 

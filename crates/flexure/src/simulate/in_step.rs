@@ -156,8 +156,9 @@ fn robots<L: SideBySide<N>, const N: usize>(
 
 /// The laws of scenarios whose laws are of one kind; none if not all of them have the same gains.
 fn laws<const N: usize>(scenarios: &Each<&Scenario>) -> Option<AnyLaw<Several, N>> {
-    let numbers =
-        scenarios.map(|scenario| lanes::numbers(|number| any_law::<f64, N>(&scenario.controller, &scenario.robot, number)));
+    let numbers = scenarios.map(|scenario| {
+        lanes::numbers(|number| any_law::<f64, N>(&scenario.controller, &scenario.robot, number))
+    });
     lanes::together(&numbers, |number| any_law(&scenarios[0].controller, &scenarios[0].robot, number))
 }
 

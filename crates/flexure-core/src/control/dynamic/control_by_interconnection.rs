@@ -14,7 +14,8 @@ use crate::scalar::{Jet, Over, Scalar};
 /// H_c = ½ (x_1 − θ_0)ᵀ K_P (x_1 − θ_0) − x_1ᵀ g(q_0) + ½ x_2ᵀ K_2 x_2, ẋ_1 = θ̇, ẋ_2 = θ̇ − R⁻¹ K_2 x_2, u = −∂H_c/∂x_1 − ∂H_c/∂x_2.
 ///
 /// The Casimir x_1 − θ never changes: what it is at the start shifts where the loop rests. Started at 0, as here, the law is
-/// [`MotorPositionPd`](super::MotorPositionPd) with K_D a = K_2, a = K_2/R. Regulation, under Tomei's condition. Memory: x_1, x_2.
+/// [`MotorPositionPd`](super::MotorPositionPd) with K_D a = K_2, a = K_2/R. Regulation, under Tomei's condition. The step of the
+/// memory takes increments of motor positions instead of integrals of velocities. Memory: x_1, x_2.
 #[derive(Clone, Copy, Debug)]
 pub struct ControlByInterconnection<C, const N: usize> {
     /// The diagonal of K_P [N m/rad].
@@ -37,6 +38,17 @@ impl<C: Scalar, const N: usize> DynamicLaw<C, N, 2> for ControlByInterconnection
         _: &Vector<Jet<T, 5>, N>,
     ) -> [Vector<T, N>; 2] {
         [x.q_m, Vector::ZERO]
+    }
+
+    /// x_1 by increments of motor positions instead of integrals of velocities, which would drift.
+    #[inline]
+    fn corrected<T: Over<C>>(
+        &self,
+        (before, [x_1, _]): (&Motion<T, N>, &[Vector<T, N>; 2]),
+        now: &Motion<T, N>,
+        [_, x_2]: [Vector<T, N>; 2],
+    ) -> [Vector<T, N>; 2] {
+        [*x_1 + (now.q_m - before.q_m), x_2]
     }
 
     #[inline]

@@ -111,6 +111,18 @@ pub trait DynamicLaw<C: Scalar, const N: usize, const K: usize> {
         z: &[Vector<T, N>; K],
     ) -> Vector<T, N>;
 
+    /// The memory `z` of an instant `now` after what the step from the one `before` made of it: a law may know parts of its memory better than its
+    /// rate does.
+    #[inline]
+    fn corrected<T: Over<C>>(
+        &self,
+        _before: (&Motion<T, N>, &[Vector<T, N>; K]),
+        _now: &Motion<T, N>,
+        z: [Vector<T, N>; K],
+    ) -> [Vector<T, N>; K] {
+        z
+    }
+
     /// ż, while the motors get `applied`.
     fn rate<T: Over<C>, L: Links<C, N>>(
         &self,

@@ -39,18 +39,19 @@ where
         core::array::from_fn(|k| z[k] - next[k] + (first[k] + last[k]).scaled(half))
     };
     let slope = Slope { law, robot, now, z: &next, applied };
-    if F::JOINTWISE {
+    let next = if F::JOINTWISE {
         let matrix = slope.implicit_of_joints(half);
-        corrected(next, |next| eliminate_each(matrix, missing(next)))
+        solved(next, |next| eliminate_each(matrix, missing(next)))
     } else {
         let matrix = slope.implicit(half);
-        corrected(next, |next| eliminate(matrix, missing(next)))
-    }
+        solved(next, |next| eliminate(matrix, missing(next)))
+    };
+    law.corrected((&before.x, z), &now.x, next)
 }
 
 /// `z` after [`CORRECTIONS`].
 #[inline]
-fn corrected<T: Scalar, const N: usize, const K: usize>(
+fn solved<T: Scalar, const N: usize, const K: usize>(
     mut z: [Vector<T, N>; K],
     correction: impl Fn(&[Vector<T, N>; K]) -> [Vector<T, N>; K],
 ) -> [Vector<T, N>; K] {

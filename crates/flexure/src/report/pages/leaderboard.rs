@@ -8,7 +8,7 @@ use crate::compare::{Leaderboard, Loss, Score, Standing, TaskScores, is_vcbc};
 use crate::files::number::{NONE, engineering, short, significant};
 use crate::report::figures::cost::cost_figure;
 use crate::report::figures::score_map::score_map;
-use crate::report::tables::leaderboard::{place, range, ranks_with_one, spectral_radius};
+use crate::report::tables::leaderboard::{measured, place, range, ranks_with_one, spectral_radius};
 
 const TITLE: &str = "Control laws of flexible-joint robots on the same bench";
 
@@ -80,16 +80,19 @@ fn ranking(board: &Leaderboard) -> Markup {
             thead { tr {
                 th { "law" } th { "place" } th { "mean rank" } th { "mean rank" br; span.unit { "with one seed" } } th { "best on" br; span.unit { "tasks" } }
                 th { "median factor" br; span.unit { "to the best" } } th { "does not follow on" br; span.unit { "tasks" } }
-                th { "spectral radius" br; span.unit { "of the sampled loop" } }
+                th { "spectral radius" br; span.unit { "of the sampled loop" } } th { "measures" } th { "proved" }
             } }
             tbody { @for standing in &board.ranking { tr {
                 th scope="row" { (name(&standing.law)) }
                 td { (place(board, standing)) } td { (short(standing.mean_rank, 3)) } td { (ranks_with_one(standing)) } td { (standing.wins) }
                 td { (finite(standing.median_factor)) } td { (standing.unfinished) }
-                td { (spectral_radius(board, &standing.law)) }
+                td { (spectral_radius(board, &standing.law)) } td { (measured(standing)) } td { (standing.proved.unwrap_or(NONE)) }
             } } }
         } }
         p.note {
+            "Measures: what the law reads of the motion; all is positions and velocities of links and motors (q_l, dq_l, q_m, dq_m). \
+             Proved: what holds of the law in continuous time for the robot of its model, by an error equation or a storage function that the project's tests take along \
+             the closed loop; everything else in this table was simulated, and nothing is proved of these tasks. "
             "Mean rank: over the tasks, 1 for the smallest penalised error, the median over the seeds. Errors that overlap over the \
              seeds with those of the best of a group, or are within 1 % of them, tie and share the mean of their ranks, and so do \
              laws that do not follow, at the end. Laws whose mean ranks with one seed overlap share a place with the first of them. \

@@ -112,6 +112,16 @@ pub(crate) fn spectral_radius(board: &Leaderboard, law: &str) -> String {
     radii.max_by(f64::total_cmp).map_or(NONE.to_owned(), |radius| short(radius, 5))
 }
 
+/// What the law of a standing measures: the whole motion, or what it reads of it.
+pub(crate) fn measured(standing: &Standing) -> String {
+    const WHOLE: usize = 4;
+    match &*standing.reads {
+        [] => NONE.to_owned(),
+        reads if reads.len() == WHOLE => "all".to_owned(),
+        reads => reads.join(" "),
+    }
+}
+
 fn ranking(board: &Leaderboard, width: usize) -> String {
     let titles = [
         "place",
@@ -122,6 +132,8 @@ fn ranking(board: &Leaderboard, width: usize) -> String {
         "median factor\nto the best",
         "does not\nfollow on",
         "spectral\nradius",
+        "measures",
+        "proved",
     ];
     let mut table = headed(titles.into_iter());
     for standing in &board.ranking {
@@ -135,7 +147,8 @@ fn ranking(board: &Leaderboard, width: usize) -> String {
             spectral_radius(board, &standing.law),
         ];
         let first = [right(place(board, standing)), Cell::new(&standing.law)];
-        table.add_row(Row::from(first.into_iter().chain(numbers.map(right)).collect::<Vec<_>>()));
+        let last = [Cell::new(measured(standing)), Cell::new(standing.proved.unwrap_or(NONE))];
+        table.add_row(Row::from(first.into_iter().chain(numbers.map(right)).chain(last).collect::<Vec<_>>()));
     }
     laid_out(&table, 2, width)
 }
