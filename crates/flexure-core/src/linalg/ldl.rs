@@ -50,6 +50,21 @@ impl<S: Scalar, const N: usize> Ldl<S, N> {
         &self.pivots
     }
 
+    /// √D Lᵀ, a root of the matrix: RᵀR = A.
+    #[inline]
+    pub fn root(&self) -> Matrix<S, N, N> {
+        Matrix::from_fn(|i, j| {
+            let root = self.pivots[i].sqrt();
+            if i == j {
+                root
+            } else if i < j {
+                root * self.lower[(j, i)]
+            } else {
+                S::ZERO
+            }
+        })
+    }
+
     /// `A⁻¹ b`, by substitution with L, D and Lᵀ.
     #[inline]
     pub fn solve(&self, b: &Vector<S, N>) -> Vector<S, N> {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 
 use flexure_core::control::{
-    Applied, ControlLaw, DynamicLaw, MotorPd, MotorPositionPd, MotorPositionPdCapped, PositionFeedback,
+    Applied, ControlLaw, DynamicLaw, Lqr, MotorPd, MotorPositionPd, MotorPositionPdCapped, PositionFeedback, QuadraticCost,
 };
 use flexure_core::linalg::{Ldl, Matrix, Vector};
 use flexure_core::model::{Fjr, Links, Motion};
@@ -98,6 +98,14 @@ impl Case {
         MotorPd { stiffness: self.gain(stiffness), damping: self.gain(damping) }
     }
 
+    /// Designed for the robot, at the posture and with the weights of the file.
+    fn lqr(&self) -> Lqr<f64, 2> {
+        let Gain::List(state) = &self.gains["Q"] else { panic!("a list") };
+        let state = std::array::from_fn(|k| Vector([state[2 * k], state[2 * k + 1]]));
+        let cost = QuadraticCost { state, torque: self.gain("R") };
+        Lqr::design(&self.arm(), &self.gain("design_posture"), &cost, f64::INFINITY).expect("a stabilisable arm")
+    }
+
     fn arm(&self) -> Arm {
         let Robot { links, stiffness, motor_inertia, link_damping, motor_damping } = &self.robot;
         let [motor_inertia, stiffness, link_damping, motor_damping] =
@@ -176,5 +184,20 @@ fn position_feedback() {
         link_cutoff: case.gain("link_cutoff"),
         motor: case.motor(["motor_stiffness", "motor_damping"]),
         motor_cutoff: case.gain("motor_cutoff"),
+    });
+}
+
+#[test]
+fn lqr() {
+    fixed("lqr", |case| {
+        let law = case.lqr();
+        let Gain::List(gain) = &case.gains["F"] else { panic!("a list") };
+        // Rows of F for q, θ, v and w.
+        for (k, expected) in gain.iter().enumerate() {
+            let (row, column) = (k / 8, k % 8);
+            let found = law.gain[column / 2][(row, column % 2)];
+            assert!((found - expected).abs() <= TOLERANCE * 100.0, "{k}: {found} against {expected}");
+        }
+        law
     });
 }

@@ -3,3 +3,4 @@
 #[path = "../suite/common/mod.rs"]
 mod common;
 mod golden;
+mod optimal;

@@ -1,0 +1,45 @@
+//! Optimal feedback of the whole state around the reference.
+
+use super::{LinearModel, NoRegulator, QuadraticCost, Regulator, deviation, feedback};
+use crate::control::ControlLaw;
+use crate::linalg::{Matrix, Vector};
+use crate::model::{Fjr, Links, Motion};
+use crate::scalar::{Float, Jet, Over, Scalar};
+
+/// The published law, around the flat reference: u = u_d − F (x − x_d), where x = (q, θ, v, w), x_d and u_d follow from the reference of the links as in
+/// [`FeedforwardPd`](crate::control::FeedforwardPd), and F is optimal for the robot linearised at a posture. Anderson and Moore, *Optimal control:
+/// linear quadratic methods*, 1990.
+///
+/// Stability is local.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lqr<C, const N: usize> {
+    /// F: gains of the errors of q and θ [N m/rad], v and w [N m s/rad].
+    pub gain: [Matrix<C, N, N>; 4],
+}
+
+impl<C: Float, const N: usize> Lqr<C, N> {
+    /// The law for `robot` at rest with links at `posture` in rad: linear quadratic with an `attenuation` of ∞, H∞ with a finite one [1/(N m)]
+    /// ([`Regulator::continuous`]).
+    pub fn design<L: Links<C, N>>(
+        robot: &Fjr<C, L, N>,
+        posture: &Vector<C, N>,
+        cost: &QuadraticCost<C, N>,
+        attenuation: C,
+    ) -> Result<Self, NoRegulator> {
+        let model = LinearModel::at_rest(robot, posture);
+        Ok(Self { gain: Regulator::continuous(&model, cost, attenuation)?.gain })
+    }
+}
+
+impl<C: Scalar, const N: usize> ControlLaw<C, N> for Lqr<C, N> {
+    #[inline]
+    fn torque<T: Over<C>, L: Links<C, N>>(
+        &self,
+        robot: &Fjr<C, L, N>,
+        x: &Motion<T, N>,
+        q_ld: &Vector<Jet<T, 5>, N>,
+    ) -> Vector<T, N> {
+        let (error, u_d) = deviation(robot, x, q_ld);
+        u_d + feedback(&self.gain, &error)
+    }
+}

@@ -1,0 +1,197 @@
+//! Square matrices of blocks.
+
+use core::ops::{Add, Mul, Sub};
+
+use super::Matrix;
+use crate::scalar::{Float, Scalar};
+
+/// A square matrix of `K` × `K` blocks of `N` × `N` numbers: what acts on a state of `K` vectors of `N`. Stored by rows of K N numbers, the `N` rows
+/// of a row of blocks together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BlockMatrix<S, const N: usize, const K: usize>([[[[S; N]; K]; N]; K]);
+
+impl<S: Scalar, const N: usize, const K: usize> BlockMatrix<S, N, K> {
+    /// The zero matrix.
+    pub const ZERO: Self = Self([[[[S::ZERO; N]; K]; N]; K]);
+
+    /// The matrix whose block `(row, column)` is `f(row, column)`.
+    #[inline]
+    pub fn from_blocks(f: impl Fn(usize, usize) -> Matrix<S, N, N>) -> Self {
+        let mut matrix = Self::ZERO;
+        for row in 0..K {
+            for column in 0..K {
+                for (i, entries) in f(row, column).0.into_iter().enumerate() {
+                    matrix.0[row][i][column] = entries;
+                }
+            }
+        }
+        matrix
+    }
+
+    /// Block `(row, column)`.
+    #[inline]
+    pub fn block(&self, row: usize, column: usize) -> Matrix<S, N, N> {
+        Matrix::from_fn(|i, j| self.0[row][i][column][j])
+    }
+
+    /// The identity times `s`.
+    #[inline]
+    pub fn identity(s: S) -> Self {
+        let block = Matrix::identity().scaled(s);
+        Self::from_blocks(|row, column| if row == column { block } else { Matrix::ZERO })
+    }
+
+    /// The transpose.
+    #[inline]
+    pub fn transpose(&self) -> Self {
+        Self::from_blocks(|row, column| self.block(column, row).transpose())
+    }
+
+    /// The symmetric part, ½ (A + Aᵀ).
+    #[inline]
+    pub fn symmetric(&self) -> Self {
+        let half = S::from_ratio(1, 2);
+        (*self + self.transpose()).map(|x| x * half)
+    }
+
+    /// Every entry through `f`.
+    #[inline]
+    pub fn map(&self, f: impl Fn(S) -> S) -> Self {
+        Self(self.0.map(|rows| rows.map(|row| row.map(|entries| entries.map(&f)))))
+    }
+
+    /// Whether a symmetric matrix is positive definite: all pivots of elimination are positive.
+    #[inline]
+    pub fn is_positive_definite(mut self) -> bool
+    where
+        S: Float,
+    {
+        (0..K * N).all(|p| {
+            let (above, below) = self.0.as_flattened_mut().split_at_mut(p + 1);
+            let row = above[p].as_flattened();
+            for other in below {
+                let other = other.as_flattened_mut();
+                subtract(other, other[p] / row[p], row);
+            }
+            row[p] > S::ZERO
+        })
+    }
+
+    /// The rows.
+    #[inline]
+    pub fn rows(&self) -> impl Iterator<Item = &[S]> {
+        self.0.as_flattened().iter().map(|row| row.as_flattened())
+    }
+
+    /// The diagonal.
+    #[inline]
+    pub fn diagonal(&self) -> impl Iterator<Item = S> {
+        self.rows().enumerate().map(|(i, row)| row[i])
+    }
+
+    #[inline]
+    fn zip(mut self, rhs: &Self, f: impl Fn(S, S) -> S) -> Self {
+        let entries = rhs.rows().flatten();
+        for (x, y) in self.0.as_flattened_mut().as_flattened_mut().as_flattened_mut().iter_mut().zip(entries)
+        {
+            *x = f(*x, *y);
+        }
+        self
+    }
+}
+
+impl<S: Float, const N: usize, const K: usize> BlockMatrix<S, N, K> {
+    /// A⁻¹ B for each B of `rhs`, by elimination with partial pivoting. What a singular matrix gives is not finite.
+    pub fn solve<const R: usize>(mut self, mut rhs: [Self; R]) -> [Self; R] {
+        for p in 0..K * N {
+            let mut pivot = p;
+            for i in p + 1..K * N {
+                if self.entry(i, p).abs() > self.entry(pivot, p).abs() {
+                    pivot = i;
+                }
+            }
+            self.0.as_flattened_mut().swap(p, pivot);
+            let (above, below) = self.0.as_flattened_mut().split_at_mut(p + 1);
+            let row = above[p].as_flattened();
+            for other in below {
+                let (_, rest) = other.as_flattened_mut().split_at_mut(p);
+                rest[0] = rest[0] / row[p];
+                let factor = rest[0];
+                subtract(&mut rest[1..], factor, &row[p + 1..]);
+            }
+            for b in &mut rhs {
+                b.0.as_flattened_mut().swap(p, pivot);
+                let (above, below) = b.0.as_flattened_mut().split_at_mut(p + 1);
+                for (i, other) in below.iter_mut().enumerate() {
+                    subtract(other.as_flattened_mut(), self.entry(p + 1 + i, p), above[p].as_flattened());
+                }
+            }
+        }
+        for b in &mut rhs {
+            for p in (0..K * N).rev() {
+                let (above, below) = b.0.as_flattened_mut().split_at_mut(p);
+                let row = below[0].as_flattened_mut();
+                for x in &mut *row {
+                    *x = *x / self.entry(p, p);
+                }
+                for (i, other) in above.iter_mut().enumerate() {
+                    subtract(other.as_flattened_mut(), self.entry(i, p), row);
+                }
+            }
+        }
+        rhs
+    }
+
+    #[inline]
+    fn entry(&self, i: usize, j: usize) -> S {
+        self.0.as_flattened()[i].as_flattened()[j]
+    }
+}
+
+/// `x` less `factor` times `y`.
+#[inline]
+fn subtract<S: Scalar>(x: &mut [S], factor: S, y: &[S]) {
+    for (x, y) in x.iter_mut().zip(y) {
+        *x -= factor * *y;
+    }
+}
+
+impl<S: Scalar, const N: usize, const K: usize> Add for BlockMatrix<S, N, K> {
+    type Output = Self;
+    #[inline]
+    fn add(self, rhs: Self) -> Self {
+        self.zip(&rhs, |x, y| x + y)
+    }
+}
+
+impl<S: Scalar, const N: usize, const K: usize> Sub for BlockMatrix<S, N, K> {
+    type Output = Self;
+    #[inline]
+    fn sub(self, rhs: Self) -> Self {
+        self.zip(&rhs, |x, y| x - y)
+    }
+}
+
+impl<S: Scalar, const N: usize, const K: usize> Mul for BlockMatrix<S, N, K> {
+    type Output = Self;
+    #[inline]
+    fn mul(self, rhs: Self) -> Self {
+        let mut product = Self::ZERO;
+        for (sum, row) in product.0.as_flattened_mut().iter_mut().zip(self.rows()) {
+            for (x, y) in row.iter().zip(rhs.rows()) {
+                subtract(sum.as_flattened_mut(), -*x, y);
+            }
+        }
+        product
+    }
+}
+
+impl<S: Scalar, const N: usize, const K: usize> Mul<[Matrix<S, N, N>; K]> for BlockMatrix<S, N, K> {
+    type Output = [Matrix<S, N, N>; K];
+    #[inline]
+    fn mul(self, x: [Matrix<S, N, N>; K]) -> [Matrix<S, N, N>; K] {
+        core::array::from_fn(|row| {
+            x.iter().enumerate().fold(Matrix::ZERO, |sum, (column, x)| sum + self.block(row, column) * *x)
+        })
+    }
+}
