@@ -2,8 +2,8 @@
 
 use core::ops::{Add, Mul, Sub};
 
-use super::Matrix;
-use crate::scalar::{Float, Scalar};
+use super::{Matrix, Vector};
+use crate::scalar::{Float, Piecewise, Scalar};
 
 /// A square matrix of `K` × `K` blocks of `N` × `N` numbers: what acts on a state of `K` vectors of `N`. Stored by rows of K N numbers, the `N` rows
 /// of a row of blocks together.
@@ -14,9 +14,8 @@ impl<S: Scalar, const N: usize, const K: usize> BlockMatrix<S, N, K> {
     /// The zero matrix.
     pub const ZERO: Self = Self([[[[S::ZERO; N]; K]; N]; K]);
 
-    /// The matrix whose block `(row, column)` is `f(row, column)`.
     #[inline]
-    pub fn from_blocks(f: impl Fn(usize, usize) -> Matrix<S, N, N>) -> Self {
+    fn from_blocks(f: impl Fn(usize, usize) -> Matrix<S, N, N>) -> Self {
         let mut matrix = Self::ZERO;
         for row in 0..K {
             for column in 0..K {
@@ -28,17 +27,43 @@ impl<S: Scalar, const N: usize, const K: usize> BlockMatrix<S, N, K> {
         matrix
     }
 
+    /// The matrix of these columns of blocks.
+    #[inline]
+    pub fn from_columns(columns: &[[Matrix<S, N, N>; K]; K]) -> Self {
+        Self::from_blocks(|row, column| columns[column][row])
+    }
+
+    /// The matrix whose block `(row, column)` is the product of these: of a column of blocks and a row of blocks.
+    #[inline]
+    pub fn outer(column: &[Matrix<S, N, N>; K], row: &[Matrix<S, N, N>; K]) -> Self {
+        Self::from_blocks(|i, j| column[i] * row[j])
+    }
+
+    /// `diag(d)`.
+    #[inline]
+    pub fn diagonal(d: &[Vector<S, N>; K]) -> Self {
+        Self::from_blocks(|row, column| if row == column { Matrix::diagonal(&d[row]) } else { Matrix::ZERO })
+    }
+
+    /// The identity.
+    #[inline]
+    pub fn identity() -> Self {
+        Self::diagonal(&[Vector([S::ONE; N]); K])
+    }
+
+    /// `self · s`.
+    #[inline]
+    pub fn scaled(mut self, s: S) -> Self {
+        for x in self.entries_mut() {
+            *x *= s;
+        }
+        self
+    }
+
     /// Block `(row, column)`.
     #[inline]
     pub fn block(&self, row: usize, column: usize) -> Matrix<S, N, N> {
         Matrix::from_fn(|i, j| self.0[row][i][column][j])
-    }
-
-    /// The identity times `s`.
-    #[inline]
-    pub fn identity(s: S) -> Self {
-        let block = Matrix::identity().scaled(s);
-        Self::from_blocks(|row, column| if row == column { block } else { Matrix::ZERO })
     }
 
     /// The transpose.
@@ -51,13 +76,7 @@ impl<S: Scalar, const N: usize, const K: usize> BlockMatrix<S, N, K> {
     #[inline]
     pub fn symmetric(&self) -> Self {
         let half = S::from_ratio(1, 2);
-        (*self + self.transpose()).map(|x| x * half)
-    }
-
-    /// Every entry through `f`.
-    #[inline]
-    pub fn map(&self, f: impl Fn(S) -> S) -> Self {
-        Self(self.0.map(|rows| rows.map(|row| row.map(|entries| entries.map(&f)))))
+        (*self + self.transpose()).scaled(half)
     }
 
     /// Whether a symmetric matrix is positive definite: all pivots of elimination are positive.
@@ -83,17 +102,30 @@ impl<S: Scalar, const N: usize, const K: usize> BlockMatrix<S, N, K> {
         self.0.as_flattened().iter().map(|row| row.as_flattened())
     }
 
-    /// The diagonal.
+    /// The largest sum of magnitudes in a row: the norm that goes with the largest entry of a vector.
     #[inline]
-    pub fn diagonal(&self) -> impl Iterator<Item = S> {
+    pub fn norm(&self) -> S
+    where
+        S: Piecewise,
+    {
+        let sum = |row: &[S]| row.iter().fold(S::ZERO, |sum, x| sum + x.abs());
+        self.rows().map(sum).fold(S::ZERO, S::max)
+    }
+
+    /// The entries of the diagonal.
+    #[inline]
+    pub fn diagonal_entries(&self) -> impl Iterator<Item = S> {
         self.rows().enumerate().map(|(i, row)| row[i])
     }
 
     #[inline]
+    fn entries_mut(&mut self) -> impl Iterator<Item = &mut S> {
+        self.0.as_flattened_mut().as_flattened_mut().as_flattened_mut().iter_mut()
+    }
+
+    #[inline]
     fn zip(mut self, rhs: &Self, f: impl Fn(S, S) -> S) -> Self {
-        let entries = rhs.rows().flatten();
-        for (x, y) in self.0.as_flattened_mut().as_flattened_mut().as_flattened_mut().iter_mut().zip(entries)
-        {
+        for (x, y) in self.entries_mut().zip(rhs.rows().flatten()) {
             *x = f(*x, *y);
         }
         self

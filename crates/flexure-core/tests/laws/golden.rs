@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::fs;
 
 use flexure_core::control::{
-    Applied, ControlLaw, DynamicLaw, Lqr, MotorPd, MotorPositionPd, MotorPositionPdCapped, PositionFeedback, QuadraticCost,
+    Applied, ControlLaw, DynamicLaw, Lqr, MotorPd, MotorPositionPd, MotorPositionPdCapped, PositionFeedback,
+    QuadraticCost,
 };
 use flexure_core::linalg::{Ldl, Matrix, Vector};
 use flexure_core::model::{Fjr, Links, Motion};
@@ -103,7 +104,8 @@ impl Case {
         let Gain::List(state) = &self.gains["Q"] else { panic!("a list") };
         let state = std::array::from_fn(|k| Vector([state[2 * k], state[2 * k + 1]]));
         let cost = QuadraticCost { state, torque: self.gain("R") };
-        Lqr::design(&self.arm(), &self.gain("design_posture"), &cost, f64::INFINITY).expect("a stabilisable arm")
+        Lqr::design(&self.arm(), &self.gain("design_posture"), &cost, f64::INFINITY)
+            .expect("a stabilisable arm")
     }
 
     fn arm(&self) -> Arm {

@@ -9,8 +9,8 @@ const TERMS: i32 = 16;
 /// Halvings of a period that are enough for any robot: rates up to 2⁶³ periods.
 const HALVINGS: u32 = 64;
 
-/// ẋ = A x + B u + G τ, or with [`held`](Self::held) x⁺ = A x + B u + G τ: deviations of x = (q, θ, v, w) [rad, rad/s] under motor torques u and
-/// torques τ on the links [N m] that stay small.
+/// ẋ = A x + B u + G τ, or with [`held`](Self::held) x⁺ = A x + B u + G τ: small deviations of x = (q, θ, v, w) [rad, rad/s] from rest, under motor
+/// torques u beyond gravity and torques τ on the links [N m].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearModel<S, const N: usize> {
     /// A, in blocks of joints.
@@ -22,46 +22,32 @@ pub struct LinearModel<S, const N: usize> {
 }
 
 impl<S: Float, const N: usize> LinearModel<S, N> {
-    /// The Jacobians of the robot at the motion `x`: exact, by dual numbers.
-    pub fn at<L: Links<S, N>>(robot: &Fjr<S, L, N>, x: &Motion<S, N>) -> Self {
-        let zero = Vector::ZERO;
-        // A column of blocks for each of these.
+    /// The Jacobians of the robot at rest with links at `posture` in rad and springs that carry gravity: exact, by dual numbers.
+    pub fn at_rest<L: Links<S, N>>(robot: &Fjr<S, L, N>, posture: &Vector<S, N>) -> Self {
+        let (zero, motors) = (Vector::ZERO, robot.motors_at_rest(posture));
+        // A column of blocks for each of q, θ, v, w, u and τ.
         let columns: [[Matrix<S, N, N>; 4]; 6] = core::array::from_fn(|column| {
-            let numbers = |part: usize, v: &Vector<S, N>| {
-                Vector::from_fn(|i| {
-                    if part == column { Dual::<S, N>::variable(v[i], i) } else { Dual::constant(v[i]) }
-                })
+            let seeded = |part: usize, x: &Vector<S, N>| {
+                let number = if part == column { Dual::<S, N>::variable } else { |x, _| Dual::constant(x) };
+                Vector::from_fn(|i| number(x[i], i))
             };
-            let x = Motion {
-                q_l: numbers(0, &x.q_l),
-                q_m: numbers(1, &x.q_m),
-                v_l: numbers(2, &x.v_l),
-                v_m: numbers(3, &x.v_m),
-            };
-            let (u, tau) = (numbers(4, &zero), numbers(5, &zero));
+            let (q_l, q_m) = (seeded(0, posture), seeded(1, &motors));
+            let x = Motion { q_l, q_m, v_l: seeded(2, &zero), v_m: seeded(3, &zero) };
+            let (u, tau) = (seeded(4, &zero), seeded(5, &zero));
             let a_l = robot.links.forward_dynamics(&x.q_l, &x.v_l, &(robot.link_torque(&x) + tau));
-            [x.v_l, x.v_m, a_l, robot.motor_acceleration(&x, &u)]
-                .map(|rate| Matrix(rate.map(|x| x.gradient).0))
+            let a_m = robot.motor_acceleration(&x, &u);
+            [x.v_l, x.v_m, a_l, a_m].map(|rate| Matrix(rate.map(|x| x.gradient).0))
         });
-        let [.., input, disturbance] = columns;
-        Self { state: BlockMatrix::from_blocks(|row, column| columns[column][row]), input, disturbance }
-    }
-
-    /// The model of the robot at rest with links at `q` in rad and springs that carry gravity.
-    pub fn at_rest<L: Links<S, N>>(robot: &Fjr<S, L, N>, q: &Vector<S, N>) -> Self {
-        Self::at(robot, &Motion { q_m: robot.motors_at_rest(q), ..Motion::at_rest(*q) })
+        let [q_l, q_m, v_l, v_m, input, disturbance] = columns;
+        Self { state: BlockMatrix::from_columns(&[q_l, q_m, v_l, v_m]), input, disturbance }
     }
 
     /// The model over a `period` in s with torques that are held: x⁺ = e^{AT} x + ∫₀ᵀ e^{As} ds (B u + G τ).
     ///
     /// The integral Φ is a series over a step of T/2ᵏ, where it converges at once, and is doubled, Φ(2h) = (1 + e^{Ah}) Φ(h), e^{Ah} = 1 + A Φ(h).
     pub fn held(&self, period: S) -> Self {
-        let (half, one) = (S::from_ratio(1, 2), BlockMatrix::identity(S::ONE));
-        let size = self
-            .state
-            .rows()
-            .map(|row| row.iter().fold(S::ZERO, |sum, x| sum + x.abs()))
-            .fold(S::ZERO, S::max);
+        let (half, one) = (S::from_ratio(1, 2), BlockMatrix::identity());
+        let size = self.state.norm();
         let (mut step, mut halvings) = (period, 0);
         while halvings < HALVINGS && size * step > half {
             (step, halvings) = (step * half, halvings + 1);
@@ -70,9 +56,9 @@ impl<S: Float, const N: usize> LinearModel<S, N> {
         let mut integral = one;
         for k in (2..=TERMS).rev() {
             let by = step / S::from_ratio(k, 1);
-            integral = one + (self.state * integral).map(|x| x * by);
+            integral = one + (self.state * integral).scaled(by);
         }
-        integral = integral.map(|x| x * step);
+        integral = integral.scaled(step);
         let mut transition = one + self.state * integral;
         for _ in 0..halvings {
             integral = integral + transition * integral;

@@ -1,71 +1,95 @@
 //! Optimal feedback that knows the torque limits.
 
-use super::{LinearModel, NoRegulator, QuadraticCost, Regulator, deviation, feedback};
+use super::{
+    LinearModel, NoRegulator, QuadraticCost, Regulator, deviation, feedback, regulator::torque_cost,
+};
 use crate::control::ControlLaw;
-use crate::linalg::{Matrix, Vector};
+use crate::linalg::{BlockMatrix, Matrix, Vector};
 use crate::model::{Fjr, Links, Motion};
 use crate::scalar::{Float, Jet, Over, Scalar};
 
-/// Sweeps over the torques of the horizon.
+/// Sweeps over the torques of the plan: a number that does not depend on the state, so that neither does the time a torque takes.
 const SWEEPS: usize = 30;
 
-/// A reconstruction of the idea ...
+/// A reconstruction of constrained linear quadratic regulation around the flat reference: the first of `H` torques that cost least within ±`limit`,
+/// for the errors x − x_d of [`Lqr`](super::Lqr) and the robot linearised at a posture, whose torques are held for a step each; after the plan come no
+/// limits, at the cost to go P of the discrete regulator. Scokaert and Rawlings, *Constrained linear quadratic regulation*, IEEE Trans. Automatic
+/// Control 43, 1998.
+///
+/// The model is that of the posture throughout, for x⁺ = A x + B u, P and F belong together then: u_d − F (x − x_d) of the discrete regulator, on any
+/// reference, as long as the plan meets no limit. u_d is that of now for the whole plan: the reference is known to order 4, its torque to order 0.
+///
+/// The cost of torques u_k is that of the regulator and Σ |r_k|², where r_k = √(R + Bᵀ P B) (u_k − u_d + F e_k) is how far they leave it. So they
+/// are the least squares solution in a box, found by coordinate descent: each torque in turn takes its best value within the limits, 30 times round. It
+/// starts with what is best without limits.
+///
+/// The step may be longer than the control period: torques are planned anew in every period anyway, and limits matter as far as `H` steps reach. With
+/// 20 steps of 10 ms instead of 1 ms the cost of a swing-in of the two-link arm is 88 instead of 109, with `Lqr` and saturation 183
+/// (`optimal::limits_that_are_known_cost_less`).
+///
+/// Where a torque enters its limit the law has a kink. Its derivative there is not a number, if a number falls on it exactly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mpc<C, const N: usize, const H: usize> {
-    /// Gains of the plan without limits: F (A − B F)ᵏ.
+    /// Gains of the torques of step k without limits, F (A − B F)ᵏ.
     plan: [[Matrix<C, N, N>; 4]; H],
-    /// Transposed.
-    response: [Matrix<C, N, N>; H],
-    /// Curvature of the cost in each torque of the horizon.
+    /// What a torque does to r after k steps, √(R + Bᵀ P B) (1, F B, F A B, …), a row for each motor.
+    leaving: [Matrix<C, N, N>; H],
+    /// What Σ |r|² grows with the square of a torque of step k.
     curvature: [Vector<C, N>; H],
-    torque_limit: Vector<C, N>,
+    /// The most torque of each motor [N m].
+    limit: Vector<C, N>,
 }
 
 impl<C: Float, const N: usize, const H: usize> Mpc<C, N, H> {
-    /// The law
+    /// The law for a robot linearised at rest with links at `posture` in rad, with torques up to `limit` [N m], positive, and steps of `step` in s.
+    ///
+    /// # Errors
+    /// Without a stabilising solution of the Riccati equation.
     pub fn design<L: Links<C, N>>(
         robot: &Fjr<C, L, N>,
         posture: &Vector<C, N>,
         cost: &QuadraticCost<C, N>,
-        period: C,
-        torque_limit: Vector<C, N>,
+        step: C,
+        limit: &Vector<C, N>,
     ) -> Result<Self, NoRegulator> {
-        let model = LinearModel::at_rest(robot, posture).held(period);
-        let Regulator { gain, torque_cost, .. } = Regulator::discrete(&model, cost, period)?;
-        let root = torque_cost.ldl().root();
-        let mut row = gain;
+        let (model, cost) = (LinearModel::at_rest(robot, posture).held(step), cost.over(step));
+        let Regulator { gain: F, cost_to_go: P } = Regulator::discrete(&model, &cost)?;
+        let LinearModel { state: A, input: B, .. } = model;
+        let root = torque_cost(&model, &cost, &P).ldl().root();
+        let closed = A - BlockMatrix::outer(&B, &F);
+        let (mut ahead, mut moved) = (F.map(|block| block.transpose()), B);
         let plan = core::array::from_fn(|_| {
-            let now = row;
-            // F (A − B F)ᵏ⁺¹ = (F (A − B F)ᵏ) A − ((F (A − B F)ᵏ) B) F.
-            let kick = product(&row, &model.input);
-            let next = model.state.transpose() * row.map(|x| x.transpose());
-            row = core::array::from_fn(|c| next[c].transpose() - kick * gain[c]);
-            now
+            let gain = ahead.map(|block| block.transpose());
+            ahead = closed.transpose() * ahead;
+            gain
         });
-        let mut moved = model.input;
-        let response: [Matrix<C, N, N>; H] = core::array::from_fn(|k| {
-            if k == 0 {
-                return root.transpose();
+        let leaving = core::array::from_fn(|k| {
+            let mut felt = Matrix::identity();
+            if k > 0 {
+                felt = F.iter().zip(moved).fold(Matrix::ZERO, |sum, (f, x)| sum + *f * x);
+                moved = A * moved;
             }
-            let now = (root * product(&gain, &moved)).transpose();
-            moved = model.state * moved;
-            now
+            (root * felt).transpose()
         });
         let curvature = core::array::from_fn(|k| {
-            Vector::from_fn(|i| {
-                response.iter().take(H - k).map(|m| m.row(i)).fold(C::ZERO, |sum, r| sum + r.dot(&r))
-            })
+            let within = || leaving.iter().take(H - k);
+            Vector::from_fn(|i| within().fold(C::ZERO, |sum, block| sum + block.row(i).dot(&block.row(i))))
         });
-        Ok(Self { plan, response, curvature, torque_limit })
+        Ok(Self { plan, leaving, curvature, limit: *limit })
     }
 }
 
-/// A row of blocks times a column of blocks.
-fn product<C: Float, const N: usize>(
-    row: &[Matrix<C, N, N>; 4],
-    column: &[Matrix<C, N, N>; 4],
-) -> Matrix<C, N, N> {
-    row.iter().zip(column).fold(Matrix::ZERO, |sum, (x, y)| sum + *x * *y)
+impl<C: Copy, const N: usize, const H: usize> Mpc<C, N, H> {
+    /// The law with constants of another type, each through `f`.
+    #[inline]
+    pub fn map<D: Copy>(&self, f: impl Fn(C) -> D) -> Mpc<D, N, H> {
+        Mpc {
+            plan: self.plan.map(|gain| gain.map(|block| block.map(&f))),
+            leaving: self.leaving.map(|block| block.map(&f)),
+            curvature: self.curvature.map(|row| row.map(&f)),
+            limit: self.limit.map(&f),
+        }
+    }
 }
 
 impl<C: Scalar, const N: usize, const H: usize> ControlLaw<C, N> for Mpc<C, N, H> {
@@ -77,34 +101,33 @@ impl<C: Scalar, const N: usize, const H: usize> ControlLaw<C, N> for Mpc<C, N, H
         q_ld: &Vector<Jet<T, 5>, N>,
     ) -> Vector<T, N> {
         let (error, u_d) = deviation(robot, x, q_ld);
-        let mut torques = self.plan.each_ref().map(|gain| u_d + feedback(gain, &error));
-        let mut residual = [Vector::<T, N>::ZERO; H];
-        let limit = &self.torque_limit;
+        let mut plan = self.plan.each_ref().map(|gain| u_d + feedback(gain, &error));
+        let mut left = [Vector::<T, N>::ZERO; H];
         for _ in 0..SWEEPS {
-            for (k, (torque, curvature)) in torques.iter_mut().zip(&self.curvature).enumerate() {
+            for (k, (torque, curvature)) in plan.iter_mut().zip(&self.curvature).enumerate() {
                 for i in 0..N {
                     let mut slope = T::ZERO;
-                    for (residual, response) in residual.iter().skip(k).zip(&self.response) {
-                        slope += response.row(i).weigh(residual);
+                    for (left, leaving) in left.iter().skip(k).zip(&self.leaving) {
+                        slope += leaving.row(i).weigh(left);
                     }
-                    let next = limited(torque[i] - slope.scale(curvature[i].recip()), limit[i]);
-                    let change = next - torque[i];
-                    torque[i] = next;
-                    for (residual, response) in residual.iter_mut().skip(k).zip(&self.response) {
-                        *residual += response.row(i).map(|x| change.scale(x));
+                    let best = limited(torque[i] - slope.scale(curvature[i].recip()), self.limit[i]);
+                    let change = best - torque[i];
+                    for (left, leaving) in left.iter_mut().skip(k).zip(&self.leaving) {
+                        *left += leaving.row(i).map(|x| change.scale(x));
                     }
+                    torque[i] = best;
                 }
             }
         }
-        let [first, ..] = torques.as_slice() else { return u_d };
-        *first
+        plan.first().copied().unwrap_or(u_d)
     }
 }
 
-/// x, or the `limit` with its sign: x/√max(1, (x/limit)²) with max(1, y) = ½ (1 + y + √(1 − y)²).
+/// The number nearest to `x` in ±`limit`, to two units in the last place: x/√max(1, (x/limit)²) with max(1, y) = ½ (1 + y + √(1 − y)²), which every
+/// number has.
 #[inline]
 fn limited<C: Scalar, T: Over<C>>(x: T, limit: C) -> T {
     let y = x.scale(limit.recip()).square();
-    let larger = (T::ONE + y + (T::ONE - y).square().sqrt()) * T::from_ratio(1, 2);
+    let larger = (T::ONE + y + (T::ONE - y).square().sqrt()).scale(C::from_ratio(1, 2));
     x / larger.sqrt()
 }
