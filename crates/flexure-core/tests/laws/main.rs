@@ -3,4 +3,5 @@
 #[path = "../suite/common/mod.rs"]
 mod common;
 mod golden;
+mod mpc;
 mod optimal;
