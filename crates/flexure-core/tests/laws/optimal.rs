@@ -22,7 +22,7 @@ pub fn parts<const N: usize>(x: &Motion<f64, N>) -> [Vector<f64, N>; 4] {
     [x.q_l, x.q_m, x.v_l, x.v_m]
 }
 
-pub fn motion<const N: usize>([q_l, q_m, v_l, v_m]: [Vector<f64, N>; 4]) -> Motion<f64, N> {
+pub fn motion<T, const N: usize>([q_l, q_m, v_l, v_m]: [Vector<T, N>; 4]) -> Motion<T, N> {
     Motion { q_l, q_m, v_l, v_m }
 }
 
