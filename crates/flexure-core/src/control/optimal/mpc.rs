@@ -34,8 +34,8 @@ pub struct Mpc<C, const N: usize, const H: usize> {
     plan: [[Matrix<C, N, N>; 4]; H],
     /// What a torque does to r after k steps, √(R + Bᵀ P B) (1, F B, F A B, …), a row for each motor.
     leaving: [Matrix<C, N, N>; H],
-    /// What Σ |r|² grows with the square of a torque of step k.
-    curvature: [Vector<C, N>; H],
+    /// How far a torque of step k goes per slope, the reciprocal of what Σ |r|² grows by with its square.
+    reach: [Vector<C, N>; H],
     /// The most torque of each motor [N m].
     limit: Vector<C, N>,
 }
@@ -71,11 +71,12 @@ impl<C: Float, const N: usize, const H: usize> Mpc<C, N, H> {
             }
             (root * felt).transpose()
         });
-        let curvature = core::array::from_fn(|k| {
+        let reach = core::array::from_fn(|k| {
             let within = || leaving.iter().take(H - k);
-            Vector::from_fn(|i| within().fold(C::ZERO, |sum, block| sum + block.row(i).dot(&block.row(i))))
+            let curvature = |i| within().fold(C::ZERO, |sum, block| sum + block.row(i).dot(&block.row(i)));
+            Vector::from_fn(|i| curvature(i).recip())
         });
-        Ok(Self { plan, leaving, curvature, limit: *limit })
+        Ok(Self { plan, leaving, reach, limit: *limit })
     }
 }
 
@@ -86,7 +87,7 @@ impl<C: Copy, const N: usize, const H: usize> Mpc<C, N, H> {
         Mpc {
             plan: self.plan.map(|gain| gain.map(|block| block.map(&f))),
             leaving: self.leaving.map(|block| block.map(&f)),
-            curvature: self.curvature.map(|row| row.map(&f)),
+            reach: self.reach.map(|row| row.map(&f)),
             limit: self.limit.map(&f),
         }
     }
@@ -104,13 +105,14 @@ impl<C: Scalar, const N: usize, const H: usize> ControlLaw<C, N> for Mpc<C, N, H
         let mut plan = self.plan.each_ref().map(|gain| u_d + feedback(gain, &error));
         let mut left = [Vector::<T, N>::ZERO; H];
         for _ in 0..SWEEPS {
-            for (k, (torque, curvature)) in plan.iter_mut().zip(&self.curvature).enumerate() {
+            for (k, (torque, reach)) in plan.iter_mut().zip(&self.reach).enumerate() {
                 for i in 0..N {
-                    let mut slope = T::ZERO;
+                    let mut slopes = Vector::ZERO;
                     for (left, leaving) in left.iter().skip(k).zip(&self.leaving) {
-                        slope += leaving.row(i).weigh(left);
+                        slopes += leaving.row(i).diag_mul(left);
                     }
-                    let best = limited(torque[i] - slope.scale(curvature[i].recip()), self.limit[i]);
+                    let slope = slopes.iter().fold(T::ZERO, |sum, x| sum + x);
+                    let best = limited(torque[i] - slope.scale(reach[i]), self.limit[i]);
                     let change = best - torque[i];
                     for (left, leaving) in left.iter_mut().skip(k).zip(&self.leaving) {
                         *left += leaving.row(i).map(|x| change.scale(x));
