@@ -1,12 +1,12 @@
 //! Square matrices of blocks.
 
-use core::ops::{Add, Mul, Sub};
+use core::ops::{AddAssign, Mul, SubAssign};
 
 use super::{Matrix, Vector};
 use crate::scalar::{Float, Piecewise, Scalar};
 
 /// A square matrix of `K` × `K` blocks of `N` × `N` numbers: what acts on a state of `K` vectors of `N`. Stored by rows of K N numbers, the `N` rows
-/// of a row of blocks together.
+/// of a row of blocks together. Large: what is computed with stays where it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BlockMatrix<S, const N: usize, const K: usize>([[[[S; N]; K]; N]; K]);
 
@@ -51,13 +51,12 @@ impl<S: Scalar, const N: usize, const K: usize> BlockMatrix<S, N, K> {
         Self::diagonal(&[Vector([S::ONE; N]); K])
     }
 
-    /// `self · s`.
+    /// Becomes `self · s`.
     #[inline]
-    pub fn scaled(mut self, s: S) -> Self {
+    pub fn scale(&mut self, s: S) {
         for x in self.entries_mut() {
             *x *= s;
         }
-        self
     }
 
     /// Block `(row, column)`.
@@ -72,11 +71,17 @@ impl<S: Scalar, const N: usize, const K: usize> BlockMatrix<S, N, K> {
         Self::from_blocks(|row, column| self.block(column, row).transpose())
     }
 
-    /// The symmetric part, ½ (A + Aᵀ).
+    /// Becomes its symmetric part, ½ (A + Aᵀ).
     #[inline]
-    pub fn symmetric(&self) -> Self {
+    pub fn symmetrize(&mut self) {
         let half = S::from_ratio(1, 2);
-        (*self + self.transpose()).scaled(half)
+        for i in 0..K * N {
+            for j in 0..i {
+                let mean = (self.entry(i, j) + self.entry(j, i)) * half;
+                *self.entry_mut(i, j) = mean;
+                *self.entry_mut(j, i) = mean;
+            }
+        }
     }
 
     /// Whether a symmetric matrix is positive definite: all pivots of elimination are positive.
@@ -124,17 +129,19 @@ impl<S: Scalar, const N: usize, const K: usize> BlockMatrix<S, N, K> {
     }
 
     #[inline]
-    fn zip(mut self, rhs: &Self, f: impl Fn(S, S) -> S) -> Self {
-        for (x, y) in self.entries_mut().zip(rhs.rows().flatten()) {
-            *x = f(*x, *y);
-        }
-        self
+    fn entry(&self, i: usize, j: usize) -> S {
+        self.0.as_flattened()[i].as_flattened()[j]
+    }
+
+    #[inline]
+    fn entry_mut(&mut self, i: usize, j: usize) -> &mut S {
+        &mut self.0.as_flattened_mut()[i].as_flattened_mut()[j]
     }
 }
 
 impl<S: Float, const N: usize, const K: usize> BlockMatrix<S, N, K> {
-    /// A⁻¹ B for each B of `rhs`, by elimination with partial pivoting. What a singular matrix gives is not finite.
-    pub fn solve<const R: usize>(mut self, mut rhs: [Self; R]) -> [Self; R] {
+    /// Each B of `rhs` becomes A⁻¹ B, by elimination with partial pivoting, which leaves nothing of A. What a singular matrix gives is not finite.
+    pub fn solve(&mut self, rhs: &mut [Self]) {
         for p in 0..K * N {
             let mut pivot = p;
             for i in p + 1..K * N {
@@ -151,7 +158,7 @@ impl<S: Float, const N: usize, const K: usize> BlockMatrix<S, N, K> {
                 let factor = rest[0];
                 subtract(&mut rest[1..], factor, &row[p + 1..]);
             }
-            for b in &mut rhs {
+            for b in &mut *rhs {
                 b.0.as_flattened_mut().swap(p, pivot);
                 let (above, below) = b.0.as_flattened_mut().split_at_mut(p + 1);
                 for (i, other) in below.iter_mut().enumerate() {
@@ -159,7 +166,7 @@ impl<S: Float, const N: usize, const K: usize> BlockMatrix<S, N, K> {
                 }
             }
         }
-        for b in &mut rhs {
+        for b in rhs {
             for p in (0..K * N).rev() {
                 let (above, below) = b.0.as_flattened_mut().split_at_mut(p);
                 let row = below[0].as_flattened_mut();
@@ -171,12 +178,6 @@ impl<S: Float, const N: usize, const K: usize> BlockMatrix<S, N, K> {
                 }
             }
         }
-        rhs
-    }
-
-    #[inline]
-    fn entry(&self, i: usize, j: usize) -> S {
-        self.0.as_flattened()[i].as_flattened()[j]
     }
 }
 
@@ -188,27 +189,29 @@ fn subtract<S: Scalar>(x: &mut [S], factor: S, y: &[S]) {
     }
 }
 
-impl<S: Scalar, const N: usize, const K: usize> Add for BlockMatrix<S, N, K> {
-    type Output = Self;
+impl<S: Scalar, const N: usize, const K: usize> AddAssign<&Self> for BlockMatrix<S, N, K> {
     #[inline]
-    fn add(self, rhs: Self) -> Self {
-        self.zip(&rhs, |x, y| x + y)
+    fn add_assign(&mut self, rhs: &Self) {
+        for (x, y) in self.entries_mut().zip(rhs.rows().flatten()) {
+            *x += *y;
+        }
     }
 }
 
-impl<S: Scalar, const N: usize, const K: usize> Sub for BlockMatrix<S, N, K> {
-    type Output = Self;
+impl<S: Scalar, const N: usize, const K: usize> SubAssign<&Self> for BlockMatrix<S, N, K> {
     #[inline]
-    fn sub(self, rhs: Self) -> Self {
-        self.zip(&rhs, |x, y| x - y)
+    fn sub_assign(&mut self, rhs: &Self) {
+        for (x, y) in self.entries_mut().zip(rhs.rows().flatten()) {
+            *x -= *y;
+        }
     }
 }
 
-impl<S: Scalar, const N: usize, const K: usize> Mul for BlockMatrix<S, N, K> {
-    type Output = Self;
+impl<S: Scalar, const N: usize, const K: usize> Mul for &BlockMatrix<S, N, K> {
+    type Output = BlockMatrix<S, N, K>;
     #[inline]
-    fn mul(self, rhs: Self) -> Self {
-        let mut product = Self::ZERO;
+    fn mul(self, rhs: Self) -> BlockMatrix<S, N, K> {
+        let mut product = BlockMatrix::ZERO;
         for (sum, row) in product.0.as_flattened_mut().iter_mut().zip(self.rows()) {
             for (x, y) in row.iter().zip(rhs.rows()) {
                 subtract(sum.as_flattened_mut(), -*x, y);
@@ -218,10 +221,10 @@ impl<S: Scalar, const N: usize, const K: usize> Mul for BlockMatrix<S, N, K> {
     }
 }
 
-impl<S: Scalar, const N: usize, const K: usize> Mul<[Matrix<S, N, N>; K]> for BlockMatrix<S, N, K> {
+impl<S: Scalar, const N: usize, const K: usize> Mul<&[Matrix<S, N, N>; K]> for &BlockMatrix<S, N, K> {
     type Output = [Matrix<S, N, N>; K];
     #[inline]
-    fn mul(self, x: [Matrix<S, N, N>; K]) -> [Matrix<S, N, N>; K] {
+    fn mul(self, x: &[Matrix<S, N, N>; K]) -> [Matrix<S, N, N>; K] {
         core::array::from_fn(|row| {
             x.iter().enumerate().fold(Matrix::ZERO, |sum, (column, x)| sum + self.block(row, column) * *x)
         })

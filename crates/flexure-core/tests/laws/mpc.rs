@@ -253,35 +253,3 @@ fn it_runs_in_lanes() {
         }
     }
 }
-
-#[test]
-fn timing() {
-    fn one<L: Links<f64, N>, const N: usize, const H: usize>(robot: &Fjr<f64, L, N>) {
-        let r = &mut Numbers(1);
-        let cost = cost(r);
-        for _ in 0..3 {
-            let t = std::time::Instant::now();
-            let m = LinearModel::at_rest(robot, &Vector::ZERO);
-            let t1 = t.elapsed();
-            let c = Regulator::continuous(&m, &cost, f64::INFINITY).expect("one");
-            let t2 = t.elapsed();
-            let law = Mpc::<f64, N, H>::design(robot, &Vector::ZERO, &cost, PERIOD, &Vector([1.0; N]))
-                .expect("one");
-            let t3 = t.elapsed();
-            std::hint::black_box(c);
-            let xs: Vec<_> = (0..100).map(|_| (r.motion::<N>(1.0), r.series::<5, N>(1.0))).collect();
-            let t = std::time::Instant::now();
-            for (x, q) in &xs {
-                std::hint::black_box(law.torque(robot, x, q));
-            }
-            let step = t.elapsed() / 100;
-            println!("n {N} H {H}: linear {t1:?} lqr {:?} mpc design {:?} step {step:?}", t2 - t1, t3 - t2);
-        }
-    }
-    let r = &mut Numbers(9);
-    one::<_, 2, 10>(&flexible(planar(), r));
-    one::<_, 2, 20>(&flexible(planar(), r));
-    one::<_, 7, 10>(&flexible(serial::<7>(), r));
-    one::<_, 7, 20>(&flexible(serial::<7>(), r));
-    one::<_, 16, 10>(&flexible(serial::<16>(), r));
-}

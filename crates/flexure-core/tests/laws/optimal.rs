@@ -59,6 +59,13 @@ fn largest<const N: usize>(a: &BlockMatrix<f64, N, 4>) -> f64 {
     a.rows().flatten().fold(0.0, |m: f64, x| if x.is_nan() { f64::NAN } else { m.max(x.abs()) })
 }
 
+fn total<const N: usize>(terms: &[&BlockMatrix<f64, N, 4>]) -> BlockMatrix<f64, N, 4> {
+    terms.iter().fold(BlockMatrix::ZERO, |mut sum, term| {
+        sum += *term;
+        sum
+    })
+}
+
 fn transposed<const N: usize>(blocks: &Blocks<N>) -> Blocks<N> {
     blocks.map(|block| block.transpose())
 }
@@ -134,13 +141,16 @@ fn solves_its_equations<L: Links<f64, N>, const N: usize>(robot: &Fjr<f64, L, N>
             Regulator::continuous(&model, &cost, gamma).expect("a robot that can be held");
         assert_eq!(P, P.transpose());
         let weighted = F.map(|f| Matrix::diagonal(&cost.torque) * f);
-        let paid = Q + BlockMatrix::outer(&transposed(&F), &weighted);
-        let PG = P * G;
-        let felt = BlockMatrix::outer(&PG, &transposed(&PG)).scaled(gamma.powi(-2));
-        let flow = P * (A - BlockMatrix::outer(&B, &F));
-        let residual = flow + flow.transpose() + paid + felt;
-        assert!(largest(&residual) < TOLERANCE * largest(&(P * A)), "{residual:?}");
-        for (found, expected) in weighted.iter().zip(P * B) {
+        let mut closed = A;
+        closed -= &BlockMatrix::outer(&B, &F);
+        let PG = &P * &G;
+        let mut felt = BlockMatrix::outer(&PG, &transposed(&PG));
+        felt.scale(gamma.powi(-2));
+        let flow = &P * &closed;
+        let paid = BlockMatrix::outer(&transposed(&F), &weighted);
+        let residual = total(&[&flow, &flow.transpose(), &Q, &paid, &felt]);
+        assert!(largest(&residual) < TOLERANCE * largest(&(&P * &A)), "{residual:?}");
+        for (found, expected) in weighted.iter().zip(&P * &B) {
             for i in 0..N {
                 close(&found.row(i), &expected.column(i), 1e-12);
             }
@@ -152,12 +162,14 @@ fn solves_its_equations<L: Links<f64, N>, const N: usize>(robot: &Fjr<f64, L, N>
     let Regulator { gain: F, cost_to_go: P } =
         Regulator::discrete(&model, &cost).expect("a robot that can be held");
     let weighted = F.map(|f| Matrix::diagonal(&cost.torque) * f);
-    let closed = A - BlockMatrix::outer(&B, &F);
-    let next = closed.transpose() * P * closed;
-    let paid = BlockMatrix::diagonal(&cost.state) + BlockMatrix::outer(&transposed(&F), &weighted);
-    let residual = next + paid - P;
+    let mut closed = A;
+    closed -= &BlockMatrix::outer(&B, &F);
+    let next = &(&closed.transpose() * &P) * &closed;
+    let paid = BlockMatrix::outer(&transposed(&F), &weighted);
+    let mut residual = total(&[&next, &BlockMatrix::diagonal(&cost.state), &paid]);
+    residual -= &P;
     assert!(largest(&residual) < TOLERANCE * PERIOD * largest(&P), "{residual:?}");
-    for (found, expected) in weighted.iter().zip(closed.transpose() * (P * B)) {
+    for (found, expected) in weighted.iter().zip(&closed.transpose() * &(&P * &B)) {
         for i in 0..N {
             close(&found.row(i).scaled(PERIOD.recip()), &expected.column(i).scaled(PERIOD.recip()), 1e-9);
         }
@@ -175,20 +187,27 @@ fn a_matrix_is_positive_or_not() {
     let root = BlockMatrix::<f64, 3, 2>::from_columns(&std::array::from_fn(|_| {
         std::array::from_fn(|_| Matrix::from_fn(|_, _| r.next()))
     }));
-    let square = root.transpose() * root;
-    assert!(square.is_positive_definite());
-    // Less than its smallest eigenvalue, and more than that.
-    let [inverse] = square.solve([BlockMatrix::identity()]);
-    let smallest = inverse.norm().recip();
-    assert!((square - BlockMatrix::identity().scaled(0.1 * smallest)).is_positive_definite());
-    let trace: f64 = square.diagonal_entries().sum();
-    assert!(!(square - BlockMatrix::identity().scaled(trace / 6.0)).is_positive_definite());
-    // Solving undoes multiplying, where pivots on the diagonal vanish too.
-    let swap = Matrix::<f64, 3, 3>::identity();
-    let swap = BlockMatrix::from_columns(&[[Matrix::ZERO, swap], [swap, Matrix::ZERO]]);
+    let square = &root.transpose() * &root;
+    let less = |by: f64| {
+        let (mut matrix, mut unit) = (square, BlockMatrix::identity());
+        unit.scale(by);
+        matrix -= &unit;
+        matrix
+    };
+    // Between zero and the least eigenvalue, and beyond the mean of all.
+    let mut inverse = [BlockMatrix::identity()];
+    { square }.solve(&mut inverse);
+    let least = inverse[0].norm().recip();
+    assert!(square.is_positive_definite() && less(0.9 * least).is_positive_definite());
+    assert!(!less(square.diagonal_entries().sum::<f64>() / 6.0).is_positive_definite());
+    // Solving undoes multiplying, with pivots that are zero on the diagonal, too.
+    let one = Matrix::identity();
+    let swap = BlockMatrix::from_columns(&[[Matrix::ZERO, one], [one, Matrix::ZERO]]);
     for a in [root, swap] {
-        let [found] = a.solve([a * square]);
-        assert!((found - square).norm() < 1e-12 * square.norm() * inverse.norm());
+        let mut found = [&a * &square];
+        { a }.solve(&mut found);
+        found[0] -= &square;
+        assert!(found[0].norm() < 1e-12 * square.norm() / least);
     }
 }
 
@@ -250,7 +269,8 @@ fn the_law_is_linear_feedback_around_the_reference() {
 
 /// The largest amplification of sinusoidal torques on the link, from 0.01 to 1000 rad/s: √cost per N m.
 fn amplification(model: &LinearModel<f64, 1>, cost: &QuadraticCost<f64, 1>, F: &Blocks<1>) -> f64 {
-    let closed = model.state - BlockMatrix::outer(&model.input, F);
+    let mut closed = model.state;
+    closed -= &BlockMatrix::outer(&model.input, F);
     let block = |i: usize, j: usize| closed.block(i, j);
     let gains = (0..4000).map(|k| {
         let omega = 10f64.powf(-2.0 + 5.0 * f64::from(k) / 4000.0);
@@ -265,7 +285,9 @@ fn amplification(model: &LinearModel<f64, 1>, cost: &QuadraticCost<f64, 1>, F: &
         });
         let mut G = [[Matrix::ZERO; 8]; 8];
         G[0] = std::array::from_fn(|i| if i < 4 { model.disturbance[i] } else { Matrix::ZERO });
-        let [x] = BlockMatrix::<f64, 1, 8>::from_columns(&columns).solve([BlockMatrix::from_columns(&G)]);
+        let mut x = [BlockMatrix::<f64, 1, 8>::from_columns(&G)];
+        BlockMatrix::from_columns(&columns).solve(&mut x);
+        let [x] = x;
         let part = |from: usize| std::array::from_fn(|i| Vector([x.block(from + i, 0)[(0, 0)]]));
         [part(0), part(4)].iter().map(|x| rate(cost, x, &row(F, x))).sum::<f64>().sqrt()
     });

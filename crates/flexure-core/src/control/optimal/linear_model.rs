@@ -55,15 +55,18 @@ impl<S: Float, const N: usize> LinearModel<S, N> {
         // 1 + Ah/2 (1 + Ah/3 (1 + …)).
         let mut integral = one;
         for k in (2..=TERMS).rev() {
-            let by = step / S::from_ratio(k, 1);
-            integral = one + (self.state * integral).scaled(by);
+            integral = &self.state * &integral;
+            integral.scale(step / S::from_ratio(k, 1));
+            integral += &one;
         }
-        integral = integral.scaled(step);
-        let mut transition = one + self.state * integral;
+        integral.scale(step);
+        let mut transition = &self.state * &integral;
+        transition += &one;
         for _ in 0..halvings {
-            integral = integral + transition * integral;
-            transition = transition * transition;
+            let second = &transition * &integral;
+            integral += &second;
+            transition = &transition * &transition;
         }
-        Self { state: transition, input: integral * self.input, disturbance: integral * self.disturbance }
+        Self { state: transition, input: &integral * &self.input, disturbance: &integral * &self.disturbance }
     }
 }

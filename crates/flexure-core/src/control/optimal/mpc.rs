@@ -56,18 +56,20 @@ impl<C: Float, const N: usize, const H: usize> Mpc<C, N, H> {
         let Regulator { gain: F, cost_to_go: P } = Regulator::discrete(&model, &cost)?;
         let LinearModel { state: A, input: B, .. } = model;
         let root = torque_cost(&model, &cost, &P).ldl().root();
-        let closed = A - BlockMatrix::outer(&B, &F);
+        let mut closed = A;
+        closed -= &BlockMatrix::outer(&B, &F);
+        let back = closed.transpose();
         let (mut ahead, mut moved) = (F.map(|block| block.transpose()), B);
         let plan = core::array::from_fn(|_| {
             let gain = ahead.map(|block| block.transpose());
-            ahead = closed.transpose() * ahead;
+            ahead = &back * &ahead;
             gain
         });
         let leaving = core::array::from_fn(|k| {
             let mut felt = Matrix::identity();
             if k > 0 {
                 felt = F.iter().zip(moved).fold(Matrix::ZERO, |sum, (f, x)| sum + *f * x);
-                moved = A * moved;
+                moved = &A * &moved;
             }
             (root * felt).transpose()
         });

@@ -56,9 +56,10 @@ impl<C: Float, const N: usize> Regulator<C, N> {
     ) -> Result<Self, NoRegulator> {
         let LinearModel { state: A, input: B, disturbance: G } = model;
         let (by_R, by_gamma) = (cost.torque.map(C::recip), attenuation.square().recip());
-        let g = squares(B, &by_R) - squares(G, &Vector([by_gamma; N]));
+        let mut g = squares(B, &by_R);
+        g -= &squares(G, &Vector([by_gamma; N]));
         let P = positive(riccati::continuous(A, &g, &BlockMatrix::diagonal(&cost.state)))?;
-        let gain = (P * *B).map(|block| Matrix::diagonal(&by_R) * block.transpose());
+        let gain = (&P * B).map(|block| Matrix::diagonal(&by_R) * block.transpose());
         Ok(Self { gain, cost_to_go: P })
     }
 
@@ -69,14 +70,11 @@ impl<C: Float, const N: usize> Regulator<C, N> {
     /// Without a stabilising solution.
     pub fn discrete(model: &LinearModel<C, N>, cost: &QuadraticCost<C, N>) -> Result<Self, NoRegulator> {
         let LinearModel { state: A, input: B, .. } = model;
-        let P = positive(riccati::discrete(
-            *A,
-            squares(B, &cost.torque.map(C::recip)),
-            BlockMatrix::diagonal(&cost.state),
-        ))?;
+        let g = squares(B, &cost.torque.map(C::recip));
+        let P = positive(riccati::discrete(&mut [*A, g, BlockMatrix::diagonal(&cost.state)]))?;
         let factor = torque_cost(model, cost, &P).ldl();
         // Columns of F, or rows of Aᵀ P B, through the factor.
-        let gain = (A.transpose() * (P * *B))
+        let gain = (&A.transpose() * &(&P * B))
             .map(|block| Matrix(block.0.map(|row| factor.solve(&Vector(row)).0)).transpose());
         Ok(Self { gain, cost_to_go: P })
     }
@@ -88,11 +86,12 @@ pub(super) fn torque_cost<C: Float, const N: usize>(
     cost: &QuadraticCost<C, N>,
     P: &BlockMatrix<C, N, 4>,
 ) -> Matrix<C, N, N> {
-    let pairs = model.input.iter().zip(*P * model.input);
+    let pairs = model.input.iter().zip(P * &model.input);
     pairs.fold(Matrix::diagonal(&cost.torque), |sum, (b, p)| sum + b.transpose() * p)
 }
 
 /// B diag(`weights`) Bᵀ.
+#[inline(never)]
 fn squares<C: Float, const N: usize>(
     B: &[Matrix<C, N, N>; 4],
     weights: &Vector<C, N>,
