@@ -1,4 +1,5 @@
-//! Laws that are optimal for the robot linearised at a posture: where the robot is near it, and for the cost that was asked for.
+//! Laws that are optimal for the robot linearised at a posture, and their design: work for a start, not for a control period. For 16 joints it takes 1 to 1.5 MB
+//! of stack.
 
 mod linear_model;
 mod lqr;
