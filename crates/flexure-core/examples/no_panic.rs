@@ -8,8 +8,8 @@ use std::hint::black_box;
 
 use flexure_core::control::{
     Backstepping, Cascade, ControlLaw, CoupledTanh, Esp, FeedbackLinearization, FeedforwardPd,
-    GravityCancellation, Input, IntegralManifold, Linear, Passivity, Pd, PdOnlineGravity, RigidVcbc,
-    SingularPerturbation, TorqueFeedback, Vcbc,
+    GravityCancellation, Input, IntegralManifold, Linear, Lqr, Mpc, Passivity, Pd, PdOnlineGravity,
+    RigidVcbc, SingularPerturbation, TorqueFeedback, Vcbc,
 };
 use flexure_core::estimate::{
     Disturbance, DisturbanceObserver, Estimator, FilteredDifference, MotorObserver, Observer,
@@ -57,6 +57,8 @@ law_on_a_tree!(
     feedforward_pd: FeedforwardPd<f64, 7>,
     gravity_cancellation: GravityCancellation<f64, 7>,
     integral_manifold: IntegralManifold<f64, 7>,
+    lqr: Lqr<f64, 7>,
+    mpc: Mpc<f64, 7, 10>,
     passivity: Passivity<f64, 7>,
     pd: Pd<f64, 7>,
     pd_online_gravity: PdOnlineGravity<f64, 7>,
@@ -251,6 +253,8 @@ fn main() {
     ));
     black_box((
         integral_manifold as fn(&_, &_, &_, &_) -> _,
+        lqr as fn(&_, &_, &_, &_) -> _,
+        mpc as fn(&_, &_, &_, &_) -> _,
         passivity as fn(&_, &_, &_, &_) -> _,
         pd as fn(&_, &_, &_, &_) -> _,
         pd_online_gravity as fn(&_, &_, &_, &_) -> _,

@@ -3,7 +3,7 @@
 use core::ops::{Add, Index, IndexMut, Mul, Neg, Sub};
 
 use super::{Ldl, Vector};
-use crate::scalar::Scalar;
+use crate::scalar::{Over, Scalar};
 
 /// A matrix of `R` rows and `C` columns, stored by rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,6 +49,12 @@ impl<S: Scalar, const R: usize, const C: usize> Matrix<S, R, C> {
     #[inline]
     pub fn scaled(&self, s: S) -> Self {
         self.map(|x| x * s)
+    }
+
+    /// The matrix of constants `self` times numbers over them.
+    #[inline]
+    pub fn weigh<T: Over<S>>(&self, x: &Vector<T, C>) -> Vector<T, R> {
+        Vector::from_fn(|i| self.row(i).weigh(x))
     }
 }
 

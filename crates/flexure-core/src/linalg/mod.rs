@@ -4,12 +4,14 @@
     reason = "indices run over const dimensions; the no-panic check covers them"
 )]
 
+mod block_matrix;
 mod blocks;
 mod ldl;
 mod matrix;
 mod series;
 mod vector;
 
+pub use block_matrix::BlockMatrix;
 pub use blocks::{eliminate, eliminate_each};
 pub use ldl::Ldl;
 pub use matrix::Matrix;

@@ -56,6 +56,16 @@ impl<S: Scalar, const N: usize> Vector<S, N> {
         Vector::from_fn(|i| x[i].scale(self[i]))
     }
 
+    /// Inner product of the constants `self` with numbers over them.
+    #[inline]
+    pub fn weigh<T: Over<S>>(&self, x: &Vector<T, N>) -> T {
+        let mut sum = T::ZERO;
+        for i in 0..N {
+            sum += x[i].scale(self[i]);
+        }
+        sum
+    }
+
     /// The vector of constants `self` as numbers of type `T`.
     #[inline]
     pub fn lift<T: Over<S>>(&self) -> Vector<T, N> {

@@ -5,9 +5,9 @@ use std::fs;
 
 use flexure_core::control::{
     Applied, CompositePh, ControlByInterconnection, ControlLaw, DisturbanceRejecting, DynamicLaw, IdaPbc,
-    ImmersionInvariance, InnerLoop, LinkImpedance, LinkPositionFeedback, LoriaOrtega, MotorObserverPd,
-    MotorPd, MotorPositionPd, MotorPositionPdCapped, Pid, PositionFeedback, SeaCascade, SlidingMode,
-    observer_gains,
+    ImmersionInvariance, InnerLoop, LinkImpedance, LinkPositionFeedback, LoriaOrtega, Lqr, MotorObserverPd,
+    MotorPd, MotorPositionPd, MotorPositionPdCapped, Pid, PositionFeedback, QuadraticCost, SeaCascade,
+    SlidingMode, observer_gains,
 };
 use flexure_core::linalg::{Ldl, Matrix, Vector};
 use flexure_core::model::{Fjr, Links, Motion};
@@ -99,6 +99,15 @@ impl Case {
 
     fn motor(&self, [stiffness, damping]: [&str; 2]) -> MotorPd<f64, 2> {
         MotorPd { stiffness: self.gain(stiffness), damping: self.gain(damping) }
+    }
+
+    /// Designed for the robot, at the posture and with the weights of the file.
+    fn lqr(&self) -> Lqr<f64, 2> {
+        let Gain::List(state) = &self.gains["Q"] else { panic!("a list") };
+        let state = std::array::from_fn(|k| Vector([state[2 * k], state[2 * k + 1]]));
+        let cost = QuadraticCost { state, torque: self.gain("R") };
+        Lqr::design(&self.arm(), &self.gain("design_posture"), &cost, f64::INFINITY)
+            .expect("a stabilisable arm")
     }
 
     fn arm(&self) -> Arm {
@@ -296,5 +305,20 @@ fn disturbance_rejecting() {
     dynamic("disturbance-rejecting", |case| DisturbanceRejecting {
         law: immersed(case),
         bandwidth: case.gain("bandwidth"),
+    });
+}
+
+#[test]
+fn lqr() {
+    fixed("lqr", |case| {
+        let law = case.lqr();
+        let Gain::List(gain) = &case.gains["F"] else { panic!("a list") };
+        // Rows of F for q, θ, v and w.
+        for (k, expected) in gain.iter().enumerate() {
+            let (row, column) = (k / 8, k % 8);
+            let found = law.gain[column / 2][(row, column % 2)];
+            assert!((found - expected).abs() <= TOLERANCE * 100.0, "{k}: {found} against {expected}");
+        }
+        law
     });
 }

@@ -6,6 +6,8 @@ mod common;
 mod golden;
 mod identities;
 mod limits;
+mod mpc;
+mod optimal;
 mod reads;
 mod soft_springs;
 mod step;

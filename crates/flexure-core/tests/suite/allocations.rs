@@ -1,7 +1,7 @@
 //! Law, dynamics, references, estimators and guards allocate nothing.
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc, violation_count};
-use flexure_core::control::{Input, RigidVcbc};
+use flexure_core::control::{ControlLaw, Input, Lqr, Mpc, QuadraticCost, RigidVcbc};
 use flexure_core::estimate::{
     DisturbanceObserver, Estimator, FilteredDifference, LowPass, MotorObserver, Observer,
 };
@@ -147,6 +147,21 @@ fn references() {
         let steps = steps
             .map(|step| PointToPoint { from: one, to: one, start: 0.0, duration: 1.0, step }.at::<5>(0.5));
         (one.at::<5>(0.5), sine.at::<5>(0.5), multisine.at::<5>(0.5), start.at::<5>(0.5), steps)
+    });
+    assert_eq!(count, 0);
+}
+
+#[test]
+fn optimal_laws() {
+    let mut r = Numbers(4);
+    let robot = flexible(branched::<5>(2), &mut r);
+    let one = Vector([1.0; 5]);
+    let cost = QuadraticCost { state: [one; 4], torque: one };
+    let (x, q_ld) = (r.motion(1.0), r.series(1.0));
+    let count = allocations(|| {
+        let lqr = Lqr::design(&robot, &one, &cost, f64::INFINITY).ok()?;
+        let mpc = Mpc::<f64, 5, 10>::design(&robot, &one, &cost, 1e-3, &one).ok()?;
+        Some((lqr.torque(&robot, &x, &q_ld), mpc.torque(&robot, &x, &q_ld)))
     });
     assert_eq!(count, 0);
 }
