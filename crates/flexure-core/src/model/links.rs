@@ -179,12 +179,77 @@ pub trait Links<C: Scalar, const N: usize> {
         factor.solve(&(*torque - bias.map(|x| x.coefficient(0))))
     }
 
+    /// φ, the numbers that torques of the links are linear in: up to ten per joint, those that a robot has fewer of are 0. Of a
+    /// [`Tree`](crate::robots::Tree) mass in kg, first moments [kg m] and second moments of mass [kg m²] of its bodies.
+    ///
+    /// A closed form whose parameters shall be adapted gives them here and overrides [`regressor_mul`](Self::regressor_mul). One that says nothing
+    /// has none, and nothing is adapted.
+    #[inline]
+    fn parameters(&self) -> Parameters<C, N> {
+        [Vector::ZERO; 10]
+    }
+
+    /// Y(q, v, v_r, a_r) φ = M(q) a_r + C(q, v) v_r + g(q) [N m] of links with the numbers `parameters` in place of
+    /// [those of the robot](Self::parameters): linear in them but for what the robot has no numbers for.
+    #[inline]
+    fn regressor_mul<T: Over<C>>(
+        &self,
+        _parameters: &Parameters<T, N>,
+        q: &Vector<T, N>,
+        v: &Vector<T, N>,
+        v_r: &Vector<T, N>,
+        a_r: &Vector<T, N>,
+    ) -> Vector<T, N> {
+        self.inverse_dynamics(q, v, v_r, a_r)
+    }
+
+    /// Yᵀ s with the regressor Y(q, v, v_r, a_r) and a velocity `s` [rad/s]: how the power of Y φ against s in W grows with each number of φ. Slots
+    /// that the robot has no number in give 0.
+    #[inline]
+    fn regressor_transpose_mul<T: Over<C>>(
+        &self,
+        q: &Vector<T, N>,
+        v: &Vector<T, N>,
+        v_r: &Vector<T, N>,
+        a_r: &Vector<T, N>,
+        s: &Vector<T, N>,
+    ) -> Parameters<T, N> {
+        let lift = |x: &Vector<T, N>| x.map(Dual::<T, N>::constant);
+        let [q, v, v_r, a_r, s] = [q, v, v_r, a_r, s].map(lift);
+        let mut slot = 0..;
+        [Vector::ZERO; 10].map(|zero| {
+            let slot = slot.next();
+            let mut units = 0..;
+            let unit = [zero; 10].map(|zero| if units.next() == slot { seeded(&zero) } else { lift(&zero) });
+            Vector(self.regressor_mul(&unit, &q, &v, &v_r, &a_r).dot(&s).gradient)
+        })
+    }
+
+    /// M(q) [kg m²] of links with the numbers `parameters`: what [`regressor_mul`](Self::regressor_mul) has for accelerations.
+    #[inline]
+    fn mass_matrix_of<T: Over<C>>(
+        &self,
+        parameters: &Parameters<T, N>,
+        q: &Vector<T, N>,
+    ) -> Matrix<T, N, N> {
+        let rest = Vector::ZERO;
+        let torque = |a: &Vector<T, N>| self.regressor_mul(parameters, q, &rest, &rest, a);
+        let gravity = torque(&rest);
+        let columns: [Vector<T, N>; N] = core::array::from_fn(|k| {
+            torque(&Vector::from_fn(|i| if i == k { T::ONE } else { T::ZERO })) - gravity
+        });
+        Matrix::from_fn(|i, k| columns[k][i])
+    }
+
     /// M(q) a [N m].
     #[inline]
     fn mass_mul<T: Over<C>>(&self, q: &Vector<T, N>, a: &Vector<T, N>) -> Vector<T, N> {
         self.mass_matrix(q) * *a
     }
 }
+
+/// Numbers that the torques of links are linear in: up to ten per joint ([`Links::parameters`]).
+pub type Parameters<T, const N: usize> = [Vector<T, N>; 10];
 
 /// The mass matrix at one position, ready for solving: from [`Links::factor`].
 pub trait MassFactor<T, const N: usize> {

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::fs;
 
 use flexure_core::control::{
-    Applied, ControlLaw, DynamicLaw, MotorPd, MotorPositionPd, MotorPositionPdCapped, PositionFeedback,
+    Applied, CommandFilteredBackstepping, ControlLaw, DynamicLaw, MotorPd, MotorPositionPd,
+    MotorPositionPdCapped, PositionFeedback,
 };
 use flexure_core::linalg::{Ldl, Matrix, Vector};
 use flexure_core::model::{Fjr, Links, Motion};
@@ -177,4 +178,22 @@ fn position_feedback() {
         motor: case.motor(["motor_stiffness", "motor_damping"]),
         motor_cutoff: case.gain("motor_cutoff"),
     });
+}
+
+/// Gains of backstepping from links to motors.
+fn backstepping(case: &Case) -> CommandFilteredBackstepping<f64, 2> {
+    CommandFilteredBackstepping {
+        shaping: case.gain("shaping"),
+        link_damping: case.gain("link_damping"),
+        metric: case.gain("metric"),
+        motor_shaping: case.gain("motor_shaping"),
+        rate_metric: case.gain("rate_metric"),
+        rate_shaping: case.gain("rate_shaping"),
+        bandwidth: case.gain("bandwidth"),
+    }
+}
+
+#[test]
+fn command_filtered_backstepping() {
+    dynamic("command-filtered-backstepping", backstepping);
 }
