@@ -24,8 +24,10 @@ mod vcbc;
 
 pub use backstepping::Backstepping;
 pub use cascade::Cascade;
+pub use dynamic::{
+    Adaptation, AdaptiveCommandFilteredBackstepping, AdaptiveVcbc, CommandFilteredBackstepping, Seen,
+};
 pub use dynamic::{Applied, DynamicLaw, MotorPositionPd, MotorPositionPdCapped, PositionFeedback, Running};
-pub use dynamic::CommandFilteredBackstepping;
 pub use esp::Esp;
 pub use feedback_linearization::FeedbackLinearization;
 pub use feedforward_pd::FeedforwardPd;

@@ -227,11 +227,7 @@ pub trait Links<C: Scalar, const N: usize> {
 
     /// M(q) [kg m²] of links with the numbers `parameters`: what [`regressor_mul`](Self::regressor_mul) has for accelerations.
     #[inline]
-    fn mass_matrix_of<T: Over<C>>(
-        &self,
-        parameters: &Parameters<T, N>,
-        q: &Vector<T, N>,
-    ) -> Matrix<T, N, N> {
+    fn mass_matrix_of<T: Over<C>>(&self, parameters: &Parameters<T, N>, q: &Vector<T, N>) -> Matrix<T, N, N> {
         let rest = Vector::ZERO;
         let torque = |a: &Vector<T, N>| self.regressor_mul(parameters, q, &rest, &rest, a);
         let gravity = torque(&rest);

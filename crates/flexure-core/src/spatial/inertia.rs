@@ -99,11 +99,7 @@ impl<C: Scalar> RigidInertia<C> {
     /// What moves the body like this: with the accelerations a + A x of its points, f = m a + A h and n = h × a + ∫ x × A x dm,
     /// which is twice the axial vector of A Σ. `times` multiplies by a number of the body.
     #[inline(always)]
-    pub(crate) fn wrench<T: Scalar>(
-        &self,
-        body: &Carried<T>,
-        times: impl Fn(T, C) -> T + Copy,
-    ) -> Wrench<T> {
+    pub(crate) fn wrench<T: Scalar>(&self, body: &Carried<T>, times: impl Fn(T, C) -> T + Copy) -> Wrench<T> {
         let (h, s, a) = (&self.first_moment, &self.second_moment, body.linear);
         let [x, y, z] = &body.spread;
         let reduced = self.about_axis(body, times);

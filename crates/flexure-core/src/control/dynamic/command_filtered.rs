@@ -57,11 +57,7 @@ pub(super) struct Reckoned<F, G> {
 
 impl<C: Scalar, const N: usize> CommandFilteredBackstepping<C, N> {
     #[inline]
-    pub(super) fn wanted<T: Over<C>>(
-        &self,
-        x: &Motion<T, N>,
-        q_ld: &Vector<Jet<T, 5>, N>,
-    ) -> Virtual<T, N> {
+    pub(super) fn wanted<T: Over<C>>(&self, x: &Motion<T, N>, q_ld: &Vector<Jet<T, 5>, N>) -> Virtual<T, N> {
         let [q_d, v_d, a_d, ..] = q_ld.derivatives();
         let e = x.q_l - q_d;
         Virtual {
@@ -101,7 +97,8 @@ impl<C: Scalar, const N: usize> CommandFilteredBackstepping<C, N> {
         >,
     ) -> Filters<T, N> {
         let spring = |x: &Vector<T, N>| robot.stiffness.diag_mul(x);
-        let weighted = |x: &Vector<T, N>| Vector::from_fn(|i| x[i].scale(robot.stiffness[i] / self.metric[i]));
+        let weighted =
+            |x: &Vector<T, N>| Vector::from_fn(|i| x[i].scale(robot.stiffness[i] / self.metric[i]));
         let follow = |goal: &Vector<T, N>, at: &Vector<T, N>, rate: &Vector<T, N>| {
             let once = |x: &Vector<T, N>| self.bandwidth.diag_mul(x);
             once(&(once(&(*goal - *at)) - *rate - *rate))
@@ -111,11 +108,17 @@ impl<C: Scalar, const N: usize> CommandFilteredBackstepping<C, N> {
         let alpha_2 = self.motor_goal(robot, x, wanted, &torque, pull);
         let damping = robot.link_damping + self.link_damping;
         let lag = spring(&(*x_3 - alpha_2 + *xi_3)) - coriolis - damping.diag_mul(xi_2) - *pull_xi;
-        let alpha_3 = *dx_3
-            - self.motor_shaping.diag_mul(&(x.q_m - *x_3))
-            - weighted(&(x.v_l - wanted.velocity));
+        let alpha_3 =
+            *dx_3 - self.motor_shaping.diag_mul(&(x.q_m - *x_3)) - weighted(&(x.v_l - wanted.velocity));
         let xi_3_rate = *x_4 - alpha_3 - self.motor_shaping.diag_mul(xi_3) - weighted(xi_2);
-        [*dx_3, follow(&alpha_2, x_3, dx_3), *dx_4, follow(&alpha_3, x_4, dx_4), (links.solve)(&lag), xi_3_rate]
+        [
+            *dx_3,
+            follow(&alpha_2, x_3, dx_3),
+            *dx_4,
+            follow(&alpha_3, x_4, dx_4),
+            (links.solve)(&lag),
+            xi_3_rate,
+        ]
     }
 
     /// u [N m].
@@ -127,9 +130,8 @@ impl<C: Scalar, const N: usize> CommandFilteredBackstepping<C, N> {
         [x_3, x_4, dx_4, xi_3]: [&Vector<T, N>; 4],
     ) -> Vector<T, N> {
         let coupling = Vector::from_fn(|i| self.metric[i] / self.rate_metric[i]);
-        let a = *dx_4
-            - self.rate_shaping.diag_mul(&(x.v_m - *x_4))
-            - coupling.diag_mul(&(x.q_m - *x_3 - *xi_3));
+        let a =
+            *dx_4 - self.rate_shaping.diag_mul(&(x.v_m - *x_4)) - coupling.diag_mul(&(x.q_m - *x_3 - *xi_3));
         robot.motor_torque(x, &a)
     }
 }
@@ -146,8 +148,7 @@ impl<C: Scalar, const N: usize> DynamicLaw<C, N, 6> for CommandFilteredBackstepp
         q_ld: &Vector<Jet<T, 5>, N>,
     ) -> [Vector<T, N>; 6] {
         let (wanted, zero) = (self.wanted(x, q_ld), Vector::ZERO);
-        let torque =
-            robot.links.inverse_dynamics(&x.q_l, &x.v_l, &wanted.velocity, &wanted.acceleration);
+        let torque = robot.links.inverse_dynamics(&x.q_l, &x.v_l, &wanted.velocity, &wanted.acceleration);
         [self.motor_goal(robot, x, &wanted, &torque, &zero), zero, zero, zero, zero, zero]
     }
 

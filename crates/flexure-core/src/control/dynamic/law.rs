@@ -1,9 +1,10 @@
 //! What laws with memory have in common.
 
+use super::step::{Seen, advanced};
 use crate::control::Signals;
 use crate::linalg::Vector;
 use crate::model::{Fjr, Links, Motion};
-use crate::scalar::{Jet, Over, Scalar};
+use crate::scalar::{Jet, Over, Piecewise, Scalar};
 
 /// A tracking law with memory: `K` numbers per joint z that obey an ordinary differential equation of their own.
 ///
@@ -74,7 +75,7 @@ use crate::scalar::{Jet, Over, Scalar};
 /// let u = law.torque(&robot, &x, &q_ld, &running.memory);
 /// assert!((u[0] + 2.0 * 3.0).abs() < 1e-9);
 /// ```
-pub trait DynamicLaw<C: Scalar, const N: usize, const K: usize> {
+pub trait DynamicLaw<C: Scalar, const N: usize, const K: usize>: Sized {
     /// What it reads of the motion.
     const READS: Signals;
 
@@ -104,6 +105,21 @@ pub trait DynamicLaw<C: Scalar, const N: usize, const K: usize> {
         z: &[Vector<T, N>; K],
         applied: &Applied<T, N>,
     ) -> [Vector<T, N>; K];
+
+    /// z a `period` in s after the instant `before`, by the trapezoidal rule with all of z⁺ solved for together. A law whose memory is slow in part, or
+    /// has bounds, says so here.
+    #[inline]
+    fn advanced<T: Over<C> + Piecewise, L: Links<C, N>>(
+        &self,
+        robot: &Fjr<C, L, N>,
+        before: &Seen<T, N>,
+        now: &Seen<T, N>,
+        z: &[Vector<T, N>; K],
+        applied: &Applied<T, N>,
+        period: T,
+    ) -> [Vector<T, N>; K] {
+        advanced::<K, _, _, _, N, K>(self, robot, before, now, z, applied, period)
+    }
 }
 
 /// What the motors get of what was asked for.

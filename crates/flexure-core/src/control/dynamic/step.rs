@@ -12,10 +12,10 @@ const CORRECTIONS: usize = 2;
 /// The memory `z` a `period` in s later: the trapezoidal rule z⁺ = z + T/2 (ż(`before`, z) + ż(`now`, z⁺)), both rates under the torque that was
 /// `applied` in between.
 ///
-/// Of a linear filter this is Tustin's, which keeps passivity and is stable for any period. z⁺ is found by Newton's method from Euler's step, with the
-/// Jacobian of ż by dual numbers.
+/// Of a linear filter this is Tustin's, which keeps passivity and is stable for any period. The first `I` parts of z⁺ are found by Newton's method from Euler's
+/// step, with the Jacobian of ż by dual numbers; the others, which are slow, by as many corrections without it.
 #[inline]
-pub fn advanced<C: Scalar, T: Over<C>, L: Links<C, N>, const N: usize, const K: usize>(
+pub fn advanced<const I: usize, C: Scalar, T: Over<C>, L: Links<C, N>, const N: usize, const K: usize>(
     law: &impl DynamicLaw<C, N, K>,
     robot: &Fjr<C, L, N>,
     before: &Seen<T, N>,
@@ -24,16 +24,20 @@ pub fn advanced<C: Scalar, T: Over<C>, L: Links<C, N>, const N: usize, const K: 
     applied: &Applied<T, N>,
     period: T,
 ) -> [Vector<T, N>; K] {
+    const { assert!(I <= K, "no more parts than there are") }
     let half = period * T::from_ratio(1, 2);
     let at = |seen: &Seen<T, N>, z: &[Vector<T, N>; K]| law.rate(robot, &seen.x, &seen.q_ld, z, applied);
     let first = at(before, z);
     let mut next = added(z, &first, period);
-    let matrix = implicit(law, robot, now, &next, applied, half);
+    let matrix = implicit::<I, _, _, _, N, K>(law, robot, now, &next, applied, half);
     for _ in 0..CORRECTIONS {
         let last = at(now, &next);
-        let missing: [Vector<T, N>; K] =
+        let mut missing: [Vector<T, N>; K] =
             core::array::from_fn(|k| z[k] - next[k] + (first[k] + last[k]).scaled(half));
-        next = added(&next, &eliminate(matrix, missing), T::ONE);
+        if let Some(stiff) = missing.first_chunk_mut::<I>() {
+            *stiff = eliminate(matrix, *stiff);
+        }
+        next = added(&next, &missing, T::ONE);
     }
     next
 }
@@ -48,22 +52,22 @@ fn added<T: Scalar, const N: usize, const K: usize>(
     core::array::from_fn(|k| a[k] + b[k].scaled(s))
 }
 
-/// 1 − T/2 ∂ż/∂z in `N` × `N` blocks, a block of columns at a time.
+/// 1 − T/2 ∂ż/∂z of the first `I` parts in `N` × `N` blocks, a block of columns at a time.
 #[inline]
-fn implicit<C: Scalar, T: Over<C>, L: Links<C, N>, const N: usize, const K: usize>(
+fn implicit<const I: usize, C: Scalar, T: Over<C>, L: Links<C, N>, const N: usize, const K: usize>(
     law: &impl DynamicLaw<C, N, K>,
     robot: &Fjr<C, L, N>,
     now: &Seen<T, N>,
     z: &[Vector<T, N>; K],
     applied: &Applied<T, N>,
     half: T,
-) -> [[Matrix<T, N, N>; K]; K] {
+) -> [[Matrix<T, N, N>; I]; I] {
     let lift = |v: &Vector<T, N>| v.map(Dual::<T, N>::constant);
     let x = now.x.map(Dual::constant);
     let q_ld = now.q_ld.map(|q| Jet::from_fn(|k| Dual::constant(q.coefficient(k))));
     let applied = Applied { asked: lift(&applied.asked), given: lift(&applied.given) };
-    let mut matrix = [[Matrix::ZERO; K]; K];
-    for column in 0..K {
+    let mut matrix = [[Matrix::ZERO; I]; I];
+    for column in 0..I {
         let seeded = core::array::from_fn(|k| {
             if k == column { Vector::from_fn(|i| Dual::variable(z[k][i], i)) } else { lift(&z[k]) }
         });
@@ -120,7 +124,7 @@ impl<C: Float, const N: usize, const K: usize> Running<C, N, K> {
         period: C,
     ) {
         let now = Seen { x: *x, q_ld: *q_ld };
-        let next = advanced(law, robot, &self.seen, &now, &self.memory, applied, period);
+        let next = law.advanced(robot, &self.seen, &now, &self.memory, applied, period);
         if next.iter().all(|part| part.iter().all(C::is_finite)) {
             *self = Self { memory: next, seen: now };
         }

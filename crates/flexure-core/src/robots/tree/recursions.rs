@@ -83,7 +83,9 @@ impl<C: Scalar, const N: usize> Tree<C, N> {
         wrench: impl Fn(usize, &Joint<C>, &Carried<T>) -> Wrench<T>,
     ) -> Vector<T, N> {
         let mut force = Vector([Wrench::ZERO; N]);
-        self.carried::<T, OWN>(poses, [v, v_r, a_r], base, |i, joint, body| force[i] = wrench(i, joint, body));
+        self.carried::<T, OWN>(poses, [v, v_r, a_r], base, |i, joint, body| {
+            force[i] = wrench(i, joint, body)
+        });
         // Phantoms: unit inertia.
         let mut torque = *a_r;
         for (i, (joint, pose)) in self.chain(poses).rev() {
@@ -242,15 +244,10 @@ impl<C: Scalar, const N: usize> Links<C, N> for Tree<C, N> {
         v_r: &Vector<T, N>,
         a_r: &Vector<T, N>,
     ) -> Vector<T, N> {
-        self.newton_euler_of::<T, false>(
-            &self.poses(q),
-            [v, v_r, a_r],
-            self.upwards(),
-            |i, joint, body| {
-                let load = RigidInertia::from_numbers(parameters.map(|slot| slot[i]));
-                joint.wrench_on(&load, body, T::mul)
-            },
-        )
+        self.newton_euler_of::<T, false>(&self.poses(q), [v, v_r, a_r], self.upwards(), |i, joint, body| {
+            let load = RigidInertia::from_numbers(parameters.map(|slot| slot[i]));
+            joint.wrench_on(&load, body, T::mul)
+        })
     }
 
     #[inline]
