@@ -25,6 +25,12 @@ pub struct TwoLink {
     g2: f64,
 }
 
+impl TwoLink {
+    /// The upright arm of the golden files.
+    pub const UPRIGHT: Self =
+        Self { a1: 0.180081887, a2: 0.010720825, b: 0.016469145, g1: 5.29277949, g2: 0.47102715 };
+}
+
 impl Links<f64, 2> for TwoLink {
     type Factor<'a, T: Over<f64>> = Ldl<T, 2>;
 
