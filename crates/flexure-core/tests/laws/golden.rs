@@ -18,11 +18,11 @@ const TOLERANCE: f64 = 1e-9;
 /// The paper's links with gravity along them: a robot of one's own.
 #[derive(Clone, Copy, Deserialize)]
 pub struct TwoLink {
-    a1: f64,
-    a2: f64,
-    b: f64,
-    g1: f64,
-    g2: f64,
+    pub a1: f64,
+    pub a2: f64,
+    pub b: f64,
+    pub g1: f64,
+    pub g2: f64,
 }
 
 impl TwoLink {

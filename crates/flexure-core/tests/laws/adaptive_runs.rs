@@ -1,0 +1,217 @@
+//! Adaptive laws in time: their step is of second order, their storage does not grow, their parameters stay between bounds.
+
+use flexure_core::control::{
+    Adaptation, AdaptiveCommandFilteredBackstepping, AdaptiveVcbc, Applied, CommandFilteredBackstepping,
+    DynamicLaw, Running, Signals,
+};
+use flexure_core::linalg::Vector;
+use flexure_core::model::{Fjr, Links, Motion};
+use flexure_core::scalar::{Jet, Over, Scalar};
+
+use crate::common::plant::{Push, advance};
+use crate::common::{Numbers, flexible, serial};
+use crate::golden::TwoLink;
+
+type Arm = Fjr<f64, TwoLink, 2>;
+type Series<const N: usize> = Vector<Jet<f64, 5>, N>;
+
+/// The upright arm of the golden files, its links `share` of what they are.
+fn upright(share: f64) -> Arm {
+    let TwoLink { a1, a2, b, g1, g2 } = TwoLink::UPRIGHT;
+    let [a1, a2, b, g1, g2] = [a1, a2, b, g1, g2].map(|x| share * x);
+    Fjr {
+        links: TwoLink { a1, a2, b, g1, g2 },
+        motor_inertia: Vector([0.23, 0.01]),
+        stiffness: Vector([9.0, 4.0]),
+        link_damping: Vector([0.8, 0.55]),
+        motor_damping: Vector([0.2, 0.9]),
+    }
+}
+
+/// Gains of the golden files.
+fn backstepping<const N: usize>(stiffness: Vector<f64, N>) -> CommandFilteredBackstepping<f64, N> {
+    CommandFilteredBackstepping {
+        shaping: Vector([4.0; N]),
+        link_damping: Vector::from_fn(|i| if i == 0 { 2.0 } else { 1.0 }),
+        metric: stiffness,
+        motor_shaping: Vector([30.0; N]),
+        rate_metric: Vector([0.02; N]),
+        rate_shaping: Vector([60.0; N]),
+        bandwidth: Vector([400.0; N]),
+    }
+}
+
+/// sin 0.6 t on both joints.
+fn swinging(t: f64) -> Series<2> {
+    Vector([Jet::variable(t).scale(0.6).sin(); 2])
+}
+
+/// The motors get what the law asks for, held over each of `periods` of `period` in s; `look` sees the memory after each.
+fn run<F: DynamicLaw<f64, 2, K>, const K: usize>(
+    law: &F,
+    [model, plant]: [&Arm; 2],
+    q_ld: impl Fn(f64) -> Series<2>,
+    (period, periods): (f64, u32),
+    mut look: impl FnMut(f64, &Motion<f64, 2>, &[Vector<f64, 2>; K]),
+) {
+    let mut x = Motion::at_rest(Vector([0.2, -0.2]));
+    x.q_m += plant.stiffness.map(f64::recip).diag_mul(&plant.links.gravity_torque(&x.q_l));
+    let mut running = Running::start(law, model, &x, &q_ld(0.0));
+    look(0.0, &x, &running.memory);
+    for k in 0..periods {
+        let [t, next] = [k, k + 1].map(|k| f64::from(k) * period);
+        let u = law.torque(model, &x, &q_ld(t), &running.memory);
+        x = advance(plant, &x, &u, &Push::NONE, period, 1);
+        running.advance(law, model, &x, &q_ld(next), &Applied::fully(u), period);
+        look(next, &x, &running.memory);
+    }
+}
+
+/// Along a given motion, memory stepped with T, T/2 and T/16: halving T quarters what is left.
+fn second_order<F: DynamicLaw<f64, N, K>, L: Links<f64, N>, const N: usize, const K: usize>(
+    robot: &Fjr<f64, L, N>,
+    law: &F,
+) {
+    let phase = |i: usize, t: f64| (3.0 + i as f64) * t + 0.3 * i as f64;
+    let motion = |t: f64| {
+        let side = |lag: f64, amplitude: f64| {
+            let q = |i: usize| amplitude * (phase(i, t) - lag).sin();
+            let v = |i: usize| amplitude * (3.0 + i as f64) * (phase(i, t) - lag).cos();
+            (Vector::from_fn(q), Vector::from_fn(v))
+        };
+        let ((q_l, v_l), (q_m, v_m)) = (side(0.0, 0.3), side(0.1, 0.35));
+        Motion { q_l, q_m, v_l, v_m }
+    };
+    let q_ld = |t: f64| Vector::from_fn(|i| Jet::variable(t).scale(2.0 + i as f64).sin().scale(0.3));
+    let ends = |steps: u32| {
+        let period = 0.05 / f64::from(steps);
+        let mut running = Running::start(law, robot, &motion(0.0), &q_ld(0.0));
+        for k in 1..=steps {
+            let t = f64::from(k) * period;
+            running.advance(law, robot, &motion(t), &q_ld(t), &Applied::NOTHING, period);
+        }
+        running.memory
+    };
+    let [coarse, half, fine] = [100, 200, 1600].map(ends);
+    let left =
+        |z: &Vector<f64, N>, fine: &Vector<f64, N>| (*z - *fine).iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    for ((coarse, half), fine) in coarse.iter().zip(&half).zip(&fine) {
+        let [one, two] = [coarse, half].map(|z| left(z, fine));
+        // (1 − 1/16²) / (1/4 − 1/16²) = 4.048; a number that the robot does not have stays as it is.
+        assert!((4.0..4.1).contains(&(one / two)) || (one == 0.0 && two == 0.0), "{one} against {two}");
+    }
+}
+
+#[test]
+fn memory_is_stepped_with_second_order() {
+    let robot = upright(1.0);
+    let (nominal, link_metric) = (backstepping(robot.stiffness), Vector([6.0, 3.0]));
+    // Bounds that are not met: where φ̂ is clamped depends on T.
+    let adaptation = Adaptation::around(&robot.links, &Vector([0.1; 2]), &Vector([0.9; 2]));
+    second_order(&robot, &nominal);
+    second_order(&robot, &AdaptiveCommandFilteredBackstepping { nominal, adaptation });
+    second_order(&robot, &AdaptiveVcbc { backstepping: nominal, link_metric, adaptation });
+    let robot = flexible(serial::<7>(), &mut Numbers(51));
+    let nominal = backstepping(robot.stiffness);
+    let adaptation = Adaptation::around(&robot.links, &Vector([0.01; 7]), &Vector([0.4; 7]));
+    second_order(&robot, &AdaptiveCommandFilteredBackstepping { nominal, adaptation });
+}
+
+/// ½ v_2ᵀ M v_2 + ½ v_3ᵀ W_3 v_3 + ½ v_4ᵀ W_4 v_4 + ½ φ̃ᵀ Γ⁻¹ φ̃.
+fn storage(
+    law: &AdaptiveCommandFilteredBackstepping<f64, 2>,
+    plant: &Arm,
+    x: &Motion<f64, 2>,
+    q_ld: &Series<2>,
+    z: &[Vector<f64, 2>; 16],
+) -> f64 {
+    let [q_d, v_d, ..] = q_ld.derivatives();
+    let [x_3, _, x_4, _, xi_2, xi_3, phi @ ..] = z;
+    let nominal = &law.nominal;
+    let v_2 = x.v_l - v_d + nominal.shaping.diag_mul(&(x.q_l - q_d)) - *xi_2;
+    let (v_3, v_4) = (x.q_m - *x_3 - *xi_3, x.v_m - *x_4);
+    let square = |weight: &Vector<f64, 2>, y: &Vector<f64, 2>| 0.5 * y.dot(&weight.diag_mul(y));
+    let unknown = phi.iter().zip(plant.links.parameters()).zip(law.adaptation.gain);
+    0.5 * v_2.dot(&plant.links.mass_mul(&x.q_l, &v_2))
+        + square(&nominal.metric, &v_3)
+        + square(&nominal.rate_metric, &v_4)
+        + unknown
+            .flat_map(|((phi, own), gain)| (0..2).map(move |i| (phi[i] - own[i], gain[i])))
+            .filter(|(_, gain)| *gain > 0.0)
+            .map(|(off, gain)| 0.5 * off * off / gain)
+            .sum::<f64>()
+}
+
+/// An arm a quarter heavier than the law was told, within the bounds.
+#[test]
+fn storage_never_grows_along_twenty_seconds() {
+    let (model, plant) = (upright(0.8), upright(1.0));
+    let adaptation = Adaptation::around(&model.links, &Vector([0.1; 2]), &Vector([0.3; 2]));
+    let law = AdaptiveCommandFilteredBackstepping { nominal: backstepping(model.stiffness), adaptation };
+    let (mut first, mut last) = (0.0, f64::INFINITY);
+    run(&law, [&model, &plant], swinging, (1e-4, 200_000), |t, x, z| {
+        let V = storage(&law, &plant, x, &swinging(t), z);
+        assert!(V <= last, "{V} after {last} at {t} s");
+        (first, last) = (if t == 0.0 { V } else { first }, V);
+    });
+    // What is left is parameters that this motion does not show.
+    assert!(last < 0.6 * first, "{first} {last}");
+}
+
+/// At rest nothing tells parameters apart, and these bounds leave out the robot's own: φ̂ goes to them and no further.
+#[test]
+fn parameters_stay_between_their_bounds() {
+    let (model, plant) = (upright(0.8), upright(1.0));
+    let adaptation = Adaptation::around(&model.links, &Vector([5.0; 2]), &Vector([0.1; 2]));
+    let nominal = backstepping(model.stiffness);
+    let goal = |_: f64| Vector([0.5, -0.4]).map(Jet::value);
+    let link_metric = Vector([6.0, 3.0]);
+    let mut met = false;
+    let mut inside = |phi: &[Vector<f64, 2>]| {
+        for ((phi, low), high) in phi.iter().zip(&adaptation.low).zip(&adaptation.high) {
+            for i in 0..2 {
+                assert!(low[i] <= phi[i] && phi[i] <= high[i], "{phi:?} {low:?} {high:?}");
+                met |= high[i] > low[i] && phi[i] == high[i];
+            }
+        }
+    };
+    let law = AdaptiveCommandFilteredBackstepping { nominal, adaptation };
+    run(&law, [&model, &plant], goal, (1e-3, 20_000), |_, _, z| inside(&z[6..]));
+    let law = AdaptiveVcbc { backstepping: nominal, link_metric, adaptation };
+    run(&law, [&model, &plant], goal, (1e-3, 20_000), |_, _, z| inside(&z[7..]));
+    assert!(met);
+}
+
+/// The whole motion and the reference to order 2, and no more.
+fn reads<F: DynamicLaw<f64, 2, K>, const K: usize>(law: &F) {
+    let (robot, r) = (upright(1.0), &mut Numbers(52));
+    let (x, q_ld) = (r.motion(1.0), swinging(1.3));
+    let z = law.start(&robot, &r.motion(1.0), &q_ld);
+    let all = |x: &Motion<f64, 2>, q_ld: &Series<2>| {
+        let torque = law.torque(&robot, x, q_ld, &z);
+        (torque, law.rate(&robot, x, q_ld, &z, &Applied::NOTHING))
+    };
+    let short = q_ld.map(|q| Jet::from_fn(|k| if k < 3 { q.coefficient(k) } else { f64::NAN }));
+    assert_eq!(all(&x, &short), all(&x, &q_ld));
+    let nothing = Vector([f64::NAN; 2]);
+    assert_eq!(F::READS, Signals::ALL);
+    for blind in [
+        Motion { q_l: nothing, ..x },
+        Motion { q_m: nothing, ..x },
+        Motion { v_l: nothing, ..x },
+        Motion { v_m: nothing, ..x },
+    ] {
+        let (torque, rate) = all(&blind, &q_ld);
+        assert!(torque.iter().chain(rate.iter().flat_map(Vector::iter)).any(f64::is_nan));
+    }
+}
+
+#[test]
+fn laws_read_the_motion_and_the_reference_to_order_two() {
+    let robot = upright(1.0);
+    let (nominal, link_metric) = (backstepping(robot.stiffness), Vector([6.0, 3.0]));
+    let adaptation = Adaptation::around(&robot.links, &Vector([0.1; 2]), &Vector([0.3; 2]));
+    reads(&nominal);
+    reads(&AdaptiveCommandFilteredBackstepping { nominal, adaptation });
+    reads(&AdaptiveVcbc { backstepping: nominal, link_metric, adaptation });
+}
