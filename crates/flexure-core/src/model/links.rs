@@ -214,14 +214,16 @@ pub trait Links<C: Scalar, const N: usize> {
         a_r: &Vector<T, N>,
         s: &Vector<T, N>,
     ) -> Parameters<T, N> {
-        let lift = |x: &Vector<T, N>| x.map(Dual::<T, N>::constant);
-        let [q, v, v_r, a_r, s] = [q, v, v_r, a_r, s].map(lift);
-        let mut slot = 0..;
-        [Vector::ZERO; 10].map(|zero| {
-            let slot = slot.next();
-            let mut units = 0..;
-            let unit = [zero; 10].map(|zero| if units.next() == slot { seeded(&zero) } else { lift(&zero) });
-            Vector(self.regressor_mul(&unit, &q, &v, &v_r, &a_r).dot(&s).gradient)
+        let power = |parameters: &Parameters<T, N>| self.regressor_mul(parameters, q, v, v_r, a_r).dot(s);
+        let mut parameters = [Vector::ZERO; 10];
+        let without = power(&parameters);
+        core::array::from_fn(|slot| {
+            Vector::from_fn(|i| {
+                parameters[slot][i] = T::ONE;
+                let with = power(&parameters);
+                parameters[slot][i] = T::ZERO;
+                with - without
+            })
         })
     }
 
