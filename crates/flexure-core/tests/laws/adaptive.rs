@@ -33,6 +33,7 @@ fn adaptation<const N: usize>(r: &mut Numbers) -> Adaptation<f64, N> {
         gain: [(); 10].map(|()| r.between(0.1, 2.0)),
         low: [Vector([f64::NEG_INFINITY; N]); 10],
         high: [Vector([f64::INFINITY; N]); 10],
+        least: Vector([0.1; N]),
     }
 }
 

@@ -9,8 +9,11 @@ use flexure_core::model::{Fjr, Links, Motion};
 use flexure_core::scalar::{Jet, Over, Scalar};
 
 use crate::common::plant::{Push, advance};
-use crate::common::{Numbers, flexible, serial};
+use crate::common::{Numbers, branched, flexible, planar, serial};
 use crate::golden::TwoLink;
+
+/// ε of the projections.
+const LEAST: f64 = 0.2;
 
 type Arm = Fjr<f64, TwoLink, 2>;
 type Series<const N: usize> = Vector<Jet<f64, 5>, N>;
@@ -39,6 +42,11 @@ fn backstepping<const N: usize>(stiffness: Vector<f64, N>) -> CommandFilteredBac
         rate_shaping: Vector([60.0; N]),
         bandwidth: Vector([400.0; N]),
     }
+}
+
+/// One rate [1/J] and one range for all joints.
+fn around<const N: usize>(links: &impl Links<f64, N>, rate: f64, range: f64) -> Adaptation<f64, N> {
+    Adaptation::around(links, &Vector([rate; N]), &Vector([range; N]), &Vector([LEAST; N]))
 }
 
 /// sin 0.6 t on both joints.
@@ -107,13 +115,13 @@ fn memory_is_stepped_with_second_order() {
     let robot = upright(1.0);
     let (nominal, link_metric) = (backstepping(robot.stiffness), Vector([6.0, 3.0]));
     // Bounds that are not met: where φ̂ is clamped depends on T.
-    let adaptation = Adaptation::around(&robot.links, &Vector([0.1; 2]), &Vector([0.9; 2]));
+    let adaptation = around(&robot.links, 0.1, 0.9);
     second_order(&robot, &nominal);
     second_order(&robot, &AdaptiveCommandFilteredBackstepping { nominal, adaptation });
     second_order(&robot, &AdaptiveVcbc { backstepping: nominal, link_metric, adaptation });
     let robot = flexible(serial::<7>(), &mut Numbers(51));
     let nominal = backstepping(robot.stiffness);
-    let adaptation = Adaptation::around(&robot.links, &Vector([0.01; 7]), &Vector([0.4; 7]));
+    let adaptation = around(&robot.links, 0.01, 0.4);
     second_order(&robot, &AdaptiveCommandFilteredBackstepping { nominal, adaptation });
 }
 
@@ -146,7 +154,7 @@ fn storage(
 #[test]
 fn storage_never_grows_along_twenty_seconds() {
     let (model, plant) = (upright(0.8), upright(1.0));
-    let adaptation = Adaptation::around(&model.links, &Vector([0.1; 2]), &Vector([0.3; 2]));
+    let adaptation = around(&model.links, 0.1, 0.3);
     let law = AdaptiveCommandFilteredBackstepping { nominal: backstepping(model.stiffness), adaptation };
     let (mut first, mut last) = (0.0, f64::INFINITY);
     run(&law, [&model, &plant], swinging, (1e-4, 200_000), |t, x, z| {
@@ -162,7 +170,7 @@ fn storage_never_grows_along_twenty_seconds() {
 #[test]
 fn parameters_stay_between_their_bounds() {
     let (model, plant) = (upright(0.8), upright(1.0));
-    let adaptation = Adaptation::around(&model.links, &Vector([5.0; 2]), &Vector([0.1; 2]));
+    let adaptation = around(&model.links, 5.0, 0.1);
     let nominal = backstepping(model.stiffness);
     let goal = |_: f64| Vector([0.5, -0.4]).map(Jet::value);
     let link_metric = Vector([6.0, 3.0]);
@@ -210,8 +218,46 @@ fn reads<F: DynamicLaw<f64, 2, K>, const K: usize>(law: &F) {
 fn laws_read_the_motion_and_the_reference_to_order_two() {
     let robot = upright(1.0);
     let (nominal, link_metric) = (backstepping(robot.stiffness), Vector([6.0, 3.0]));
-    let adaptation = Adaptation::around(&robot.links, &Vector([0.1; 2]), &Vector([0.3; 2]));
+    let adaptation = around(&robot.links, 0.1, 0.3);
     reads(&nominal);
     reads(&AdaptiveCommandFilteredBackstepping { nominal, adaptation });
     reads(&AdaptiveVcbc { backstepping: nominal, link_metric, adaptation });
+}
+
+/// Parameters at random around those of a robot: projected again and again, they come no further from the robot's own, and to a mass matrix that has
+/// `LEAST` of each pivot of the model's. Was it less at first?
+fn keeps_mass_positive<L: Links<f64, N>, const N: usize>(links: &L, r: &mut Numbers) -> bool {
+    let own = links.parameters();
+    let adaptation = around(links, r.between::<1>(0.01, 1.0)[0], 0.5);
+    let q = r.vector::<N>(3.0);
+    let start = own.map(|slot| slot.diag_mul(&r.between(0.2, 1.8)));
+    let least = |phi: &[Vector<f64, N>; 10]| {
+        let [found, model] = [phi, &own].map(|phi| *links.mass_matrix_of(phi, &q).ldl().pivots());
+        (0..N).map(|i| found[i] / model[i]).fold(f64::INFINITY, f64::min)
+    };
+    let distance = |phi: &[Vector<f64, N>; 10]| {
+        let off = |k: usize| (0..N).map(move |i| (phi[k][i] - own[k][i], adaptation.gain[k][i]));
+        let terms = (0..10).flat_map(off).filter(|(_, gain)| *gain > 0.0);
+        terms.map(|(off, gain)| off * off / gain).sum::<f64>()
+    };
+    let (mut phi, mut last) = (start, distance(&start));
+    for _ in 0..200 {
+        phi = adaptation.projected(links, &q, &phi);
+        let now = distance(&phi);
+        assert!(now <= last * (1.0 + 1e-12), "{now} after {last}");
+        last = now;
+    }
+    assert!(least(&phi) >= 0.99 * LEAST, "{} from {}", least(&phi), least(&start));
+    least(&start) < LEAST
+}
+
+#[test]
+fn projections_keep_mass_positive_and_come_no_further_from_the_robot() {
+    let (r, mut mended) = (&mut Numbers(53), [false; 3]);
+    for _ in 0..50 {
+        mended[0] |= keeps_mass_positive(&planar(), r);
+        mended[1] |= keeps_mass_positive(&branched::<5>(2), r);
+        mended[2] |= keeps_mass_positive(&serial::<7>(), r);
+    }
+    assert_eq!(mended, [true; 3]);
 }

@@ -261,7 +261,8 @@ fn adaptive<F: DynamicLaw<f64, 2, K>, const K: usize>(name: &str, law: impl Fn(&
 fn adaptation(case: &Case) -> Adaptation<f64, 2> {
     let Gain::List(gain) = &case.gains["adaptation"] else { panic!("a list") };
     let gain = slots(gain.as_slice().try_into().expect("five numbers"));
-    Adaptation { gain, low: slots([f64::NEG_INFINITY; 5]), high: slots([f64::INFINITY; 5]) }
+    let (low, high) = (slots([f64::NEG_INFINITY; 5]), slots([f64::INFINITY; 5]));
+    Adaptation { gain, low, high, least: Vector([0.1; 2]) }
 }
 
 #[test]

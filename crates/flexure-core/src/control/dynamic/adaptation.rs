@@ -6,12 +6,15 @@ use crate::linalg::Vector;
 use crate::model::{Fjr, Links, Motion, Parameters};
 use crate::scalar::{Over, Piecewise, Scalar};
 
-/// How a law adapts its [parameters φ̂ of the links](Links::parameters): φ̂̇ = −Γ Yᵀ v_2, between bounds.
+/// How a law adapts its [parameters φ̂ of the links](Links::parameters): φ̂̇ = −Γ Yᵀ v_2, projected after each step.
 ///
-/// φ̂ is clamped number by number after each step. As Γ is diagonal, that is the projection onto the bounds in the metric Γ⁻¹ of the laws' storage: if the
-/// robot's own φ is between the bounds, the storage does not grow by it. The law divides by the mass matrix of φ̂, and the bounds have to keep it positive
-/// definite. It is linear in φ̂, so that it is so everywhere between the bounds if it is at their corners: for the arm in
-/// [closed form](crate::robots::PlanarTwoLink) where b² < a1 a2 at the least a1, a2 and the largest |b|.
+/// The projection clamps φ̂ between bounds and then keeps the mass matrix M̂ of φ̂, which the laws divide by, positive definite. It has a half-space for each pivot of
+/// M̂ = L D Lᵀ where the robot is: as pivot i is the least yᵀ M̂ y of all y with y_i = 1 and 0 behind i, those φ whose mass matrix has a pivot of at least
+/// ε times that of the model have yᵀ M(φ) y no less for y = L⁻ᵀ e_i either, which is linear in φ. All of these sets are convex, and all projections are those in the
+/// metric Γ⁻¹ of the laws' storage V: V does not grow by them if the robot's own φ is in these sets. What one projection spoils of another, the next steps mend.
+///
+/// Bounds alone do not keep M̂ positive definite on trees, whose numbers only make sense together; for the arm in
+/// [closed form](crate::robots::PlanarTwoLink) they do where b² < a1 a2 at the least a1, a2 and the largest |b|.
 #[derive(Clone, Copy, Debug)]
 pub struct Adaptation<C, const N: usize> {
     /// The diagonal of Γ, in the squared unit of each number per J. Where it is 0, φ̂ stays what the robot's model has.
@@ -20,13 +23,20 @@ pub struct Adaptation<C, const N: usize> {
     pub low: Parameters<C, N>,
     /// Largest φ̂.
     pub high: Parameters<C, N>,
+    /// ε, the share of each pivot of the model's mass matrix that is left in any case: positive, below 1.
+    pub least: Vector<C, N>,
 }
 
 impl<C: Piecewise, const N: usize> Adaptation<C, N> {
     /// Around the parameters φ of `links`: Γ = γ φ² with a `rate` γ [1/J] of each joint, so that the share of φ that φ̂ moves by is the same in
     /// all units, and bounds φ ∓ `range` |φ|. What is 0 in φ is not adapted.
     #[inline]
-    pub fn around(links: &impl Links<C, N>, rate: &Vector<C, N>, range: &Vector<C, N>) -> Self {
+    pub fn around(
+        links: &impl Links<C, N>,
+        rate: &Vector<C, N>,
+        range: &Vector<C, N>,
+        least: &Vector<C, N>,
+    ) -> Self {
         let parameters = links.parameters();
         let bound =
             |side: C| parameters.map(|slot| Vector::from_fn(|i| slot[i] + side * range[i] * slot[i].abs()));
@@ -34,19 +44,48 @@ impl<C: Piecewise, const N: usize> Adaptation<C, N> {
             gain: parameters.map(|slot| Vector::from_fn(|i| rate[i] * slot[i].square())),
             low: bound(-C::ONE),
             high: bound(C::ONE),
+            least: *least,
         }
     }
 }
 
+/// a·b.
+#[inline]
+fn dot<T: Scalar, const N: usize>(a: &Parameters<T, N>, b: &Parameters<T, N>) -> T {
+    a.iter().zip(b).fold(T::ZERO, |sum, (a, b)| sum + a.dot(b))
+}
+
 impl<C: Scalar, const N: usize> Adaptation<C, N> {
-    /// The nearest parameters between the bounds.
+    /// φ̂ projected with `links` at `q` in rad.
     #[inline]
-    pub(super) fn bounded<T: Over<C> + Piecewise>(&self, parameters: &Parameters<T, N>) -> Parameters<T, N> {
-        core::array::from_fn(|k| {
+    pub fn projected<T: Over<C> + Piecewise>(
+        &self,
+        links: &impl Links<C, N>,
+        q: &Vector<T, N>,
+        parameters: &Parameters<T, N>,
+    ) -> Parameters<T, N> {
+        let clamped: Parameters<T, N> = core::array::from_fn(|k| {
             Vector::from_fn(|i| {
                 parameters[k][i].clamp(T::constant(self.low[k][i]), T::constant(self.high[k][i]))
             })
-        })
+        });
+        let model = links.mass_matrix(q).ldl();
+        let factor = links.mass_matrix_of(&clamped, q).ldl();
+        let rest = Vector::ZERO;
+        let mut found = clamped;
+        for i in 0..N {
+            // yᵀ M(φ) y = slope·φ, but for what has no numbers; less what gravity has to do with it.
+            let y = factor.pivotal(i);
+            let powers = |a: &Vector<T, N>| links.regressor_transpose_mul(q, &rest, &rest, a, &y);
+            let (with, without) = (powers(&y), powers(&rest));
+            let slope: Parameters<T, N> = core::array::from_fn(|k| with[k] - without[k]);
+            let moved: Parameters<T, N> = core::array::from_fn(|k| found[k] - clamped[k]);
+            let missing = model.pivots()[i].scale(self.least[i]) - factor.pivots()[i] - dot(&slope, &moved);
+            let along: Parameters<T, N> = core::array::from_fn(|k| self.gain[k].diag_mul(&slope[k]));
+            let share = missing.select(missing / dot(&slope, &along), T::ZERO);
+            found = core::array::from_fn(|k| found[k] + along[k].scaled(share));
+        }
+        found
     }
 
     /// Rates of the filters of `law` and of φ̂, on links with the parameters φ̂ that the torques `pull` [N m] act on besides, in α_2 and in ξ_2.

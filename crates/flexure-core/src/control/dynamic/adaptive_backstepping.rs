@@ -64,7 +64,7 @@ impl<C: Scalar, const N: usize> DynamicLaw<C, N, 16> for AdaptiveCommandFiltered
         joined(filters, parameters)
     }
 
-    /// φ̂, which is slow, without a Jacobian, and then between its bounds.
+    /// φ̂, which is slow, without a Jacobian, and then projected.
     #[inline]
     fn advanced<T: Over<C> + Piecewise, L: Links<C, N>>(
         &self,
@@ -75,8 +75,9 @@ impl<C: Scalar, const N: usize> DynamicLaw<C, N, 16> for AdaptiveCommandFiltered
         applied: &Applied<T, N>,
         period: T,
     ) -> [Vector<T, N>; 16] {
-        let [x_3, dx_3, x_4, dx_4, xi_2, xi_3, parameters @ ..] =
-            advanced::<6, _, _, _, N, 16>(self, robot, before, now, z, applied, period);
-        joined([x_3, dx_3, x_4, dx_4, xi_2, xi_3], self.adaptation.bounded(&parameters))
+        let mut next = advanced::<6, _, _, _, N, 16>(self, robot, before, now, z, applied, period);
+        let [_, _, _, _, _, _, parameters @ ..] = &mut next;
+        *parameters = self.adaptation.projected(&robot.links, &now.x.q_l, parameters);
+        next
     }
 }
