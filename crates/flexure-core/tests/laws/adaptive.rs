@@ -2,14 +2,15 @@
 
 use flexure_core::control::{
     Adaptation, AdaptiveCommandFilteredBackstepping, AdaptiveVcbc, Applied, CommandFilteredBackstepping,
-    DynamicLaw,
+    DynamicLaw, Running,
 };
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion, Parameters};
+use flexure_core::robots::Tree;
 use flexure_core::scalar::{Jet, Over};
 
 use crate::common::laws::Course;
-use crate::common::{Numbers, branched, flexible, planar, serial};
+use crate::common::{GRAVITY, Numbers, branched, branched_bodies, flexible, planar, serial};
 
 /// Of the largest of all terms of dV/dt: what a few hundred operations round off it is some 1e-14 of it.
 const TOLERANCE: f64 = 1e-12;
@@ -259,4 +260,75 @@ fn adaptive_backstepping_decays_whatever_the_links_are_taken_for() {
 #[test]
 fn adaptive_vcbc_decays_whatever_the_links_are_taken_for() {
     on_three_arms!(vcbc, 43);
+}
+
+/// Joints that only fill a capacity change nothing for the others, and stay at rest.
+#[test]
+fn phantoms_stay_at_rest() {
+    let r = &mut Numbers(44);
+    let exact = flexible(branched::<5>(2), r);
+    let padded = |x: &Vector<f64, 5>| Vector::<f64, 7>::from_fn(|i| x.0.get(i).copied().unwrap_or(1.0));
+    let still = |x: &Vector<f64, 5>| Vector::<f64, 7>::from_fn(|i| x.0.get(i).copied().unwrap_or(0.0));
+    let [stiffness, motor_inertia, link_damping, motor_damping] =
+        [exact.stiffness, exact.motor_inertia, exact.link_damping, exact.motor_damping].map(|x| padded(&x));
+    let links = Tree::from_bodies(&branched_bodies::<5>(2), GRAVITY, |x| x).expect("a tree that fits");
+    let roomy = Fjr { links, stiffness, motor_inertia, link_damping, motor_damping };
+    let small = AdaptiveVcbc {
+        backstepping: backstepping(r),
+        link_metric: r.between(2.0, 20.0),
+        adaptation: Adaptation::around(
+            &exact.links,
+            &r.between(0.1, 1.0),
+            &Vector([0.5; 5]),
+            &Vector([0.1; 5]),
+        ),
+    };
+    let CommandFilteredBackstepping {
+        shaping,
+        link_damping,
+        metric,
+        motor_shaping,
+        rate_metric,
+        rate_shaping,
+        bandwidth,
+    } = small.backstepping;
+    let large = AdaptiveVcbc {
+        backstepping: CommandFilteredBackstepping {
+            shaping: padded(&shaping),
+            link_damping: padded(&link_damping),
+            metric: padded(&metric),
+            motor_shaping: padded(&motor_shaping),
+            rate_metric: padded(&rate_metric),
+            rate_shaping: padded(&rate_shaping),
+            bandwidth: padded(&bandwidth),
+        },
+        link_metric: padded(&small.link_metric),
+        adaptation: Adaptation {
+            gain: small.adaptation.gain.map(|slot| padded(&slot)),
+            low: small.adaptation.low.map(|slot| still(&slot)),
+            high: small.adaptation.high.map(|slot| still(&slot)),
+            least: Vector([0.1; 7]),
+        },
+    };
+    let widened = |x: &Motion<f64, 5>| Motion {
+        q_l: still(&x.q_l),
+        q_m: still(&x.q_m),
+        v_l: still(&x.v_l),
+        v_m: still(&x.v_m),
+    };
+    let (x, q_ld) = (r.motion(0.5), r.series::<5, 5>(0.5));
+    let wide_q_ld = Vector::from_fn(|i| q_ld.0.get(i).copied().unwrap_or(Jet::value(0.0)));
+    let mut one = Running::start(&small, &exact, &x, &q_ld);
+    let mut other = Running::start(&large, &roomy, &widened(&x), &wide_q_ld);
+    for _ in 0..20 {
+        one.advance(&small, &exact, &x, &q_ld, &Applied::NOTHING, 1e-3);
+        other.advance(&large, &roomy, &widened(&x), &wide_q_ld, &Applied::NOTHING, 1e-3);
+    }
+    let (u, wide) = (
+        small.torque(&exact, &x, &q_ld, &one.memory),
+        large.torque(&roomy, &widened(&x), &wide_q_ld, &other.memory),
+    );
+    for (part, wide) in one.memory.iter().chain([&u]).zip(other.memory.iter().chain([&wide])) {
+        assert_eq!(still(part), *wide);
+    }
 }
