@@ -215,14 +215,14 @@ pub trait Links<C: Scalar, const N: usize> {
         s: &Vector<T, N>,
     ) -> Parameters<T, N> {
         let power = |parameters: &Parameters<T, N>| self.regressor_mul(parameters, q, v, v_r, a_r).dot(s);
-        let mut parameters = [Vector::ZERO; 10];
-        let without = power(&parameters);
-        core::array::from_fn(|slot| {
+        let without = power(&[Vector::ZERO; 10]);
+        let mut slots = 0..;
+        [Vector::ZERO; 10].map(|zero| {
+            let slot = slots.next();
             Vector::from_fn(|i| {
-                parameters[slot][i] = T::ONE;
-                let with = power(&parameters);
-                parameters[slot][i] = T::ZERO;
-                with - without
+                let mut others = 0..;
+                let unit = [zero; 10].map(|zero| if others.next() == slot { unit(i) } else { zero });
+                power(&unit) - without
             })
         })
     }
@@ -233,10 +233,8 @@ pub trait Links<C: Scalar, const N: usize> {
         let rest = Vector::ZERO;
         let torque = |a: &Vector<T, N>| self.regressor_mul(parameters, q, &rest, &rest, a);
         let gravity = torque(&rest);
-        let columns: [Vector<T, N>; N] = core::array::from_fn(|k| {
-            torque(&Vector::from_fn(|i| if i == k { T::ONE } else { T::ZERO })) - gravity
-        });
-        Matrix::from_fn(|i, k| columns[k][i])
+        // A row is a column.
+        Matrix(core::array::from_fn(|k| (torque(&unit(k)) - gravity).0))
     }
 
     /// M(q) a [N m].
@@ -260,6 +258,12 @@ impl<T: Scalar, const N: usize> MassFactor<T, N> for Ldl<T, N> {
     fn solve(&self, b: &Vector<T, N>) -> Vector<T, N> {
         Self::solve(self, b)
     }
+}
+
+/// 1 at `i`, else 0.
+#[inline]
+fn unit<T: Scalar, const N: usize>(i: usize) -> Vector<T, N> {
+    Vector::from_fn(|k| if k == i { T::ONE } else { T::ZERO })
 }
 
 /// `q` as dual numbers seeded with the identity.

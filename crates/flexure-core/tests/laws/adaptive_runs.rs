@@ -5,7 +5,7 @@ use flexure_core::control::{
     DynamicLaw, Running, Signals,
 };
 use flexure_core::linalg::Vector;
-use flexure_core::model::{Fjr, Links, Motion};
+use flexure_core::model::{Fjr, Links, Motion, Parameters};
 use flexure_core::scalar::{Jet, Over, Scalar};
 
 use crate::common::plant::{Push, advance};
@@ -258,21 +258,26 @@ fn keeps_mass_positive<L: Links<f64, N>, const N: usize>(links: &L, r: &mut Numb
     let adaptation = around(links, r.between::<1>(0.01, 1.0)[0], 0.5);
     let q = r.vector::<N>(3.0);
     let start = own.map(|slot| slot.diag_mul(&r.between(0.2, 1.8)));
-    let least = |phi: &[Vector<f64, N>; 10]| {
+    let least = |phi: &Parameters<f64, N>| {
         let [found, model] = [phi, &own].map(|phi| *links.mass_matrix_of(phi, &q).ldl().pivots());
         (0..N).map(|i| found[i] / model[i]).fold(f64::INFINITY, f64::min)
     };
-    let distance = |phi: &[Vector<f64, N>; 10]| {
-        let off = |k: usize| (0..N).map(move |i| (phi[k][i] - own[k][i], adaptation.gain[k][i]));
+    // The squared distance in the metric Γ⁻¹.
+    let distance = |a: &Parameters<f64, N>, b: &Parameters<f64, N>| {
+        let off = |k: usize| (0..N).map(move |i| (a[k][i] - b[k][i], adaptation.gain[k][i]));
         let terms = (0..10).flat_map(off).filter(|(_, gain)| *gain > 0.0);
         terms.map(|(off, gain)| off * off / gain).sum::<f64>()
     };
-    let (mut phi, mut last) = (start, distance(&start));
+    let mut phi = start;
     for _ in 0..200 {
-        phi = adaptation.projected(links, &q, &phi);
-        let now = distance(&phi);
-        assert!(now <= last * (1.0 + 1e-12), "{now} after {last}");
-        last = now;
+        // Each of N + 1 projections comes nearer by as much as it moves, in squares.
+        let next = adaptation.projected(links, &q, &phi);
+        let (now, last, moved) = (distance(&next, &own), distance(&phi, &own), distance(&next, &phi));
+        assert!(
+            now + moved / (N as f64 + 1.0) <= last * (1.0 + 1e-12),
+            "{now} after {last}, moved by {moved}"
+        );
+        phi = next;
     }
     assert!(least(&phi) >= 0.99 * LEAST, "{} from {}", least(&phi), least(&start));
     least(&start) < LEAST

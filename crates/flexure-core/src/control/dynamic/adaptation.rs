@@ -49,6 +49,17 @@ impl<C: Piecewise, const N: usize> Adaptation<C, N> {
     }
 }
 
+/// `f` of the slots of both.
+#[inline]
+fn zip<A: Copy, B: Copy, T: Scalar, const N: usize>(
+    a: &Parameters<A, N>,
+    b: &Parameters<B, N>,
+    f: impl Fn(&Vector<A, N>, &Vector<B, N>) -> Vector<T, N>,
+) -> Parameters<T, N> {
+    let mut slots = a.iter().zip(b);
+    [Vector::ZERO; 10].map(|zero| slots.next().map_or(zero, |(a, b)| f(a, b)))
+}
+
 /// a·b.
 #[inline]
 fn dot<T: Scalar, const N: usize>(a: &Parameters<T, N>, b: &Parameters<T, N>) -> T {
@@ -64,11 +75,8 @@ impl<C: Scalar, const N: usize> Adaptation<C, N> {
         q: &Vector<T, N>,
         parameters: &Parameters<T, N>,
     ) -> Parameters<T, N> {
-        let clamped: Parameters<T, N> = core::array::from_fn(|k| {
-            Vector::from_fn(|i| {
-                parameters[k][i].clamp(T::constant(self.low[k][i]), T::constant(self.high[k][i]))
-            })
-        });
+        let least = zip(parameters, &self.low, |x, low| Vector::from_fn(|i| x[i].max(T::constant(low[i]))));
+        let clamped = zip(&least, &self.high, |x, high| Vector::from_fn(|i| x[i].min(T::constant(high[i]))));
         let model = links.mass_matrix(q).ldl();
         let factor = links.mass_matrix_of(&clamped, q).ldl();
         let rest = Vector::ZERO;
@@ -77,13 +85,12 @@ impl<C: Scalar, const N: usize> Adaptation<C, N> {
             // yᵀ M(φ) y = slope·φ, but for what has no numbers; less what gravity has to do with it.
             let y = factor.pivotal(i);
             let powers = |a: &Vector<T, N>| links.regressor_transpose_mul(q, &rest, &rest, a, &y);
-            let (with, without) = (powers(&y), powers(&rest));
-            let slope: Parameters<T, N> = core::array::from_fn(|k| with[k] - without[k]);
-            let moved: Parameters<T, N> = core::array::from_fn(|k| found[k] - clamped[k]);
+            let slope = zip(&powers(&y), &powers(&rest), |with, without| *with - *without);
+            let moved = zip(&found, &clamped, |found, clamped| *found - *clamped);
             let missing = model.pivots()[i].scale(self.least[i]) - factor.pivots()[i] - dot(&slope, &moved);
-            let along: Parameters<T, N> = core::array::from_fn(|k| self.gain[k].diag_mul(&slope[k]));
+            let along = zip(&self.gain, &slope, Vector::diag_mul);
             let share = missing.select(missing / dot(&slope, &along), T::ZERO);
-            found = core::array::from_fn(|k| found[k] + along[k].scaled(share));
+            found = zip(&found, &along, |found, along| *found + along.scaled(share));
         }
         found
     }
@@ -108,7 +115,7 @@ impl<C: Scalar, const N: usize> Adaptation<C, N> {
         let ([.., xi_2, _], [.., xi_2_rate, _]) = (filters, &rates);
         let (v_r, a_r) = (wanted.velocity + *xi_2, wanted.acceleration + *xi_2_rate);
         let powers = robot.links.regressor_transpose_mul(&x.q_l, &x.v_l, &v_r, &a_r, &(x.v_l - v_r));
-        (rates, core::array::from_fn(|k| -self.gain[k].diag_mul(&powers[k])))
+        (rates, zip(&self.gain, &powers, |gain, power| -gain.diag_mul(power)))
     }
 }
 

@@ -84,7 +84,7 @@ impl<C: Scalar, const N: usize> Tree<C, N> {
     ) -> Vector<T, N> {
         let mut force = Vector([Wrench::ZERO; N]);
         self.carried::<T, OWN>(poses, [v, v_r, a_r], base, |i, joint, body| {
-            force[i] = wrench(i, joint, body)
+            force[i] = wrench(i, joint, body);
         });
         // Phantoms: unit inertia.
         let mut torque = *a_r;
