@@ -110,6 +110,20 @@ pub const STIFFNESS: Unit = Unit::new("N m/rad", 2).sliding(&Unit::new("N/m", 2)
 /// How stiffnesses and metrics grow with the square of what is wound.
 pub const HARDENING: Unit =
     Unit::new("N m/rad^3", 2).raised("N m/rad³").sliding(&Unit::new("N/m^3", 2).raised("N/m³"));
+/// Stiffnesses of integrals of position errors.
+pub const STIFFNESS_RATE: Unit = Unit::new("N m/(rad s)", 3).sliding(&Unit::new("N/(m s)", 3));
+/// Velocities for torques.
+pub const ADMITTANCE: Unit = Unit::new("rad/(N m s)", -1).sliding(&Unit::new("m/(N s)", -1));
+/// Velocities for integrals of torques.
+pub const ADMITTANCE_RATE: Unit = Unit::new("rad/(N m s^2)", 0)
+    .raised("rad/(N m s²)")
+    .sliding(&Unit::new("m/(N s^2)", 0).raised("m/(N s²)"));
+/// Third derivatives of positions.
+pub const JERK: Unit =
+    Unit::new("rad/s^3", 3).raised("rad/s³").sliding(&Unit::new("m/s^3", 3).raised("m/s³"));
+/// Fourth derivatives of positions.
+pub const SNAP: Unit =
+    Unit::new("rad/s^4", 4).raised("rad/s⁴").sliding(&Unit::new("m/s^4", 4).raised("m/s⁴"));
 /// Dampings.
 pub const DAMPING: Unit = Unit::new("N m s/rad", 1).sliding(&Unit::new("N s/m", 1));
 /// Inertias.

@@ -1,5 +1,6 @@
 //! Spring torques by motor position: an inner loop of motors around the link law of passivity.
 
+use super::inner_loop::InnerLoop;
 use super::sliding::motors;
 use super::{ControlLaw, LinkGains};
 use crate::linalg::Vector;
@@ -15,10 +16,8 @@ pub struct Cascade<C, const N: usize> {
     pub shaping: Vector<C, N>,
     /// γ_l, damping of s_1 on the links [N m s/rad].
     pub link_damping: Vector<C, N>,
-    /// k_p, feedback of the motor position error θ̃ [1/s²].
-    pub position: Vector<C, N>,
-    /// k_v, feedback of its rate [1/s].
-    pub velocity: Vector<C, N>,
+    /// k_p and k_v of the motors.
+    pub inner: InnerLoop<C, N>,
 }
 
 impl<C: Scalar, const N: usize> ControlLaw<C, N> for Cascade<C, N> {
@@ -31,9 +30,6 @@ impl<C: Scalar, const N: usize> ControlLaw<C, N> for Cascade<C, N> {
     ) -> Vector<T, N> {
         let links = LinkGains::sliding(self.shaping, self.link_damping).spring_torque(robot, x, q_ld);
         let q_d = q_ld.map(|x| x.truncate::<3>());
-        let [theta_d, rate_d, second_d] = motors(robot, &(q_d + links.error), &links.torque).derivatives();
-        let a =
-            second_d - self.velocity.diag_mul(&(x.v_m - rate_d)) - self.position.diag_mul(&(x.q_m - theta_d));
-        robot.motor_torque(x, &a)
+        self.inner.torque(robot, x, &motors(robot, &(q_d + links.error), &links.torque))
     }
 }

@@ -18,6 +18,23 @@ pub struct FeedbackLinearization<C, const N: usize> {
     pub gains: [Vector<C, N>; 4],
 }
 
+/// The inverse dynamics of the robot at the fourth derivative `wanted`(q_d⁗, (e, ė, ë, e⃛)), with acceleration and jerk from the model: motor torque [N m].
+#[inline]
+pub(super) fn chain<C: Scalar, T: Over<C>, L: Links<C, N>, const N: usize>(
+    robot: &Fjr<C, L, N>,
+    x: &Motion<T, N>,
+    q_ld: &Vector<Jet<T, 5>, N>,
+    wanted: impl FnOnce(Vector<T, N>, [Vector<T, N>; 4]) -> Vector<T, N>,
+) -> Vector<T, N> {
+    let motion = robot.link_motion(&robot.links.factor(&x.q_l), x);
+    let [q, v, a, jerk] = motion.derivatives();
+    let error = (motion - q_ld.map(|x| x.truncate::<4>())).derivatives();
+    let [.., snap] = q_ld.derivatives();
+    let series = Vector::from_derivatives(&[q, v, a, jerk, wanted(snap, error)]);
+    let [u_m] = robot.inverse_dynamics::<_, 1, 3, 5>(&series).u_m.derivatives();
+    u_m
+}
+
 impl<C: Scalar, const N: usize> ControlLaw<C, N> for FeedbackLinearization<C, N> {
     #[inline]
     fn torque<T: Over<C>, L: Links<C, N>>(
@@ -26,15 +43,8 @@ impl<C: Scalar, const N: usize> ControlLaw<C, N> for FeedbackLinearization<C, N>
         x: &Motion<T, N>,
         q_ld: &Vector<Jet<T, 5>, N>,
     ) -> Vector<T, N> {
-        let motion = robot.link_motion(&robot.links.factor(&x.q_l), x);
-        let [q, v, a, jerk] = motion.derivatives();
-        let error = (motion - q_ld.map(|x| x.truncate::<4>())).derivatives();
-        let [.., mut snap] = q_ld.derivatives();
-        for (gain, error) in self.gains.iter().zip(&error) {
-            snap -= gain.diag_mul(error);
-        }
-        let series = Vector::from_derivatives(&[q, v, a, jerk, snap]);
-        let [u_m] = robot.inverse_dynamics::<_, 1, 3, 5>(&series).u_m.derivatives();
-        u_m
+        chain(robot, x, q_ld, |snap, errors| {
+            self.gains.iter().zip(&errors).fold(snap, |snap, (gain, e)| snap - gain.diag_mul(e))
+        })
     }
 }

@@ -2,14 +2,19 @@
 
 mod backstepping;
 mod cascade;
+mod composite_ph;
 mod dynamic;
 mod esp;
 mod feedback_linearization;
 mod feedforward_pd;
 mod gains;
 mod gravity_cancellation;
+mod ida_pbc;
+mod immersion_invariance;
+mod inner_loop;
 mod integral_manifold;
 mod law;
+mod link_impedance;
 mod motor_pd;
 mod passivity;
 mod pd;
@@ -19,22 +24,30 @@ mod shaping;
 mod signals;
 mod singular_perturbation;
 mod sliding;
+mod sliding_mode;
 mod torque_feedback;
 mod vcbc;
 
 pub use backstepping::Backstepping;
 pub use cascade::Cascade;
+pub use composite_ph::CompositePh;
 pub use dynamic::{
-    Adaptation, AdaptiveCommandFilteredBackstepping, AdaptiveVcbc, CommandFilteredBackstepping, Seen,
+    Adaptation, AdaptiveCommandFilteredBackstepping, AdaptiveVcbc, Applied, CommandFilteredBackstepping,
+    ControlByInterconnection, DisturbanceRejecting, DynamicLaw, LinkPositionFeedback, LoadedLaw, LoriaOrtega,
+    MotorObserverPd, MotorPositionPd, MotorPositionPdCapped, Pid, PositionFeedback, Running, SeaCascade,
+    Seen, observer_gains,
 };
-pub use dynamic::{Applied, DynamicLaw, MotorPositionPd, MotorPositionPdCapped, PositionFeedback, Running};
 pub use esp::Esp;
 pub use feedback_linearization::FeedbackLinearization;
 pub use feedforward_pd::FeedforwardPd;
 pub use gains::{LinkGains, LinkTorque, Metric, MotorGains};
 pub use gravity_cancellation::GravityCancellation;
+pub use ida_pbc::IdaPbc;
+pub use immersion_invariance::ImmersionInvariance;
+pub use inner_loop::InnerLoop;
 pub use integral_manifold::IntegralManifold;
 pub use law::ControlLaw;
+pub use link_impedance::LinkImpedance;
 pub use motor_pd::MotorPd;
 pub use passivity::Passivity;
 pub use pd::Pd;
@@ -43,5 +56,6 @@ pub use rigid::RigidVcbc;
 pub use shaping::{CoupledTanh, Linear, OddSeries, Shaping, TERMS, Tanh};
 pub use signals::Signals;
 pub use singular_perturbation::SingularPerturbation;
+pub use sliding_mode::SlidingMode;
 pub use torque_feedback::TorqueFeedback;
 pub use vcbc::{Command, Input, Vcbc};

@@ -47,3 +47,32 @@ pub fn eliminate<S: Scalar, const N: usize, const K: usize>(
     }
     b
 }
+
+/// A⁻¹ b for `N` systems of `K` equations side by side: entry i of every vector is of system i. Without pivoting, as [`eliminate`].
+#[inline]
+pub fn eliminate_each<S: Scalar, const N: usize, const K: usize>(
+    mut a: [[Vector<S, N>; K]; K],
+    mut b: [Vector<S, N>; K],
+) -> [Vector<S, N>; K] {
+    let product = |x: &Vector<S, N>, y: &Vector<S, N>| Vector::from_fn(|i| x[i] * y[i]);
+    for p in 0..K {
+        let reciprocal = a[p][p].map(S::recip);
+        for row in p + 1..K {
+            let factor = product(&a[row][p], &reciprocal);
+            for column in p..K {
+                let entry = product(&factor, &a[p][column]);
+                a[row][column] -= entry;
+            }
+            let entry = product(&factor, &b[p]);
+            b[row] -= entry;
+        }
+    }
+    for p in (0..K).rev() {
+        for column in p + 1..K {
+            let entry = product(&a[p][column], &b[column]);
+            b[p] -= entry;
+        }
+        b[p] = Vector::from_fn(|i| b[p][i] / a[p][p][i]);
+    }
+    b
+}

@@ -10,7 +10,7 @@ mod matrix;
 mod series;
 mod vector;
 
-pub use blocks::eliminate;
+pub use blocks::{eliminate, eliminate_each};
 pub use ldl::Ldl;
 pub use matrix::Matrix;
 pub use vector::Vector;

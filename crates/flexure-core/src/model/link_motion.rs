@@ -15,9 +15,20 @@ impl<C: Scalar, L: Links<C, N>, const N: usize> Fjr<C, L, N> {
         factor: &L::Factor<'_, T>,
         x: &Motion<T, N>,
     ) -> Vector<Jet<T, 4>, N> {
+        self.link_motion_under(factor, x, &Vector::ZERO)
+    }
+
+    /// [`link_motion`](Self::link_motion) under a constant torque `load` [N m] on the links that is not in the model.
+    #[inline]
+    pub fn link_motion_under<T: Over<C>>(
+        &self,
+        factor: &L::Factor<'_, T>,
+        x: &Motion<T, N>,
+        load: &Vector<T, N>,
+    ) -> Vector<Jet<T, 4>, N> {
         let links = &self.links;
         let (q, v) = (x.q_l.map(Jet::<T, 1>::value), x.v_l.map(Jet::value));
-        let bias = links.motion_torque(factor, &q, &v, &Vector::ZERO).map(|x| x.coefficient(0));
+        let bias = links.motion_torque(factor, &q, &v, &Vector::ZERO).map(|x| x.coefficient(0)) - *load;
         self.link_motion_with(factor, x, &bias, |a| {
             links.motion_torque(factor, &x.q_l.with_rate(&x.v_l), &x.v_l.with_rate(a), &a.map(Jet::value))
         })

@@ -237,6 +237,14 @@ pub trait Links<C: Scalar, const N: usize> {
         Matrix(core::array::from_fn(|k| (torque(&unit(k)) - gravity).0))
     }
 
+    /// Cᵀ(q, v) v − g(q) [N m]: how the momentum M v changes beside joint torques and dampers. Ṁ v comes from the momentum along q + v t, and
+    /// Cᵀ v = Ṁ v − C v.
+    #[inline]
+    fn momentum_gain<T: Over<C>>(&self, q: &Vector<T, N>, v: &Vector<T, N>) -> Vector<T, N> {
+        let momentum = self.mass_mul(&q.with_rate(v), &v.map(Jet::<T, 2>::value));
+        momentum.map(|p| p.coefficient(1)) - self.inverse_dynamics(q, v, v, &Vector::ZERO)
+    }
+
     /// M(q) a [N m].
     #[inline]
     fn mass_mul<T: Over<C>>(&self, q: &Vector<T, N>, a: &Vector<T, N>) -> Vector<T, N> {

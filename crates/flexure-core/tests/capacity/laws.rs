@@ -2,8 +2,8 @@
 
 use flexure_core::control::{
     Backstepping, Cascade, ControlLaw, CoupledTanh, Esp, FeedbackLinearization, FeedforwardPd,
-    GravityCancellation, IntegralManifold, Linear, LinkGains, Metric, MotorGains, MotorPd, Passivity, Pd,
-    PdOnlineGravity, RigidVcbc, Shaping, SingularPerturbation, Tanh, TorqueFeedback, Vcbc,
+    GravityCancellation, InnerLoop, IntegralManifold, Linear, LinkGains, Metric, MotorGains, MotorPd,
+    Passivity, Pd, PdOnlineGravity, RigidVcbc, Shaping, SingularPerturbation, Tanh, TorqueFeedback, Vcbc,
 };
 use flexure_core::linalg::Vector;
 use flexure_core::model::Motion;
@@ -45,11 +45,12 @@ macro_rules! padded {
 
 padded! {
     Backstepping { shaping, link_damping, metric, motor_shaping }
-    Cascade { shaping, link_damping, position, velocity }
+    Cascade { shaping, link_damping, inner }
     Esp { link_damping, motor }
     FeedbackLinearization { gains }
     FeedforwardPd { motor }
     GravityCancellation { motor }
+    InnerLoop { position, velocity }
     IntegralManifold { position, velocity, damping }
     Linear { gain }
     MotorPd { stiffness, damping }

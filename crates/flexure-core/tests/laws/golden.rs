@@ -5,7 +5,10 @@ use std::fs;
 
 use flexure_core::control::{
     Adaptation, AdaptiveCommandFilteredBackstepping, AdaptiveVcbc, Applied, CommandFilteredBackstepping,
-    ControlLaw, DynamicLaw, MotorPd, MotorPositionPd, MotorPositionPdCapped, PositionFeedback,
+    CompositePh, ControlByInterconnection, ControlLaw, DisturbanceRejecting, DynamicLaw, IdaPbc,
+    ImmersionInvariance, InnerLoop, LinkImpedance, LinkPositionFeedback, LoriaOrtega, MotorObserverPd,
+    MotorPd, MotorPositionPd, MotorPositionPdCapped, Pid, PositionFeedback, SeaCascade, SlidingMode,
+    observer_gains,
 };
 use flexure_core::linalg::{Ldl, Matrix, Vector};
 use flexure_core::model::{Fjr, Links, Motion, Parameters};
@@ -217,6 +220,123 @@ fn position_feedback() {
         link_cutoff: case.gain("link_cutoff"),
         motor: case.motor(["motor_stiffness", "motor_damping"]),
         motor_cutoff: case.gain("motor_cutoff"),
+    });
+}
+
+#[test]
+fn motor_observer_pd() {
+    dynamic("motor-observer-pd", |case| MotorObserverPd {
+        stiffness: case.gain("stiffness"),
+        inertia: case.gain("inertia"),
+        damping: case.gain("damping"),
+        coupling: case.gain("coupling"),
+    });
+}
+
+#[test]
+fn control_by_interconnection() {
+    dynamic("control-by-interconnection", |case| ControlByInterconnection {
+        stiffness: case.gain("stiffness"),
+        elastic: case.gain("elastic"),
+        viscous: case.gain("viscous"),
+    });
+}
+
+#[test]
+fn ida_pbc() {
+    fixed("ida-pbc", |case| IdaPbc {
+        inertia: case.gain("inertia"),
+        motor: case.motor(["stiffness", "damping"]),
+        cross: case.gain("cross"),
+    });
+}
+
+#[test]
+fn link_impedance() {
+    fixed("link-impedance", |case| LinkImpedance {
+        inertia: case.gain("inertia"),
+        motor: case.motor(["stiffness", "damping"]),
+    });
+}
+
+#[test]
+fn loria_ortega() {
+    dynamic("loria-ortega", |case| LoriaOrtega {
+        link: case.motor(["link_stiffness", "link_damping"]),
+        motor: case.motor(["motor_stiffness", "motor_damping"]),
+        cutoff: case.gain("cutoff"),
+    });
+}
+
+fn immersed(case: &Case) -> ImmersionInvariance<f64, 2> {
+    ImmersionInvariance {
+        link: case.motor(["link_stiffness", "link_damping"]),
+        inner: InnerLoop { position: case.gain("position"), velocity: case.gain("velocity") },
+    }
+}
+
+#[test]
+fn immersion_invariance() {
+    fixed("immersion-invariance", immersed);
+}
+
+#[test]
+fn link_position_feedback() {
+    dynamic("link-position-feedback", |case| {
+        let (bandwidth, robot) = (case.gain("bandwidth"), case.arm());
+        let gains: [[f64; 4]; 2] = std::array::from_fn(|i| {
+            observer_gains(bandwidth[i], robot.motor_damping[i] / robot.motor_inertia[i])
+        });
+        let observer = std::array::from_fn(|k| Vector(gains.map(|joint| joint[k])));
+        LinkPositionFeedback { law: immersed(case), observer }
+    });
+}
+
+#[test]
+fn composite_ph() {
+    fixed("composite-ph", |case| CompositePh {
+        shaping: case.gain("shaping"),
+        metric: case.gain("metric"),
+        damping: case.gain("damping"),
+        fast_stiffness: case.gain("fast_stiffness"),
+        fast_damping: case.gain("fast_damping"),
+    });
+}
+
+#[test]
+fn pid() {
+    dynamic("pid", |case| Pid {
+        motor: case.motor(["stiffness", "damping"]),
+        integral: case.gain("integral"),
+    });
+}
+
+#[test]
+fn sliding_mode() {
+    fixed("sliding-mode", |case| SlidingMode {
+        surface: case.gain("rate"),
+        reaching: case.gain("reach"),
+        authority: case.gain("gain"),
+        layer: case.gain("layer"),
+    });
+}
+
+#[test]
+fn sea_cascade() {
+    dynamic("sea-cascade", |case| SeaCascade {
+        link: case.motor(["link_stiffness", "link_damping"]),
+        torque: case.gain("torque_p"),
+        torque_integral: case.gain("torque_i"),
+        velocity: case.gain("velocity_p"),
+        velocity_integral: case.gain("velocity_i"),
+    });
+}
+
+#[test]
+fn disturbance_rejecting() {
+    dynamic("disturbance-rejecting", |case| DisturbanceRejecting {
+        law: immersed(case),
+        bandwidth: case.gain("bandwidth"),
     });
 }
 

@@ -5,4 +5,5 @@ mod adaptive_runs;
 #[path = "../suite/common/mod.rs"]
 mod common;
 mod golden;
+mod identities;
 mod parameters;

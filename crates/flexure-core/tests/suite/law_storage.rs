@@ -199,7 +199,7 @@ fn cascade<L: Links<f64, N>, const N: usize>(links: fn() -> L, r: &mut Numbers) 
     let (_, course, _) = course(&robot, &law, &q_ld, r);
     let (s, error) = springs_by_position(&robot, &course, &q_ld, &law.shaping, &law.link_damping);
     let [error, rate, second] = error.derivatives();
-    close(&second, &-(law.velocity.diag_mul(&rate) + law.position.diag_mul(&error)), 1e-9);
+    close(&second, &-(law.inner.velocity.diag_mul(&rate) + law.inner.position.diag_mul(&error)), 1e-9);
     // What that leaves of the springs drives the links.
     let [q, v, ..] = course.q_l.derivatives();
     let [s, ds, _] = s.derivatives();

@@ -8,6 +8,7 @@ use crate::files::quantity::Quantity;
 use crate::laws::Drive;
 use crate::laws::gain::{Gain, LINK_DAMPING, SHAPING};
 use crate::laws::registry::LawKind;
+use crate::robot::Robot;
 use crate::units;
 
 /// The kind `backstepping`: [`control::Backstepping`].
@@ -37,6 +38,7 @@ impl LawKind for Backstepping {
 
     fn core<C: Scalar, const N: usize>(
         gains: &Self::Gains,
+        _: &Robot,
         vector: impl Fn(&Vec<f64>) -> Vector<C, N>,
     ) -> Self::Core<C, N> {
         let [shaping, link_damping, metric, motor_shaping] = gains.each_ref().map(vector);

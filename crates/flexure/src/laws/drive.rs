@@ -12,6 +12,8 @@ pub struct Drive {
     /// The same with the other joints free [kg m²], the smallest at q = 0 and with one joint at a time a quarter turn (or
     /// π/2 m) away: what damping of this joint alone acts on.
     pub free_inertia: f64,
+    /// Link damping D_l [N m s/rad].
+    pub link_damping: f64,
 }
 
 /// Fastest errors that starting gains ask for [1/s]: a control period of 1 ms does not show at that.
@@ -45,5 +47,10 @@ impl Drive {
     /// 2 ω J [N m s/rad]: with [`motor_stiffness`](Self::motor_stiffness) critically damped.
     pub(crate) fn motor_damping(&self) -> f64 {
         2.0 * self.bandwidth() * self.inertia()
+    }
+
+    /// 0.3 k √(D_l D_θ) with k = 2 and D_θ the starting damping of motors [N m s/rad]: a third of what dampers bear between motors and links.
+    pub(crate) fn cross_damping(&self) -> f64 {
+        0.6 * (self.link_damping * self.motor_damping()).sqrt()
     }
 }

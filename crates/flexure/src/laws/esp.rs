@@ -6,6 +6,7 @@ use flexure_core::scalar::Scalar;
 
 use crate::laws::gain::{Gain, LINK_DAMPING, MOTOR};
 use crate::laws::registry::LawKind;
+use crate::robot::Robot;
 
 /// The kind `esp`: [`control::Esp`].
 pub struct Esp;
@@ -21,6 +22,7 @@ impl LawKind for Esp {
 
     fn core<C: Scalar, const N: usize>(
         gains: &Self::Gains,
+        _: &Robot,
         vector: impl Fn(&Vec<f64>) -> Vector<C, N>,
     ) -> Self::Core<C, N> {
         let [link_damping, stiffness, damping] = gains.each_ref().map(vector);

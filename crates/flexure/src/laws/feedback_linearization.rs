@@ -7,6 +7,7 @@ use flexure_core::scalar::Scalar;
 use crate::files::quantity::Quantity;
 use crate::laws::gain::Gain;
 use crate::laws::registry::LawKind;
+use crate::robot::Robot;
 use crate::units;
 
 /// The kind `feedback-linearization`: [`control::FeedbackLinearization`], from the gains of (s + ω)⁴.
@@ -42,6 +43,7 @@ impl LawKind for FeedbackLinearization {
 
     fn core<C: Scalar, const N: usize>(
         gains: &Self::Gains,
+        _: &Robot,
         vector: impl Fn(&Vec<f64>) -> Vector<C, N>,
     ) -> Self::Core<C, N> {
         let gains = gains.each_ref().map(vector);

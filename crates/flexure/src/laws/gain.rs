@@ -41,8 +41,49 @@ pub(crate) const MOTOR: [Gain; 2] = [
     ),
 ];
 
+/// K_Pl and K_Dl of links under computed torque.
+pub(crate) const LINK: [Gain; 2] = [
+    Gain::new(
+        "link_stiffness",
+        Quantity::positive("stiffness K_Pl of the feedback of link positions", units::STIFFNESS),
+        |drive| drive.free_inertia * drive.bandwidth().powi(2),
+    ),
+    Gain::new(
+        "link_damping",
+        Quantity::non_negative("damping K_Dl of the feedback of link velocities", units::DAMPING),
+        |drive| 2.0 * drive.free_inertia * drive.bandwidth(),
+    ),
+];
+
+/// K_Pm and K_Dm of motors that follow what the links want.
+pub(crate) const INNER_MOTOR: [Gain; 2] = [
+    Gain::new(
+        "motor_stiffness",
+        Quantity::positive("stiffness K_Pm of the feedback of motor positions", units::STIFFNESS),
+        Drive::motor_stiffness,
+    ),
+    Gain::new(
+        "motor_damping",
+        Quantity::non_negative("damping K_Dm of the feedback of motor velocities", units::DAMPING),
+        Drive::motor_damping,
+    ),
+];
+
 pub(crate) const POSITION: Quantity = Quantity::positive("gain k_p of the position error", units::RATE_2);
 pub(crate) const RATE: Quantity = Quantity::positive("gain k_v of the velocity error", units::RATE);
+
+/// k_p and k_v of motors that are driven to a position.
+pub(crate) const INNER: [Gain; 2] = [
+    Gain::new("position", POSITION, |drive| drive.inner_bandwidth().powi(2)),
+    Gain::new("velocity", RATE, |drive| 2.0 * drive.inner_bandwidth()),
+];
+
+/// B_θ.
+pub(crate) const SHAPED_INERTIA: Gain = Gain::new(
+    "inertia",
+    Quantity::positive("motor inertia that feedback of the spring torque makes", units::INERTIA),
+    |drive| 0.5 * drive.motor_inertia,
+);
 
 /// Rigid computed torque with (s + ω)² on the links, and damping of the springs.
 pub(crate) const TWO_TIME_SCALES: [Gain; 3] = [

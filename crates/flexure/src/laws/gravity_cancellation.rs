@@ -6,6 +6,7 @@ use flexure_core::scalar::Scalar;
 
 use crate::laws::gain::{Gain, MOTOR};
 use crate::laws::registry::LawKind;
+use crate::robot::Robot;
 
 /// The kind `gravity-cancellation`: [`control::GravityCancellation`].
 pub struct GravityCancellation;
@@ -21,6 +22,7 @@ impl LawKind for GravityCancellation {
 
     fn core<C: Scalar, const N: usize>(
         gains: &Self::Gains,
+        _: &Robot,
         vector: impl Fn(&Vec<f64>) -> Vector<C, N>,
     ) -> Self::Core<C, N> {
         let [stiffness, damping] = gains.each_ref().map(vector);

@@ -6,6 +6,7 @@ use flexure_core::scalar::Scalar;
 
 use crate::laws::gain::{Gain, TWO_TIME_SCALES};
 use crate::laws::registry::LawKind;
+use crate::robot::Robot;
 
 /// The kind `integral-manifold`: [`control::IntegralManifold`].
 pub struct IntegralManifold;
@@ -22,6 +23,7 @@ impl LawKind for IntegralManifold {
 
     fn core<C: Scalar, const N: usize>(
         gains: &Self::Gains,
+        _: &Robot,
         vector: impl Fn(&Vec<f64>) -> Vector<C, N>,
     ) -> Self::Core<C, N> {
         let [position, velocity, damping] = gains.each_ref().map(vector);

@@ -7,6 +7,7 @@ use flexure_core::scalar::Scalar;
 use crate::files::quantity::Quantity;
 use crate::laws::gain::{Gain, LINK_DAMPING, SHAPING};
 use crate::laws::registry::LawKind;
+use crate::robot::Robot;
 use crate::units;
 
 /// The kind `passivity`: [`control::Passivity`].
@@ -31,6 +32,7 @@ impl LawKind for Passivity {
 
     fn core<C: Scalar, const N: usize>(
         gains: &Self::Gains,
+        _: &Robot,
         vector: impl Fn(&Vec<f64>) -> Vector<C, N>,
     ) -> Self::Core<C, N> {
         let [shaping, link_damping, motor_damping] = gains.each_ref().map(vector);

@@ -1,8 +1,9 @@
 //! What a file of a law holds, and what becomes of a line in the list of laws.
 
 use std::fmt::Debug;
+use std::marker::PhantomData;
 
-use flexure_core::control::ControlLaw;
+use flexure_core::control::{DynamicLaw, Signals};
 use flexure_core::linalg::Vector;
 use flexure_core::scalar::Scalar;
 
@@ -10,7 +11,7 @@ use crate::files::field::{Field, Joints};
 use crate::laws::gain::GainSet;
 use crate::laws::starting::Starting;
 use crate::laws::{Controller, Drive};
-use crate::robot::padded;
+use crate::robot::{Robot, padded};
 
 /// A kind of law: all that a name in `[controller]` stands for.
 pub trait LawKind {
@@ -20,18 +21,22 @@ pub trait LawKind {
     /// One line about it.
     const SUMMARY: &'static str;
 
+    /// What a law with memory keeps from one instant to the next: names and units, a number per joint each.
+    const MEMORY: &'static [(&'static str, &'static str)] = &[];
+
     /// Its gains as data: `[Vec<f64>; G]` for `G` gains with a number per joint each.
     type Gains: GainSet;
 
     /// Keys, units and starting values of the gains, in the order in which they are tuned.
     const GAINS: <Self::Gains as GainSet>::Shape;
 
-    /// The law itself.
-    type Core<C: Scalar, const N: usize>: ControlLaw<C, N> + Clone + Debug;
+    /// The law itself: a [`ControlLaw`](flexure_core::control::ControlLaw), or a [`DynamicLaw`] with as many parts as `MEMORY` has.
+    type Core<C: Scalar, const N: usize>: Clone + Debug;
 
-    /// The law with these gains; `vector` makes constants of a gain.
+    /// The law with these gains for `robot`; `vector` makes constants of a gain.
     fn core<C: Scalar, const N: usize>(
         gains: &Self::Gains,
+        robot: &Robot,
         vector: impl Fn(&Vec<f64>) -> Vector<C, N>,
     ) -> Self::Core<C, N>;
 }
@@ -45,9 +50,161 @@ pub(super) struct Maker {
     pub start: fn(&[Drive]) -> Controller,
 }
 
-/// Registers kinds of laws, each by the path of its [`LawKind`].
+/// The most parts that any law's memory has.
+pub const PARTS: usize = 4;
+
+/// The memory of a law, a number per joint for each part; parts beyond what the law has are not used.
+pub type LawMemory<T, const N: usize> = [Vector<T, N>; PARTS];
+
+/// Registers kinds of laws, each by the path of its [`LawKind`]: static ones, then those with memory.
 macro_rules! laws {
-    ($($file:ident::$kind:ident),+ $(,)?) => {
+    (
+        static: $($file:ident::$kind:ident),+;
+        dynamic: $($dynamic_file:ident::$dynamic:ident),+ $(;)?
+    ) => {
+        laws! {
+            @data $($file::$kind,)+ $($dynamic_file::$dynamic,)+
+        }
+
+        /// Any registered law, with gains of type `C`.
+        #[derive(Clone, Debug)]
+        pub enum AnyLaw<C: Scalar, const N: usize> {
+            $(
+                #[doc = concat!("[`", stringify!($kind), "`](flexure_core::control::", stringify!($kind), ").")]
+                $kind(Box<<$file::$kind as LawKind>::Core<C, N>>),
+            )+
+            $(
+                #[doc = concat!("[`", stringify!($dynamic), "`](flexure_core::control::", stringify!($dynamic), ").")]
+                $dynamic(Box<<$dynamic_file::$dynamic as LawKind>::Core<C, N>>),
+            )+
+        }
+
+        impl<C: Scalar, const N: usize> AnyLaw<C, N> {
+            /// Motor torque [N m] at the motion `x`, if no memory is needed; `q_ld` is the reference of the links in rad to order 4.
+            pub fn static_torque<T: Over<C>, L: Links<C, N>>(
+                &self,
+                robot: &Fjr<C, L, N>,
+                x: &Motion<T, N>,
+                q_ld: &Vector<Jet<T, 5>, N>,
+            ) -> Option<Vector<T, N>> {
+                match self {
+                    $(Self::$kind(law) => Some(law.torque(robot, x, q_ld)),)+
+                    $(Self::$dynamic(_) => None,)+
+                }
+            }
+
+            /// Motor torque [N m] at the motion `x` with the memory `z`.
+            pub fn torque<T: Over<C>, L: Links<C, N>>(
+                &self,
+                robot: &Fjr<C, L, N>,
+                x: &Motion<T, N>,
+                q_ld: &Vector<Jet<T, 5>, N>,
+                z: &LawMemory<T, N>,
+            ) -> Vector<T, N> {
+                match self {
+                    $(Self::$kind(law) => law.torque(robot, x, q_ld),)+
+                    $(Self::$dynamic(law) => law.torque(robot, x, q_ld, first(z)),)+
+                }
+            }
+
+            /// The rate of the memory, while the motors get `applied`.
+            pub fn rate<T: Over<C>, L: Links<C, N>>(
+                &self,
+                robot: &Fjr<C, L, N>,
+                x: &Motion<T, N>,
+                q_ld: &Vector<Jet<T, 5>, N>,
+                z: &LawMemory<T, N>,
+                applied: &Applied<T, N>,
+            ) -> LawMemory<T, N> {
+                match self {
+                    $(Self::$kind(_) => [Vector::ZERO; PARTS],)+
+                    $(Self::$dynamic(law) => all(law.rate(robot, x, q_ld, first(z), applied)),)+
+                }
+            }
+
+            /// The memory that a loop starts with.
+            pub fn start<T: Over<C>, L: Links<C, N>>(
+                &self,
+                robot: &Fjr<C, L, N>,
+                x: &Motion<T, N>,
+                q_ld: &Vector<Jet<T, 5>, N>,
+            ) -> LawMemory<T, N> {
+                match self {
+                    $(Self::$kind(_) => [Vector::ZERO; PARTS],)+
+                    $(Self::$dynamic(law) => all(law.start(robot, x, q_ld)),)+
+                }
+            }
+
+            /// The memory of a loop that has followed for long and moves as `x`.
+            pub fn settled<T: Over<C>, L: Links<C, N>>(
+                &self,
+                robot: &Fjr<C, L, N>,
+                x: &Motion<T, N>,
+                q_ld: &Vector<Jet<T, 5>, N>,
+            ) -> LawMemory<T, N> {
+                match self {
+                    $(Self::$kind(_) => [Vector::ZERO; PARTS],)+
+                    $(Self::$dynamic(law) => all(law.settled(robot, x, q_ld)),)+
+                }
+            }
+
+            /// The memory a `period` in s later: [`advanced`].
+            pub fn advanced<T: Over<C>, L: Links<C, N>>(
+                &self,
+                robot: &Fjr<C, L, N>,
+                seen: [&Seen<T, N>; 2],
+                z: &LawMemory<T, N>,
+                applied: &Applied<T, N>,
+                period: T,
+            ) -> LawMemory<T, N> {
+                match self {
+                    $(Self::$kind(_) => *z,)+
+                    $(Self::$dynamic(law) => {
+                        all(control::advanced(&**law, robot, seen, first(z), applied, period))
+                    })+
+                }
+            }
+
+            /// What the law keeps from one instant to the next: names and units, a number per joint each.
+            pub fn memory(&self) -> &'static [(&'static str, &'static str)] {
+                match self {
+                    $(Self::$kind(_) => <$file::$kind as LawKind>::MEMORY,)+
+                    $(Self::$dynamic(_) => <$dynamic_file::$dynamic as LawKind>::MEMORY,)+
+                }
+            }
+        }
+
+        impl Controller {
+            /// What the law reads of the motion of the robot.
+            pub fn reads(&self) -> Signals {
+                match self {
+                    $(Self::$kind(_) => {
+                        <<$file::$kind as LawKind>::Core<f64, 1> as control::ControlLaw<f64, 1>>::READS
+                    })+
+                    $(Self::$dynamic(_) => {
+                        reads(PhantomData::<<$dynamic_file::$dynamic as LawKind>::Core<f64, 1>>)
+                    })+
+                }
+            }
+        }
+
+        /// The law that `controller` describes for `robot`, with every gain through `number`.
+        pub fn any_law<C: Scalar, const N: usize>(
+            controller: &Controller,
+            robot: &Robot,
+            number: impl Fn(f64) -> C,
+        ) -> AnyLaw<C, N> {
+            match controller {
+                $(Controller::$kind(gains) => {
+                    AnyLaw::$kind(Box::new(<$file::$kind as LawKind>::core(gains, robot, constants(&number))))
+                })+
+                $(Controller::$dynamic(gains) => AnyLaw::$dynamic(Box::new(
+                    <$dynamic_file::$dynamic as LawKind>::core(gains, robot, constants(&number)),
+                )),)+
+            }
+        }
+    };
+    (@data $($file:ident::$kind:ident,)+) => {
         /// The registered controllers.
         pub const CONTROLLERS: &[Entry] = &[$(Entry {
             name: <$file::$kind as LawKind>::NAME,
@@ -82,6 +239,13 @@ macro_rules! laws {
             pub fn kind(&self) -> &'static str {
                 match self {
                     $(Self::$kind(_) => <$file::$kind as LawKind>::NAME,)+
+                }
+            }
+
+            /// What the law keeps from one instant to the next: names and units, a number per joint each; nothing if it is static.
+            pub fn memory(&self) -> &'static [(&'static str, &'static str)] {
+                match self {
+                    $(Self::$kind(_) => <$file::$kind as LawKind>::MEMORY,)+
                 }
             }
 
@@ -120,43 +284,24 @@ macro_rules! laws {
                 }
             }
         }
-
-        /// Any registered law, with gains of type `C`.
-        #[derive(Clone, Debug)]
-        pub enum AnyLaw<C: Scalar, const N: usize> {
-            $(
-                #[doc = concat!("[`", stringify!($kind), "`](flexure_core::control::", stringify!($kind), ").")]
-                $kind(Box<<$file::$kind as LawKind>::Core<C, N>>),
-            )+
-        }
-
-        impl<C: Scalar, const N: usize> ControlLaw<C, N> for AnyLaw<C, N> {
-            fn torque<T: Over<C>, L: Links<C, N>>(
-                &self,
-                robot: &Fjr<C, L, N>,
-                x: &Motion<T, N>,
-                q_ld: &Vector<Jet<T, 5>, N>,
-            ) -> Vector<T, N> {
-                match self {
-                    $(Self::$kind(law) => law.torque(robot, x, q_ld),)+
-                }
-            }
-        }
-
-        /// The law that `controller` describes, with every gain through `number`.
-        pub fn any_law<C: Scalar, const N: usize>(
-            controller: &Controller,
-            number: impl Fn(f64) -> C,
-        ) -> AnyLaw<C, N> {
-            match controller {
-                $(Controller::$kind(gains) => {
-                    AnyLaw::$kind(Box::new(<$file::$kind as LawKind>::core(gains, constants(&number))))
-                })+
-            }
-        }
     };
 }
 pub(super) use laws;
+
+/// The parts that a law with `K` of them has.
+pub(super) fn first<T, const N: usize, const K: usize>(z: &LawMemory<T, N>) -> &[Vector<T, N>; K] {
+    z.first_chunk().expect("no law has more parts than PARTS")
+}
+
+/// The parts of a law among those that any law may have.
+pub(super) fn all<T: Scalar, const N: usize, const K: usize>(z: [Vector<T, N>; K]) -> LawMemory<T, N> {
+    std::array::from_fn(|k| z.get(k).copied().unwrap_or(Vector::ZERO))
+}
+
+/// What a law with memory reads.
+pub(super) fn reads<F: DynamicLaw<f64, 1, K>, const K: usize>(_: PhantomData<F>) -> Signals {
+    F::READS
+}
 
 /// Constants of a gain in vectors of `N` joints: its numbers through `number`, and 1 for joints that only fill the vector.
 pub(super) fn constants<C: Scalar, const N: usize>(

@@ -7,6 +7,7 @@ use flexure_core::scalar::Scalar;
 use crate::laws::Drive;
 use crate::laws::gain::{Gain, INJECTED, METRIC, SHAPING};
 use crate::laws::registry::LawKind;
+use crate::robot::Robot;
 
 /// The kind `rigid-vcbc`: [`control::RigidVcbc`] with φ linear.
 pub struct RigidVcbc;
@@ -27,6 +28,7 @@ impl LawKind for RigidVcbc {
 
     fn core<C: Scalar, const N: usize>(
         gains: &Self::Gains,
+        _: &Robot,
         vector: impl Fn(&Vec<f64>) -> Vector<C, N>,
     ) -> Self::Core<C, N> {
         let [metric, shaping, damping] = gains.each_ref().map(vector);

@@ -79,6 +79,7 @@ pub(crate) fn drives(robot: &Robot) -> Result<Vec<Drive>, Problems> {
         motor_inertia: robot.motor_inertia[i],
         link_inertia: mass[i * (n + 1)],
         free_inertia: free_inertia(i),
+        link_damping: robot.link_damping[i],
     };
     Ok((0..n).map(drive).collect())
 }

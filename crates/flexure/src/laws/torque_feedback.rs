@@ -4,10 +4,9 @@ use flexure_core::control::{self, MotorPd};
 use flexure_core::linalg::Vector;
 use flexure_core::scalar::Scalar;
 
-use crate::files::quantity::Quantity;
-use crate::laws::gain::{Gain, MOTOR};
+use crate::laws::gain::{Gain, MOTOR, SHAPED_INERTIA};
 use crate::laws::registry::LawKind;
-use crate::units;
+use crate::robot::Robot;
 
 /// The kind `torque-feedback`: [`control::TorqueFeedback`].
 pub struct TorqueFeedback;
@@ -17,20 +16,13 @@ impl LawKind for TorqueFeedback {
     const SUMMARY: &'static str = "regulation with shaped motor inertia (Albu-Schäffer, Ott, Hirzinger 2007)";
 
     type Gains = [Vec<f64>; 3];
-    const GAINS: [Gain; 3] = [
-        Gain::new(
-            "inertia",
-            Quantity::positive("motor inertia that feedback of the spring torque makes", units::INERTIA),
-            |drive| 0.5 * drive.motor_inertia,
-        ),
-        MOTOR[0],
-        MOTOR[1],
-    ];
+    const GAINS: [Gain; 3] = [SHAPED_INERTIA, MOTOR[0], MOTOR[1]];
 
     type Core<C: Scalar, const N: usize> = control::TorqueFeedback<C, N>;
 
     fn core<C: Scalar, const N: usize>(
         gains: &Self::Gains,
+        _: &Robot,
         vector: impl Fn(&Vec<f64>) -> Vector<C, N>,
     ) -> Self::Core<C, N> {
         let [inertia, stiffness, damping] = gains.each_ref().map(vector);

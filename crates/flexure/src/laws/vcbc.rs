@@ -11,6 +11,7 @@ use crate::laws::registry::{LawKind, constants};
 use crate::laws::side::{self, SideGains};
 use crate::laws::starting::Starting;
 use crate::laws::{AnyShaping, Drive, Extra, Phi};
+use crate::robot::Robot;
 
 /// The kind `vcbc`: [`control::Vcbc`] with any registered φ.
 pub struct Vcbc;
@@ -26,28 +27,36 @@ impl LawKind for Vcbc {
 
     fn core<C: Scalar, const N: usize>(
         gains: &VcbcGains,
+        _: &Robot,
         vector: impl Fn(&Vec<f64>) -> Vector<C, N>,
     ) -> Law<C, N> {
-        let VcbcGains { phi, link, motor } = gains;
-        let base = vector(&link.metric);
-        let metric = match &link.metric_hardening {
-            Some(hardening) => Metric::Hardening { base, hardening: vector(hardening) },
-            None => Metric::Constant(base),
-        };
-        let shaping = |side: &SideGains| {
-            let extra = |extra: &Extra| {
-                vector(side.extra(extra.key).expect("the reader asks for what φ has beside Λ"))
-            };
-            AnyShaping::new(*phi, side.metric.len(), vector(&side.shaping), &extra)
-        };
-        control::Vcbc {
-            link: LinkGains { metric, shaping: shaping(link), damping: vector(&link.damping) },
-            motor: MotorGains {
-                metric: vector(&motor.metric),
-                shaping: shaping(motor),
-                damping: vector(&motor.damping),
-            },
-        }
+        made(gains, vector)
+    }
+}
+
+/// The law with these gains; `vector` makes constants of a gain.
+fn made<C: Scalar, const N: usize>(
+    gains: &VcbcGains,
+    vector: impl Fn(&Vec<f64>) -> Vector<C, N>,
+) -> Law<C, N> {
+    let VcbcGains { phi, link, motor } = gains;
+    let base = vector(&link.metric);
+    let metric = match &link.metric_hardening {
+        Some(hardening) => Metric::Hardening { base, hardening: vector(hardening) },
+        None => Metric::Constant(base),
+    };
+    let shaping = |side: &SideGains| {
+        let extra =
+            |extra: &Extra| vector(side.extra(extra.key).expect("the reader asks for what φ has beside Λ"));
+        AnyShaping::new(*phi, side.metric.len(), vector(&side.shaping), &extra)
+    };
+    control::Vcbc {
+        link: LinkGains { metric, shaping: shaping(link), damping: vector(&link.damping) },
+        motor: MotorGains {
+            metric: vector(&motor.metric),
+            shaping: shaping(motor),
+            damping: vector(&motor.damping),
+        },
     }
 }
 
@@ -157,7 +166,7 @@ pub fn law<const N: usize>(gains: &VcbcGains) -> Law<f64, N> {
 ///
 /// [`Scenario::bounds`]: crate::scenario::Scenario::bounds
 pub fn law_over<C: Scalar, const N: usize>(gains: &VcbcGains, number: impl Fn(f64) -> C) -> Law<C, N> {
-    Vcbc::core(gains, constants(&number))
+    made(gains, constants(&number))
 }
 
 /// What the v-CBC `law` commands the robot at `x` to do, following `q_ld`, the reference in rad to order 4. Compiled once

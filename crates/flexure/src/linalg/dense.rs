@@ -57,6 +57,26 @@ impl Dense<f64> {
         Self::from_fn(n, n, |i, j| if i == j { 1.0 } else { 0.0 })
     }
 
+    /// A⁻¹ `b` by elimination without pivoting, for a matrix near enough to the identity, as those of implicit steps are.
+    pub fn solved(mut self, mut b: Self) -> Self {
+        let n = self.columns();
+        for p in 0..n {
+            for i in (0..n).filter(|&i| i != p) {
+                let factor = self[(i, p)] / self[(p, p)];
+                if factor == 0.0 {
+                    continue;
+                }
+                for j in p..n {
+                    self[(i, j)] -= factor * self[(p, j)];
+                }
+                for j in 0..b.columns() {
+                    b[(i, j)] -= factor * b[(p, j)];
+                }
+            }
+        }
+        Self::from_fn(n, b.columns(), |i, j| b[(i, j)] / self[(i, i)])
+    }
+
     /// Every entry times `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {

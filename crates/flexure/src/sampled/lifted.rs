@@ -1,6 +1,6 @@
 //! The parts of a loop on numbers that carry a derivative along, their joint count hidden.
 
-use flexure_core::control::ControlLaw as _;
+use flexure_core::control::Applied;
 use flexure_core::estimate::{DisturbanceObserver, Estimator as _};
 use flexure_core::linalg::Vector;
 use flexure_core::memory::{Memory, Port};
@@ -12,7 +12,7 @@ use crate::estimators::{AnyEstimator, estimator};
 use crate::feasible;
 use crate::files::Problems;
 use crate::imperfections::Effects;
-use crate::laws::{Controller, any_law};
+use crate::laws::{self, AnyLaw, Controller, LawMemory, PARTS, any_law};
 use crate::linalg::Dense;
 use crate::plant::Plant;
 use crate::references::AnyReference;
@@ -39,19 +39,33 @@ pub(crate) struct Device {
     pub slope: Dense<f64>,
 }
 
+/// A law with memory, linearised: (torque, next memory) from (motion that is seen, motion that was seen, memory, torque that left the controller at the last
+/// instant, torque that the motors got since).
+#[derive(Clone, Debug)]
+pub(crate) struct LawDevice {
+    /// Numbers in the memory.
+    pub memory: usize,
+    /// A row per torque, then per number of the memory.
+    pub slope: Dense<f64>,
+}
+
 /// The parts of a loop, each with its exact Jacobian.
 pub(crate) trait Lifted: Send + Sync {
     /// Taylor coefficients of the reference in time at `t` in s, six per joint.
     fn reference(&self, t: f64) -> Vec<[f64; 6]>;
 
-    /// What `law` asks for [N m] at `motion`.
+    /// What `law` asks for [N m] at `motion`, if it starts there.
     fn torque(&self, law: &Controller, t: f64, motion: &[f64]) -> Vec<f64>;
 
     /// By motion and torque: the rate of the motion of the simulated robot, 4n rows of 4n + n columns.
     fn plant(&self, at: &Nominal) -> Dense<f64>;
 
-    /// By motion: the torque of `law`, n rows of 4n columns.
+    /// By motion: the torque of `law`, n rows of 4n columns, its memory held where it is in a loop that starts at `motion`.
     fn law(&self, law: &Controller, t: f64, motion: &[f64]) -> Dense<f64>;
+
+    /// The memory of `law` in a loop that was at `before` a control period before the time `t` in s and is at `now`; none if it has no memory. `settled`: the
+    /// loop has followed for long, or it starts.
+    fn memory(&self, law: &Controller, t: f64, moments: [&Nominal; 2], settled: bool) -> Option<LawDevice>;
 
     /// The estimator of a loop that was at `before` a period ago and is at `now`; none if the law sees readings.
     fn estimator(&self, before: &Nominal, now: &Nominal) -> Option<Device>;
@@ -178,7 +192,9 @@ where
 
     fn torque(&self, law: &Controller, t: f64, motion: &[f64]) -> Vec<f64> {
         let x = read_motion(motion, self.joints()).expect(SIZES);
-        let u_m = crate::laws::torque(&any_law(law, |x| x), &self.robot, &x, &self.reference.at(t));
+        let law = any_law(law, &self.scenario.robot, |x| x);
+        let q_ld = self.reference.at(t);
+        let u_m = laws::torque(&law, &self.robot, &x, &q_ld, &laws::start(&law, &self.robot, &x, &q_ld));
         u_m.iter().take(self.joints()).collect()
     }
 
@@ -199,14 +215,48 @@ where
 
     fn law(&self, law: &Controller, t: f64, motion: &[f64]) -> Dense<f64> {
         let (n, q_ld) = (self.joints(), self.q_ld(t));
-        let law = any_law::<f64, N>(law, |x| x);
+        let law = any_law::<f64, N>(law, &self.scenario.robot, |x| x);
+        let z = law.start(&self.robot, &self.motion(motion, usize::MAX), &q_ld);
         let columns: Vec<_> = (0..4 * n)
             .map(|moving| {
-                let u_m = law.torque(&self.robot, &self.motion(motion, moving), &q_ld);
+                let u_m = law.torque(&self.robot, &self.motion(motion, moving), &q_ld, &z);
                 u_m.iter().take(n).map(|u| u.gradient[0]).collect()
             })
             .collect();
         Dense::from_columns(&columns)
+    }
+
+    fn memory(&self, law: &Controller, t: f64, moments: [&Nominal; 2], settled: bool) -> Option<LawDevice> {
+        let (n, parts, period) = (self.joints(), law.memory().len(), self.scenario.control_period);
+        if parts == 0 {
+            return None;
+        }
+        let law = any_law::<f64, N>(law, &self.scenario.robot, |x| x);
+        let times = [(t - period).max(0.0), t];
+        let [before, now] =
+            [0, 1].map(|i| Remembering::new(self, &law, parts, (times[i], moments[i]), settled));
+        let (rates, ends) = (before.rate(), now.rate());
+        // (1 − T/2 ∂ż⁺) z⁺ = z + T/2 (ż + ż⁺), by (motion now, motion before, memory, asked, given).
+        let (size, half) = (parts * n, 0.5 * period);
+        let here = |of: &Dense<f64>, i: usize, j: usize| half * of[(i, j)];
+        let implicit = Dense::from_fn(size, size, |i, j| f64::from(i == j) - here(&ends, i, 4 * n + j));
+        let known = Dense::from_fn(size, 8 * n + size + 2 * n, |i, j| {
+            if j < 4 * n {
+                here(&ends, i, j)
+            } else if j < 8 * n {
+                here(&rates, i, j - 4 * n)
+            } else if j < 8 * n + size {
+                f64::from(i == j - 8 * n) + here(&rates, i, j - 4 * n)
+            } else {
+                here(&rates, i, j - 4 * n) + here(&ends, i, j - 4 * n)
+            }
+        });
+        let next = implicit.solved(known);
+        let torque = now.torque();
+        let direct = Dense::from_fn(n, next.columns(), |i, j| if j < 4 * n { torque[(i, j)] } else { 0.0 });
+        let by_memory = Dense::from_fn(n, size, |i, j| torque[(i, 4 * n + j)]);
+        let torque = &direct + &(&by_memory * &next);
+        Some(LawDevice { memory: size, slope: Dense::stacked(&[&torque, &next]) })
     }
 
     fn estimator(&self, before: &Nominal, now: &Nominal) -> Option<Device> {
@@ -230,6 +280,79 @@ where
             let torque = observer.update(&self.known, readings, u_m).motor;
             torque.iter().take(self.joints()).map(|d| d.gradient[0]).collect()
         }))
+    }
+}
+
+/// A law with memory at an instant of a loop, its memory as numbers.
+struct Remembering<'a, L, M, const N: usize> {
+    parts: &'a Parts<L, M, N>,
+    law: &'a AnyLaw<f64, N>,
+    q_ld: Vector<Jet<Tangent, 5>, N>,
+    motion: &'a [f64],
+    memory: Vec<f64>,
+    u_m: &'a [f64],
+}
+
+impl<'a, L: Links<f64, N>, M: Links<Tangent, N>, const N: usize> Remembering<'a, L, M, N> {
+    fn new(
+        parts: &'a Parts<L, M, N>,
+        law: &'a AnyLaw<f64, N>,
+        count: usize,
+        (t, moment): (f64, &'a Nominal),
+        settled: bool,
+    ) -> Self {
+        let n = parts.joints();
+        let (q_ld, x) = (parts.q_ld(t), parts.motion(&moment.motion, usize::MAX));
+        let z =
+            if settled { law.settled(&parts.robot, &x, &q_ld) } else { law.start(&parts.robot, &x, &q_ld) };
+        let memory = z.iter().take(count).flat_map(|part| part.iter().take(n)).map(|x| x.value).collect();
+        Self { parts, law, q_ld, motion: &moment.motion, memory, u_m: &moment.u_m }
+    }
+
+    /// The memory of which entry `moving` moves.
+    fn z(&self, moving: usize) -> LawMemory<Tangent, N> {
+        let n = self.parts.joints();
+        let seeded = seeded(&self.memory, moving);
+        let mut z = [Vector([Tangent::constant(0.0); N]); PARTS];
+        for (part, values) in z.iter_mut().zip(seeded.chunks_exact(n)) {
+            *part = read("memory", values, n).expect(SIZES);
+        }
+        z
+    }
+
+    /// By motion, memory, torque asked and given: the rate of the memory.
+    fn rate(&self) -> Dense<f64> {
+        let (n, size) = (self.parts.joints(), self.memory.len());
+        let columns: Vec<_> = (0..4 * n + size + 2 * n)
+            .map(|moving| {
+                let after = |from: usize| moving.wrapping_sub(from);
+                let applied = Applied {
+                    asked: self.parts.vector(self.u_m, after(4 * n + size)),
+                    given: self.parts.vector(self.u_m, after(5 * n + size)),
+                };
+                let (x, z) = (self.parts.motion(self.motion, moving), self.z(after(4 * n)));
+                let rate = self.law.rate(&self.parts.robot, &x, &self.q_ld, &z, &applied);
+                rate.iter()
+                    .take(size / n)
+                    .flat_map(|part| part.iter().take(n))
+                    .map(|x| x.gradient[0])
+                    .collect()
+            })
+            .collect();
+        Dense::from_columns(&columns)
+    }
+
+    /// By motion and memory: the torque.
+    fn torque(&self) -> Dense<f64> {
+        let n = self.parts.joints();
+        let columns: Vec<_> = (0..4 * n + self.memory.len())
+            .map(|moving| {
+                let (x, z) = (self.parts.motion(self.motion, moving), self.z(moving.wrapping_sub(4 * n)));
+                let u_m = self.law.torque(&self.parts.robot, &x, &self.q_ld, &z);
+                u_m.iter().take(n).map(|u| u.gradient[0]).collect()
+            })
+            .collect();
+        Dense::from_columns(&columns)
     }
 }
 

@@ -6,7 +6,7 @@
 
 use crate::linalg::{Dense, exponential};
 use crate::sampled::devices::Devices;
-use crate::sampled::lifted::{Device, Lifted, Nominal};
+use crate::sampled::lifted::{Device, LawDevice, Lifted, Nominal};
 
 /// A motion over a part of a control period: x⁺ = Φ x + Γ u.
 #[derive(Clone, Debug)]
@@ -45,6 +45,25 @@ fn extended(plant: &Dense<f64>) -> Dense<f64> {
     Dense::stacked(&[plant, &below])
 }
 
+/// How the torque of a law moves.
+#[derive(Clone, Debug)]
+pub(crate) enum LawSlope {
+    /// By the motion that is seen: n rows by 4n columns.
+    Static(Dense<f64>),
+    /// By that and its memory.
+    Dynamic(LawDevice),
+}
+
+impl LawSlope {
+    /// How many numbers it remembers, if it does.
+    fn memory(&self) -> Option<usize> {
+        match self {
+            Self::Static(_) => None,
+            Self::Dynamic(device) => Some(device.memory),
+        }
+    }
+}
+
 /// A loop around a nominal motion, but for its law.
 #[derive(Clone, Debug)]
 pub(crate) struct Around {
@@ -79,10 +98,9 @@ impl Around {
         }
     }
 
-    /// The map over a cycle of the devices with a law whose torque has the slope `law`, n rows by 4n columns of the motion that is
-    /// seen.
-    pub fn cycle(&self, law: &Dense<f64>) -> Dense<f64> {
-        let mut state = State::start(self);
+    /// The map over a cycle of the devices with the law `law`.
+    pub fn cycle(&self, law: &LawSlope) -> Dense<f64> {
+        let mut state = State::start(self, law.memory());
         let size = state.size();
         for k in 0..self.devices.cycle {
             state = self.next(state, law, k);
@@ -92,9 +110,10 @@ impl Around {
         all
     }
 
-    fn next(&self, before: State, law: &Dense<f64>, k: u32) -> State {
+    fn next(&self, before: State, law: &LawSlope, k: u32) -> State {
         let n = self.joints;
-        let State { motion, mut held, estimator, disturbance, reported, mut kept, mut waiting } = before;
+        let State { motion, mut held, estimator, disturbance, mut law_s, reported, mut kept, mut waiting } =
+            before;
         let mut readings = motion.clone();
         for (side, held) in held.iter_mut().enumerate() {
             let Some(held) = held else { continue };
@@ -112,12 +131,23 @@ impl Around {
             }
         }
         let (seen, estimator) = through(self.estimator.as_ref(), readings, estimator, &reported, 4 * n);
-        let mut asked = law * &seen;
+        let mut asked = match law {
+            LawSlope::Static(slope) => slope * &seen,
+            LawSlope::Dynamic(LawDevice { memory, slope }) => {
+                let [was_seen, z, asked] = &law_s;
+                let after = slope * &Dense::stacked(&[&seen, was_seen, z, asked, &reported]);
+                law_s = [seen.clone(), after.slice(n..n + memory), asked.clone()];
+                after.slice(0..n)
+            }
+        };
         let mut disturbance = disturbance;
         if self.disturbance.is_some() {
             let (torque, after) = through(self.disturbance.as_ref(), seen, disturbance, &reported, n);
             asked = &asked + &torque.scaled(-1.0);
             disturbance = after;
+        }
+        if let LawSlope::Dynamic(_) = law {
+            law_s[2].clone_from(&asked);
         }
         if let Some(kept) = &mut kept {
             if self.devices.misses(k) {
@@ -138,7 +168,7 @@ impl Around {
             }
         };
         let reported = if reported.rows().len() == 0 { reported } else { mean };
-        State { motion, held, estimator, disturbance, reported, kept, waiting }
+        State { motion, held, estimator, disturbance, law_s, reported, kept, waiting }
     }
 }
 
@@ -162,6 +192,8 @@ struct State {
     held: [Option<Dense<f64>>; 2],
     estimator: Dense<f64>,
     disturbance: Dense<f64>,
+    /// Of a law with memory: the motion that was seen, the memory, and what left the controller; no rows of others.
+    law_s: [Dense<f64>; 3],
     /// Mean torque of the period before; no rows where nobody asks.
     reported: Dense<f64>,
     /// The last command, where instants are missed.
@@ -170,10 +202,11 @@ struct State {
 }
 
 impl State {
-    fn start(around: &Around) -> Self {
+    /// Of a loop whose law has so many numbers in its memory, if it has one.
+    fn start(around: &Around, law: Option<usize>) -> Self {
         let (n, devices) = (around.joints, &around.devices);
         let memory = |device: &Option<Device>| device.as_ref().map_or(0, |device| device.memory);
-        let asks = around.estimator.is_some() || around.disturbance.is_some();
+        let asks = around.estimator.is_some() || around.disturbance.is_some() || law.is_some();
         let slow = devices.sampling.map(|periods| periods > 1);
         let counts = [
             4 * n,
@@ -181,6 +214,9 @@ impl State {
             2 * n * usize::from(slow[1]),
             memory(&around.estimator),
             memory(&around.disturbance),
+            law.map_or(0, |_| 4 * n),
+            law.unwrap_or(0),
+            law.map_or(0, |_| n),
             n * usize::from(asks),
             n * usize::from(devices.every.is_some()),
         ];
@@ -191,12 +227,14 @@ impl State {
             from += count;
             all.slice(from - count..from)
         };
-        let [motion, link, motor, estimator, disturbance, reported, kept] = counts.map(&mut next);
+        let [motion, link, motor, estimator, disturbance, seen, memory, asked, reported, kept] =
+            counts.map(&mut next);
         Self {
             motion,
             held: [slow[0].then_some(link), slow[1].then_some(motor)],
             estimator,
             disturbance,
+            law_s: [seen, memory, asked],
             reported,
             kept: devices.every.is_some().then_some(kept),
             waiting: (0..devices.waiting).map(|_| next(n)).collect(),
@@ -209,11 +247,8 @@ impl State {
 
     fn stacked(&self) -> Dense<f64> {
         let held = self.held.iter().flatten();
-        let parts = [&self.motion].into_iter().chain(held).chain([
-            &self.estimator,
-            &self.disturbance,
-            &self.reported,
-        ]);
+        let parts = [&self.motion].into_iter().chain(held).chain([&self.estimator, &self.disturbance]);
+        let parts = parts.chain(&self.law_s).chain([&self.reported]);
         let parts: Vec<_> = parts.chain(&self.kept).chain(&self.waiting).collect();
         Dense::stacked(&parts)
     }

@@ -28,7 +28,7 @@ use crate::linalg::{Dense, spectral_radius};
 use crate::robot::Arm;
 use crate::sampled::devices::Devices;
 use crate::sampled::lifted::{Lifted, Nominal, lifted};
-use crate::sampled::map::Around;
+use crate::sampled::map::{Around, LawSlope};
 use crate::scenario::{Hold, Scenario};
 
 pub use advice::{Advice, Move};
@@ -262,11 +262,13 @@ impl<'a> Probe<'a> {
 
     /// The map over a cycle.
     fn cycle(&self, spot: &Spot, law: &Controller, around: &Around) -> Dense<f64> {
-        let motion = match spot.place {
-            Place::Start => self.start().motion,
-            Place::Reference => self.on_reference(spot.time).motion,
-        };
-        around.cycle(&self.lifted.law(law, spot.time, &motion))
+        let settled = spot.place == Place::Reference;
+        let at = |t: f64| if settled { self.on_reference(t) } else { self.start() };
+        let (before, now) = (at((spot.time - self.scenario.control_period).max(0.0)), at(spot.time));
+        around.cycle(&match self.lifted.memory(law, spot.time, [&before, &now], settled) {
+            Some(device) => LawSlope::Dynamic(device),
+            None => LawSlope::Static(self.lifted.law(law, spot.time, &now.motion)),
+        })
     }
 
     /// The largest spectral radius with `law` that counts, where it is, and by what small errors shrink a control period, if they do.

@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 
+use flexure_core::control::{Applied, Seen};
 use flexure_core::estimate::{DisturbanceObserver, Estimator, FilteredDifference};
 use flexure_core::guard::{Age, Certificate, Fault, Phase, Place, Status, Watchdog};
 use flexure_core::linalg::Vector;
@@ -10,8 +11,9 @@ use flexure_core::reference::{Reference, Stop};
 use flexure_core::scalar::Jet;
 
 use crate::imperfections::stages::{Actuator, Computer, Measured, Pieces, Sensors, Tick};
-use crate::laws::{self, AnyLaw};
+use crate::laws::{self, AnyLaw, LawMemory, PARTS};
 use crate::simulate::guarded::{Asked, Guarded};
+use crate::simulate::remembered::Remembered;
 
 /// A law with everything between it and the robot; without any of that, an ideal loop.
 ///
@@ -43,14 +45,37 @@ pub struct Controller<L, R, F, E, const N: usize> {
 /// A law as the loop asks it.
 pub trait Feedback<L, const N: usize> {
     /// Motor torque [N m] for the robot `robot` that moves as `x` at the time `t` in s, with the reference `q_ld` in rad to
-    /// order 4.
+    /// order 4 and the memory `z`; with that of a loop that starts there if there is none yet.
     fn torque(
         &self,
         robot: &Fjr<f64, L, N>,
         t: f64,
         x: &Motion<f64, N>,
         q_ld: &Vector<Jet<f64, 5>, N>,
+        z: Option<&LawMemory<f64, N>>,
     ) -> Vector<f64, N>;
+
+    /// What it keeps from one instant to the next: names and units, a number per joint each.
+    fn memory(&self) -> &'static [(&'static str, &'static str)] {
+        &[]
+    }
+
+    /// The memory that a loop starts with.
+    fn start(&self, _: &Fjr<f64, L, N>, _: &Motion<f64, N>, _: &Vector<Jet<f64, 5>, N>) -> LawMemory<f64, N> {
+        [Vector::ZERO; PARTS]
+    }
+
+    /// The memory a `period` in s after it was `z`.
+    fn advanced(
+        &self,
+        _: &Fjr<f64, L, N>,
+        _seen: [&Seen<f64, N>; 2],
+        z: &LawMemory<f64, N>,
+        _: &Applied<f64, N>,
+        _period: f64,
+    ) -> LawMemory<f64, N> {
+        *z
+    }
 }
 
 impl<L: Links<f64, N>, const N: usize> Feedback<L, N> for AnyLaw<f64, N> {
@@ -60,8 +85,36 @@ impl<L: Links<f64, N>, const N: usize> Feedback<L, N> for AnyLaw<f64, N> {
         _: f64,
         x: &Motion<f64, N>,
         q_ld: &Vector<Jet<f64, 5>, N>,
+        z: Option<&LawMemory<f64, N>>,
     ) -> Vector<f64, N> {
-        laws::torque(self, robot, x, q_ld)
+        match z {
+            Some(z) => laws::torque(self, robot, x, q_ld, z),
+            None => laws::torque(self, robot, x, q_ld, &laws::start(self, robot, x, q_ld)),
+        }
+    }
+
+    fn memory(&self) -> &'static [(&'static str, &'static str)] {
+        Self::memory(self)
+    }
+
+    fn start(
+        &self,
+        robot: &Fjr<f64, L, N>,
+        x: &Motion<f64, N>,
+        q_ld: &Vector<Jet<f64, 5>, N>,
+    ) -> LawMemory<f64, N> {
+        laws::start(self, robot, x, q_ld)
+    }
+
+    fn advanced(
+        &self,
+        robot: &Fjr<f64, L, N>,
+        seen: [&Seen<f64, N>; 2],
+        z: &LawMemory<f64, N>,
+        applied: &Applied<f64, N>,
+        period: f64,
+    ) -> LawMemory<f64, N> {
+        laws::advanced(self, robot, seen, z, applied, period)
     }
 }
 
@@ -76,6 +129,7 @@ where
         t: f64,
         x: &Motion<f64, N>,
         q_ld: &Vector<Jet<f64, 5>, N>,
+        _: Option<&LawMemory<f64, N>>,
     ) -> Vector<f64, N> {
         self(t, x, q_ld)
     }
@@ -98,6 +152,8 @@ pub(crate) struct State<const N: usize> {
     pub(crate) applied: Vector<f64, N>,
     /// How the robot moved when the law took over from the guard, and how it would have come to rest.
     pub(crate) rejoined: Option<Stop<f64, N>>,
+    /// Of a law with memory, while it has the robot.
+    pub(crate) remembered: Option<Remembered<N>>,
 }
 
 /// What a controller knows at an instant before its law is asked.
@@ -170,7 +226,7 @@ where
 {
     /// The law with nothing between it and the robot yet.
     pub fn new(robot: Fjr<f64, L, N>, reference: R, law: F) -> Self {
-        let state = State { applied: Vector::ZERO, rejoined: None };
+        let state = State { applied: Vector::ZERO, rejoined: None, remembered: None };
         let (sensors, computer, actuator) = (Sensors::default(), Computer::default(), Actuator::default());
         Self {
             robot,
@@ -190,7 +246,7 @@ where
     /// Starts estimator and disturbance observer at the motion `x`, held by the motor torque `applied` [N m] until now. Sensors,
     /// guard and drive start when they are made.
     pub fn start(&mut self, x: &Motion<f64, N>, applied: Vector<f64, N>) {
-        self.state = State { applied, rejoined: None };
+        self.state = State { applied, rejoined: None, remembered: None };
         if let Some(estimator) = &mut self.estimator {
             estimator.start(x);
         }
@@ -254,11 +310,13 @@ where
             Some((torque, true)) => *torque,
             _ => Vector::ZERO,
         };
-        let Self { robot, reference: path, law, guard, .. } = self;
+        self.remember(tick.t, seen, reference);
+        let Self { robot, reference: path, law, guard, state, .. } = self;
         let mut asked = Asked {
             robot,
             path,
             law,
+            memory: state.remembered.as_ref().map(|remembered| &remembered.z),
             t: tick.t,
             reference,
             compensated,
@@ -276,6 +334,14 @@ where
         if let (Some(Status { phase: Phase::Rejoined, .. }), Some(guarded)) = (status, &self.guard) {
             self.state.rejoined = Some(guarded.joined(&self.robot, tick.t, seen));
         }
+        match (&mut self.state.remembered, status) {
+            // The law has not the robot: it will start anew, from how it then moves.
+            (_, Some(status)) if !status.phase.is_law_s() || status.phase == Phase::Rejoined => {
+                self.state.remembered = None;
+            }
+            (Some(remembered), _) => remembered.asked = u_m,
+            (None, _) => {}
+        }
         let command = (!self.computer.misses(tick)).then_some(u_m);
         let pieces = self.driven(tick, command);
         let disturbance = disturbance.map_or(Vector::ZERO, |(torque, _)| torque);
@@ -292,6 +358,15 @@ where
                 && status.is_none_or(|status| status.certificate() == Certificate::Holds),
             stopped: status.is_some_and(|status| !status.phase.is_law_s()),
             guard: status.map(|status| Said { phase: status.phase, fault: status.fault() }),
+        }
+    }
+
+    /// Takes the memory of the law, if it has one, to the time `t` in s.
+    fn remember(&mut self, t: f64, x: &Motion<f64, N>, q_ld: &Vector<Jet<f64, 5>, N>) {
+        if !self.law.memory().is_empty() {
+            let State { applied, remembered, .. } = &self.state;
+            let next = Remembered::at(&self.law, &self.robot, remembered.as_ref(), t, (x, q_ld), *applied);
+            self.state.remembered = Some(next);
         }
     }
 
@@ -324,9 +399,10 @@ where
         pieces
     }
 
-    /// Torque of the law [N m] at any time, for loops in continuous time: no device stands in between.
+    /// Torque of the law [N m] at any time, with the memory that it has; for loops in continuous time, too: no device stands in between.
     pub fn torque(&self, t: f64, x: &Motion<f64, N>) -> Vector<f64, N> {
-        self.law.torque(&self.robot, t, x, &self.reference.at(t))
+        let memory = self.state.remembered.as_ref().map(|remembered| &remembered.z);
+        self.law.torque(&self.robot, t, x, &self.reference.at(t), memory)
     }
 
     /// Whether the law has taken over from the guard: it then joins the reference again.

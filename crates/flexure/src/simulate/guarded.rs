@@ -10,6 +10,7 @@ use flexure_core::reference::{Reference, SmoothStart, Stop};
 use flexure_core::scalar::Jet;
 
 use crate::imperfections::stages::{Measured, Tick};
+use crate::laws::LawMemory;
 use crate::simulate::controller::Feedback;
 
 /// A guard with what it needs around it.
@@ -109,6 +110,8 @@ pub(crate) struct Asked<'a, L, R, F, const N: usize> {
     /// The reference over time, as the scenario has it.
     pub path: &'a R,
     pub law: &'a F,
+    /// What the law remembers, if it has the robot.
+    pub memory: Option<&'a LawMemory<f64, N>>,
     pub t: f64,
     /// The reference now, as it is followed.
     pub reference: &'a Vector<Jet<f64, 5>, N>,
@@ -125,15 +128,15 @@ impl<L, R, F: Feedback<L, N>, const N: usize> Asked<'_, L, R, F, N> {
     pub fn follow(&self, x: &Motion<f64, N>) -> Vector<f64, N> {
         let torque = match self.known {
             Some((known, torque)) if known == *x => torque,
-            _ => self.law.torque(self.robot, self.t, x, self.reference),
+            _ => self.law.torque(self.robot, self.t, x, self.reference, self.memory),
         };
         self.wanted.set(Some(torque));
         torque - self.compensated
     }
 
-    /// Motor torque [N m] for a robot that moves as `x` and shall be at `q_ld`.
+    /// Motor torque [N m] for a robot that moves as `x` and shall be at `q_ld`, of a law that starts there.
     fn torque(&self, x: &Motion<f64, N>, q_ld: &Vector<Jet<f64, 5>, N>) -> Vector<f64, N> {
-        self.law.torque(self.robot, self.t, x, q_ld) - self.compensated
+        self.law.torque(self.robot, self.t, x, q_ld, None) - self.compensated
     }
 }
 

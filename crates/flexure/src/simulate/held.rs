@@ -112,7 +112,7 @@ impl<L: FromFile<f64, N> + Clone, const N: usize> Held<L, N> {
     fn new(scenario: &Scenario, own: Option<Own>) -> Result<Self, Problems> {
         let [model, simulated] = pair(&scenario.robot, &assembly::simulated(scenario))?;
         let law = match own {
-            None => HeldLaw::Registered(any_law(&scenario.controller, |x| x)),
+            None => HeldLaw::Registered(any_law(&scenario.controller, &scenario.robot, |x| x)),
             Some(Own::Law(law)) => HeldLaw::Own(law),
             Some(Own::Shaping(gains, shaping)) => HeldLaw::Shaped(Box::new(shaping.law(&gains))),
         };
@@ -165,6 +165,13 @@ impl<L: Links<f64, N>, const N: usize> Held<L, N> {
         self.simulation.controller().reference.at(t)
     }
 
+    /// What the law asks of a robot that moves as `x`, with the memory that it has [N m].
+    fn asked(&self, t: f64, x: &Motion<f64, N>, q_ld: &Vector<Jet<f64, 5>, N>) -> Vector<f64, N> {
+        let controller = self.simulation.controller();
+        let memory = controller.state.remembered.as_ref().map(|remembered| &remembered.z);
+        controller.law.torque(&controller.robot, t, x, q_ld, memory)
+    }
+
     /// Torque from outside on the links [N m].
     fn pushed(&self, t: f64) -> Vector<f64, N> {
         self.simulation.pushes().iter().fold(Vector::ZERO, |sum, push: &Push<N>| sum + push.at(t))
@@ -201,7 +208,7 @@ where
         }
         for (motion, u_m) in motions.chunks_exact(4 * n).zip(u_m.chunks_exact_mut(n)) {
             let x = read_motion(motion, n)?;
-            write(&self.simulation.controller().law.torque(robot, t, &x, &reference), u_m);
+            write(&self.asked(t, &x, &reference), u_m);
         }
         Ok(())
     }
@@ -227,8 +234,8 @@ where
                 };
                 Commanded { u_m: list(&command.u_m), e_l, energy, errors: Some(errors) }
             }
-            law => {
-                let u_m = list(&law.torque(robot, t, &x, &reference));
+            _ => {
+                let u_m = list(&self.asked(t, &x, &reference));
                 Commanded { u_m, e_l, energy, errors: None }
             }
         })

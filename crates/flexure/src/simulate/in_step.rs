@@ -8,7 +8,6 @@ mod plants;
 
 use std::array;
 
-use flexure_core::control::ControlLaw as _;
 use flexure_core::linalg::Vector;
 use flexure_core::model::Fjr;
 use flexure_core::scalar::Jet;
@@ -157,9 +156,10 @@ fn robots<L: SideBySide<N>, const N: usize>(
 
 /// The laws of scenarios whose laws are of one kind; none if not all of them have the same gains.
 fn laws<const N: usize>(scenarios: &Each<&Scenario>) -> Option<AnyLaw<Several, N>> {
-    let numbers =
-        scenarios.map(|scenario| lanes::numbers(|number| any_law::<f64, N>(&scenario.controller, number)));
-    lanes::together(&numbers, |number| any_law(&scenarios[0].controller, number))
+    let numbers = scenarios.map(|scenario| {
+        lanes::numbers(|number| any_law::<f64, N>(&scenario.controller, &scenario.robot, number))
+    });
+    lanes::together(&numbers, |number| any_law(&scenarios[0].controller, &scenarios[0].robot, number))
 }
 
 impl<L, const N: usize> InStep for Group<L, N>
@@ -190,7 +190,10 @@ where
             let simulation = &mut self.loops[lane].simulation;
             let tick = simulation.tick();
             let action = match &sensed[lane] {
-                Some(sensed) => simulation.controller.act(&tick, sensed, Some(torques[lane])),
+                Some(sensed) => {
+                    let torque = torques.as_ref().map(|torques| torques[lane]);
+                    simulation.controller.act(&tick, sensed, torque)
+                }
                 None => simulation.controller.silent(&tick),
             };
             let energy = match &self.plants {
@@ -240,14 +243,15 @@ where
         sensed
     }
 
-    /// What the law of each loop asks for at what its controller knows [N m]; anything for loops that know nothing.
-    fn torques(&self, sensed: &Each<Option<Sensed<N>>>) -> Each<Vector<f64, N>> {
-        let Some(filling) = sensed.iter().flatten().next() else { return [Vector::ZERO; WIDTH] };
+    /// What the law of each loop asks for at what its controller knows [N m]; anything for loops that know nothing, and nothing of laws with memory: each
+    /// loop asks its own.
+    fn torques(&self, sensed: &Each<Option<Sensed<N>>>) -> Option<Each<Vector<f64, N>>> {
+        let filling = sensed.iter().flatten().next()?;
         let sensed = sensed.each_ref().map(|sensed| sensed.as_ref().unwrap_or(filling));
         let x = lanes::motion(&sensed.map(|sensed| &sensed.seen));
         let q_ld = Vector::from_fn(|i| {
             Jet::from_fn(|k| Several::from_array(sensed.map(|sensed| sensed.reference[i].coefficient(k))))
         });
-        lanes::apart(&self.laws.torque(&self.models, &x, &q_ld))
+        self.laws.static_torque(&self.models, &x, &q_ld).map(|torque| lanes::apart(&torque))
     }
 }

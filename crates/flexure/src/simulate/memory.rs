@@ -9,17 +9,22 @@ use flexure_core::scalar::Jet;
 
 use crate::imperfections::stages::{Pieces, Tick};
 use crate::simulate::collocation::Past;
-use crate::simulate::controller::{Action, Compensation, Controller, Said};
+use crate::simulate::controller::{Action, Compensation, Controller, Feedback, Said};
 use crate::simulate::gauss::{Integrator, Order};
 use crate::simulate::guarded::Guarded;
 use crate::simulate::ledger::Ledger;
 use crate::simulate::newton::Anchor;
+use crate::simulate::remembered::Remembered;
 use crate::simulate::simulation::{Balance, Cause, Divergence, Happened, Simulation, World};
 use crate::simulate::stepper::Stepper;
 use crate::simulate::stepping::Stepping;
 
 /// Motion, then the last instant, energy balance, controller, integrator, and how the loop diverged, if it did.
-impl<L, R, F, E: Memory<f64>, const N: usize> Memory<f64> for Simulation<L, R, F, E, N> {
+impl<L, R, F, E, const N: usize> Memory<f64> for Simulation<L, R, F, E, N>
+where
+    F: Feedback<L, N>,
+    E: Memory<f64>,
+{
     fn memory(&mut self, port: &mut dyn Port<f64>) {
         let Self { controller, world, timing, motion, last, balance, divergence } = self;
         port.part("motion", motion);
@@ -52,12 +57,16 @@ impl<L, R, F, E: Memory<f64>, const N: usize> Memory<f64> for Simulation<L, R, F
 }
 
 /// Sensors, estimator, disturbance observer, guard, computer, watchdog, drive; torque since the last instant and how the reference is joined again.
-impl<L, R, F, E: Memory<f64>, const N: usize> Memory<f64> for Controller<L, R, F, E, N> {
+impl<L, R, F, E, const N: usize> Memory<f64> for Controller<L, R, F, E, N>
+where
+    F: Feedback<L, N>,
+    E: Memory<f64>,
+{
     fn memory(&mut self, port: &mut dyn Port<f64>) {
         let Self {
             robot: _,
             reference: _,
-            law: _,
+            law,
             sensors,
             estimator,
             disturbance,
@@ -95,6 +104,14 @@ impl<L, R, F, E: Memory<f64>, const N: usize> Memory<f64> for Controller<L, R, F
             port.number("duration", "s", duration);
         });
         port.leave();
+        let parts = law.memory();
+        if !parts.is_empty() {
+            port.enter("law");
+            port.optional("there", &mut state.remembered, Remembered::NONE, |remembered, port| {
+                remembered.walk(parts, port);
+            });
+            port.leave();
+        }
     }
 }
 
@@ -212,7 +229,7 @@ impl<const N: usize> Past<N> {
 }
 
 /// A coefficient after the other, a number per joint each.
-fn series<const K: usize, const N: usize>(
+pub(super) fn series<const K: usize, const N: usize>(
     name: &'static str,
     x: &mut Vector<Jet<f64, K>, N>,
     port: &mut dyn Port<f64>,

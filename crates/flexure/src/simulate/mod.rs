@@ -27,6 +27,7 @@ mod names;
 mod newton;
 mod own_law;
 mod preload;
+mod remembered;
 mod run;
 mod scheme;
 mod signals;

@@ -3,12 +3,12 @@
 use std::fmt;
 use std::sync::Arc;
 
-use flexure_core::control::{self, Input, LinkGains, MotorGains, OddSeries, TERMS};
+use flexure_core::control::{self, Applied, Input, LinkGains, MotorGains, OddSeries, Seen, TERMS};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion};
 use flexure_core::scalar::Jet;
 
-use crate::laws::{self, AnyLaw, Law, VcbcGains};
+use crate::laws::{self, AnyLaw, Law, LawMemory, PARTS, VcbcGains};
 use crate::robot::slices::{read, write, write_motion};
 use crate::robot::{MAX_JOINTS, vector};
 use crate::simulate::controller::Feedback;
@@ -104,9 +104,10 @@ impl<L: Links<f64, N>, const N: usize> Feedback<L, N> for HeldLaw<N> {
         t: f64,
         x: &Motion<f64, N>,
         q_ld: &Vector<Jet<f64, 5>, N>,
+        z: Option<&LawMemory<f64, N>>,
     ) -> Vector<f64, N> {
         let law = match self {
-            Self::Registered(law) => return laws::torque(law, robot, x, q_ld),
+            Self::Registered(law) => return Feedback::torque(law, robot, t, x, q_ld, z),
             Self::Shaped(law) => return law.command(robot, x, q_ld, &Input::ZERO).u_m,
             Self::Own(OwnLaw(law)) => law,
         };
@@ -117,5 +118,38 @@ impl<L: Links<f64, N>, const N: usize> Feedback<L, N> for HeldLaw<N> {
         write(&q_ld.map(|jet| std::array::from_fn(|k| jet.coefficient(k))), &mut series[..n]);
         law(t, &motion[..4 * n], &series[..n], &mut u_m[..n]);
         read("u_m", &u_m[..n], n).unwrap_or(Vector([f64::NAN; N]))
+    }
+
+    fn memory(&self) -> &'static [(&'static str, &'static str)] {
+        match self {
+            Self::Registered(law) => law.memory(),
+            Self::Shaped(_) | Self::Own(_) => &[],
+        }
+    }
+
+    fn start(
+        &self,
+        robot: &Fjr<f64, L, N>,
+        x: &Motion<f64, N>,
+        q_ld: &Vector<Jet<f64, 5>, N>,
+    ) -> LawMemory<f64, N> {
+        match self {
+            Self::Registered(law) => laws::start(law, robot, x, q_ld),
+            Self::Shaped(_) | Self::Own(_) => [Vector::ZERO; PARTS],
+        }
+    }
+
+    fn advanced(
+        &self,
+        robot: &Fjr<f64, L, N>,
+        seen: [&Seen<f64, N>; 2],
+        z: &LawMemory<f64, N>,
+        applied: &Applied<f64, N>,
+        period: f64,
+    ) -> LawMemory<f64, N> {
+        match self {
+            Self::Registered(law) => laws::advanced(law, robot, seen, z, applied, period),
+            Self::Shaped(_) | Self::Own(_) => *z,
+        }
     }
 }

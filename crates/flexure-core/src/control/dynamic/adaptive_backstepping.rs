@@ -25,6 +25,7 @@ pub struct AdaptiveCommandFilteredBackstepping<C, const N: usize> {
 
 impl<C: Scalar, const N: usize> DynamicLaw<C, N, 16> for AdaptiveCommandFilteredBackstepping<C, N> {
     const READS: Signals = Signals::ALL;
+    const JOINTWISE: bool = false;
 
     /// φ̂ starts at the model's φ, the first filter on its input, all else at rest.
     #[inline]
@@ -69,13 +70,13 @@ impl<C: Scalar, const N: usize> DynamicLaw<C, N, 16> for AdaptiveCommandFiltered
     fn advanced<T: Over<C> + Piecewise, L: Links<C, N>>(
         &self,
         robot: &Fjr<C, L, N>,
-        before: &Seen<T, N>,
-        now: &Seen<T, N>,
+        seen: [&Seen<T, N>; 2],
         z: &[Vector<T, N>; 16],
         applied: &Applied<T, N>,
         period: T,
     ) -> [Vector<T, N>; 16] {
-        let mut next = advanced::<6, _, _, _, N, 16>(self, robot, before, now, z, applied, period);
+        let [_, now] = seen;
+        let mut next = advanced::<6, _, _, _, _, N, 16>(self, robot, seen, z, applied, period);
         let [_, _, _, _, _, _, parameters @ ..] = &mut next;
         *parameters = self.adaptation.projected(&robot.links, &now.x.q_l, parameters);
         next

@@ -138,6 +138,7 @@ impl<C: Scalar, const N: usize> CommandFilteredBackstepping<C, N> {
 
 impl<C: Scalar, const N: usize> DynamicLaw<C, N, 6> for CommandFilteredBackstepping<C, N> {
     const READS: Signals = Signals::ALL;
+    const JOINTWISE: bool = false;
 
     /// The first filter starts on its input, the second at rest.
     #[inline]

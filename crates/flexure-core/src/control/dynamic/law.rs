@@ -29,6 +29,7 @@ use crate::scalar::{Jet, Over, Piecewise, Scalar};
 ///
 /// impl<C: Scalar, const N: usize> DynamicLaw<C, N, 1> for Brake<C, N> {
 ///     const READS: Signals = Signals::MOTOR_POSITIONS;
+///     const JOINTWISE: bool = true;
 ///
 ///     fn start<T: Over<C>, L: Links<C, N>>(
 ///         &self,
@@ -79,6 +80,10 @@ pub trait DynamicLaw<C: Scalar, const N: usize, const K: usize>: Sized {
     /// What it reads of the motion.
     const READS: Signals;
 
+    /// Whether the memory of a joint is all of the memory that moves the rate of its own: filters and integrators joint by joint. The step is then
+    /// found joint by joint.
+    const JOINTWISE: bool;
+
     /// The memory that a robot which moves as `x` starts with: without a jump of the torque, as far as the law can see to it.
     fn start<T: Over<C>, L: Links<C, N>>(
         &self,
@@ -86,6 +91,17 @@ pub trait DynamicLaw<C: Scalar, const N: usize, const K: usize>: Sized {
         x: &Motion<T, N>,
         q_ld: &Vector<Jet<T, 5>, N>,
     ) -> [Vector<T, N>; K];
+
+    /// The memory of a loop that has followed for long and moves as `x`: what small errors are about.
+    #[inline]
+    fn settled<T: Over<C>, L: Links<C, N>>(
+        &self,
+        robot: &Fjr<C, L, N>,
+        x: &Motion<T, N>,
+        q_ld: &Vector<Jet<T, 5>, N>,
+    ) -> [Vector<T, N>; K] {
+        self.start(robot, x, q_ld)
+    }
 
     /// Motor torque [N m] at the motion `x` with the memory `z`; `q_ld` is the reference of the links in rad to order 4.
     fn torque<T: Over<C>, L: Links<C, N>>(
@@ -106,19 +122,18 @@ pub trait DynamicLaw<C: Scalar, const N: usize, const K: usize>: Sized {
         applied: &Applied<T, N>,
     ) -> [Vector<T, N>; K];
 
-    /// z a `period` in s after the instant `before`, by the trapezoidal rule with all of z⁺ solved for together. A law whose memory is slow in part, or
-    /// has bounds, says so here.
+    /// z at the second of two instants that it has `seen`, a `period` in s after it was `z`: by the trapezoidal rule, with all of it solved for together. A
+    /// law whose memory is slow in part, or has bounds, says so here.
     #[inline]
     fn advanced<T: Over<C> + Piecewise, L: Links<C, N>>(
         &self,
         robot: &Fjr<C, L, N>,
-        before: &Seen<T, N>,
-        now: &Seen<T, N>,
+        seen: [&Seen<T, N>; 2],
         z: &[Vector<T, N>; K],
         applied: &Applied<T, N>,
         period: T,
     ) -> [Vector<T, N>; K] {
-        advanced::<K, _, _, _, N, K>(self, robot, before, now, z, applied, period)
+        advanced::<K, _, _, _, _, N, K>(self, robot, seen, z, applied, period)
     }
 }
 

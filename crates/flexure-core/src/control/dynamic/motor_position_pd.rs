@@ -39,7 +39,7 @@ pub struct MotorPositionPdCapped<C, const N: usize> {
 
 /// Gravity g(q_0) [N m] of the goal and e_m = θ − θ_0 in rad.
 #[inline]
-pub(super) fn motor_error<C: Scalar, T: Over<C>, L: Links<C, N>, const N: usize>(
+pub(in crate::control) fn motor_error<C: Scalar, T: Over<C>, L: Links<C, N>, const N: usize>(
     robot: &Fjr<C, L, N>,
     q_m: &Vector<T, N>,
     q_ld: &Vector<Jet<T, 5>, N>,
@@ -51,6 +51,7 @@ pub(super) fn motor_error<C: Scalar, T: Over<C>, L: Links<C, N>, const N: usize>
 
 impl<C: Scalar, const N: usize> DynamicLaw<C, N, 1> for MotorPositionPd<C, N> {
     const READS: Signals = Signals::MOTOR_POSITIONS;
+    const JOINTWISE: bool = true;
 
     #[inline]
     fn start<T: Over<C>, L: Links<C, N>>(
@@ -96,6 +97,7 @@ impl<C: Scalar, const N: usize> MotorPositionPdCapped<C, N> {
 
 impl<C: Scalar, const N: usize> DynamicLaw<C, N, 1> for MotorPositionPdCapped<C, N> {
     const READS: Signals = Signals::MOTOR_POSITIONS;
+    const JOINTWISE: bool = true;
 
     #[inline]
     fn start<T: Over<C>, L: Links<C, N>>(

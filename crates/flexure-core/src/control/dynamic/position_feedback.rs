@@ -72,6 +72,7 @@ impl<C: Scalar, const N: usize> PositionFeedback<C, N> {
 
 impl<C: Scalar, const N: usize> DynamicLaw<C, N, 4> for PositionFeedback<C, N> {
     const READS: Signals = Signals::POSITIONS;
+    const JOINTWISE: bool = true;
 
     /// For links that rest: the filter then starts on the ramp that their error is.
     #[inline]

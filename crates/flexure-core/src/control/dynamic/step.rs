@@ -1,7 +1,11 @@
 //! How memory gets from one control instant to the next.
+#![expect(
+    clippy::indexing_slicing,
+    reason = "indices run over const dimensions; the no-panic check covers them"
+)]
 
 use super::{Applied, DynamicLaw};
-use crate::linalg::{Matrix, Vector, eliminate};
+use crate::linalg::{Matrix, Vector, eliminate, eliminate_each};
 use crate::model::{Fjr, Links, Motion};
 use crate::scalar::{Dual, Float, Jet, Over, Scalar};
 
@@ -12,34 +16,54 @@ const CORRECTIONS: usize = 2;
 /// The memory `z` a `period` in s later: the trapezoidal rule z⁺ = z + T/2 (ż(`before`, z) + ż(`now`, z⁺)), both rates under the torque that was
 /// `applied` in between.
 ///
-/// Of a linear filter this is Tustin's, which keeps passivity and is stable for any period. The first `I` parts of z⁺ are found by Newton's method from Euler's
-/// step, with the Jacobian of ż by dual numbers; the others, which are slow, by as many corrections without it.
+/// Of a linear filter this is Tustin's, which keeps passivity and is stable for any period. The first `I` parts of z⁺ are found by Newton's method from
+/// Euler's step, with the Jacobian of ż by dual numbers; the others, which are slow, by as many corrections without it.
 #[inline]
-pub fn advanced<const I: usize, C: Scalar, T: Over<C>, L: Links<C, N>, const N: usize, const K: usize>(
-    law: &impl DynamicLaw<C, N, K>,
+pub fn advanced<const I: usize, C: Scalar, T: Over<C>, L: Links<C, N>, F, const N: usize, const K: usize>(
+    law: &F,
     robot: &Fjr<C, L, N>,
-    before: &Seen<T, N>,
-    now: &Seen<T, N>,
+    [before, now]: [&Seen<T, N>; 2],
     z: &[Vector<T, N>; K],
     applied: &Applied<T, N>,
     period: T,
-) -> [Vector<T, N>; K] {
+) -> [Vector<T, N>; K]
+where
+    F: DynamicLaw<C, N, K>,
+{
     const { assert!(I <= K, "no more parts than there are") }
     let half = period * T::from_ratio(1, 2);
     let at = |seen: &Seen<T, N>, z: &[Vector<T, N>; K]| law.rate(robot, &seen.x, &seen.q_ld, z, applied);
     let first = at(before, z);
-    let mut next = added(z, &first, period);
-    let matrix = implicit::<I, _, _, _, N, K>(law, robot, now, &next, applied, half);
-    for _ in 0..CORRECTIONS {
-        let last = at(now, &next);
-        let mut missing: [Vector<T, N>; K] =
-            core::array::from_fn(|k| z[k] - next[k] + (first[k] + last[k]).scaled(half));
-        if let Some(stiff) = missing.first_chunk_mut::<I>() {
-            *stiff = eliminate(matrix, *stiff);
-        }
-        next = added(&next, &missing, T::ONE);
+    let next = added(z, &first, period);
+    let missing = |next: &[Vector<T, N>; K]| -> [Vector<T, N>; K] {
+        let last = at(now, next);
+        core::array::from_fn(|k| z[k] - next[k] + (first[k] + last[k]).scaled(half))
+    };
+    let slope = Slope { law, robot, now, z: &next, applied };
+    if F::JOINTWISE {
+        let matrix = slope.implicit_of_joints(half);
+        corrected::<I, _, N, K>(next, missing, |stiff| eliminate_each(matrix, stiff))
+    } else {
+        let matrix = slope.implicit(half);
+        corrected::<I, _, N, K>(next, missing, |stiff| eliminate(matrix, stiff))
     }
-    next
+}
+
+/// `z` after [`CORRECTIONS`] by what is `missing`, the first `I` parts of it `solved` for.
+#[inline]
+fn corrected<const I: usize, T: Scalar, const N: usize, const K: usize>(
+    mut z: [Vector<T, N>; K],
+    missing: impl Fn(&[Vector<T, N>; K]) -> [Vector<T, N>; K],
+    solved: impl Fn([Vector<T, N>; I]) -> [Vector<T, N>; I],
+) -> [Vector<T, N>; K] {
+    for _ in 0..CORRECTIONS {
+        let mut correction = missing(&z);
+        if let Some(stiff) = correction.first_chunk_mut::<I>() {
+            *stiff = solved(*stiff);
+        }
+        z = added(&z, &correction, T::ONE);
+    }
+    z
 }
 
 /// a + s b.
@@ -52,34 +76,67 @@ fn added<T: Scalar, const N: usize, const K: usize>(
     core::array::from_fn(|k| a[k] + b[k].scaled(s))
 }
 
-/// 1 − T/2 ∂ż/∂z of the first `I` parts in `N` × `N` blocks, a block of columns at a time.
-#[inline]
-fn implicit<const I: usize, C: Scalar, T: Over<C>, L: Links<C, N>, const N: usize, const K: usize>(
-    law: &impl DynamicLaw<C, N, K>,
-    robot: &Fjr<C, L, N>,
-    now: &Seen<T, N>,
-    z: &[Vector<T, N>; K],
-    applied: &Applied<T, N>,
-    half: T,
-) -> [[Matrix<T, N, N>; I]; I] {
-    let lift = |v: &Vector<T, N>| v.map(Dual::<T, N>::constant);
-    let x = now.x.map(Dual::constant);
-    let q_ld = now.q_ld.map(|q| Jet::from_fn(|k| Dual::constant(q.coefficient(k))));
-    let applied = Applied { asked: lift(&applied.asked), given: lift(&applied.given) };
-    let mut matrix = [[Matrix::ZERO; I]; I];
-    for column in 0..I {
-        let seeded = core::array::from_fn(|k| {
-            if k == column { Vector::from_fn(|i| Dual::variable(z[k][i], i)) } else { lift(&z[k]) }
+/// Where ż is differentiated.
+struct Slope<'a, C, T, L, F, const N: usize, const K: usize> {
+    law: &'a F,
+    robot: &'a Fjr<C, L, N>,
+    now: &'a Seen<T, N>,
+    z: &'a [Vector<T, N>; K],
+    applied: &'a Applied<T, N>,
+}
+
+impl<C: Scalar, T: Over<C>, L: Links<C, N>, F, const N: usize, const K: usize> Slope<'_, C, T, L, F, N, K>
+where
+    F: DynamicLaw<C, N, K>,
+{
+    /// How ż moves with z, of which the numbers that `moves` chooses move at the rate 1.
+    #[inline]
+    fn along(&self, moves: impl Fn(usize, usize) -> bool) -> [Vector<T, N>; K] {
+        type Tangent<T> = Dual<T, 1>;
+        let lift = |v: &Vector<T, N>| v.map(Tangent::constant);
+        let x = self.now.x.map(Tangent::constant);
+        let q_ld = self.now.q_ld.map(|q| Jet::from_fn(|k| Tangent::constant(q.coefficient(k))));
+        let applied = Applied { asked: lift(&self.applied.asked), given: lift(&self.applied.given) };
+        let z = core::array::from_fn(|k| {
+            Vector::from_fn(|i| {
+                if moves(k, i) { Tangent::variable(self.z[k][i], 0) } else { Tangent::constant(self.z[k][i]) }
+            })
         });
-        let rate = law.rate(robot, &x, &q_ld, &seeded, &applied);
-        for (row, (blocks, rate)) in matrix.iter_mut().zip(&rate).enumerate() {
-            blocks[column] = Matrix::from_fn(|i, j| {
-                let unit = if row == column && i == j { T::ONE } else { T::ZERO };
-                unit - half * rate[i].gradient[j]
-            });
-        }
+        let rate = self.law.rate(self.robot, &x, &q_ld, &z, &applied);
+        rate.map(|part| part.map(|Dual { gradient: [slope], .. }| slope))
     }
-    matrix
+
+    /// 1 − T/2 ∂ż/∂z of the first `I` parts in `N` × `N` blocks.
+    #[inline]
+    fn implicit<const I: usize>(&self, half: T) -> [[Matrix<T, N, N>; I]; I] {
+        let mut matrix = [[Matrix::ZERO; I]; I];
+        for column in 0..I {
+            for j in 0..N {
+                let slope = self.along(|k, i| k == column && i == j);
+                for (row, (blocks, slope)) in matrix.iter_mut().zip(&slope).enumerate() {
+                    for i in 0..N {
+                        let unit = if row == column && i == j { T::ONE } else { T::ZERO };
+                        blocks[column][(i, j)] = unit - half * slope[i];
+                    }
+                }
+            }
+        }
+        matrix
+    }
+
+    /// The same where no joint moves another's: an `I` × `I` matrix a joint, all of whose columns come at once.
+    #[inline]
+    fn implicit_of_joints<const I: usize>(&self, half: T) -> [[Vector<T, N>; I]; I] {
+        let mut matrix = [[Vector::ZERO; I]; I];
+        for column in 0..I {
+            let slope = self.along(|k, _| k == column);
+            for (row, (entries, slope)) in matrix.iter_mut().zip(&slope).enumerate() {
+                let unit = if row == column { T::ONE } else { T::ZERO };
+                entries[column] = slope.map(|slope| unit - half * slope);
+            }
+        }
+        matrix
+    }
 }
 
 /// What a law sees at an instant.
@@ -124,7 +181,7 @@ impl<C: Float, const N: usize, const K: usize> Running<C, N, K> {
         period: C,
     ) {
         let now = Seen { x: *x, q_ld: *q_ld };
-        let next = law.advanced(robot, &self.seen, &now, &self.memory, applied, period);
+        let next = law.advanced(robot, [&self.seen, &now], &self.memory, applied, period);
         if next.iter().all(|part| part.iter().all(C::is_finite)) {
             *self = Self { memory: next, seen: now };
         }

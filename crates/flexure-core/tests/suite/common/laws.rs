@@ -1,9 +1,9 @@
 //! The laws that v-CBC is compared with, at random gains, and the motion that a torque makes of a state.
 
 use flexure_core::control::{
-    Backstepping, Cascade, Esp, FeedbackLinearization, FeedforwardPd, GravityCancellation, IntegralManifold,
-    Linear, LinkGains, Metric, MotorPd, Passivity, Pd, PdOnlineGravity, RigidVcbc, SingularPerturbation,
-    TorqueFeedback,
+    Backstepping, Cascade, Esp, FeedbackLinearization, FeedforwardPd, GravityCancellation, InnerLoop,
+    IntegralManifold, Linear, LinkGains, Metric, MotorPd, Passivity, Pd, PdOnlineGravity, RigidVcbc,
+    SingularPerturbation, TorqueFeedback,
 };
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion};
@@ -83,8 +83,7 @@ pub fn cascade<const N: usize>(r: &mut Numbers) -> Cascade<f64, N> {
     Cascade {
         shaping: r.between(5.0, 20.0),
         link_damping: r.between(2.0, 15.0),
-        position: r.between(20.0, 100.0),
-        velocity: r.between(5.0, 20.0),
+        inner: InnerLoop { position: r.between(20.0, 100.0), velocity: r.between(5.0, 20.0) },
     }
 }
 
