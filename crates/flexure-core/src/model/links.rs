@@ -205,6 +205,7 @@ pub trait Links<C: Scalar, const N: usize> {
 
     /// Yᵀ s with the regressor Y(q, v, v_r, a_r) and a velocity `s` [rad/s]: how the power of Y φ against s in W grows with each number of φ. Slots
     /// that the robot has no number in give 0.
+    #[expect(clippy::indexing_slicing, reason = "slots run over a const dimension")]
     #[inline]
     fn regressor_transpose_mul<T: Over<C>>(
         &self,
@@ -215,14 +216,14 @@ pub trait Links<C: Scalar, const N: usize> {
         s: &Vector<T, N>,
     ) -> Parameters<T, N> {
         let power = |parameters: &Parameters<T, N>| self.regressor_mul(parameters, q, v, v_r, a_r).dot(s);
-        let without = power(&[Vector::ZERO; 10]);
-        let mut slots = 0..;
-        [Vector::ZERO; 10].map(|zero| {
-            let slot = slots.next();
+        let mut numbers = [Vector::ZERO; 10];
+        let without = power(&numbers);
+        core::array::from_fn(|slot| {
             Vector::from_fn(|i| {
-                let mut others = 0..;
-                let unit = [zero; 10].map(|zero| if others.next() == slot { unit(i) } else { zero });
-                power(&unit) - without
+                numbers[slot][i] = T::ONE;
+                let with = power(&numbers);
+                numbers[slot][i] = T::ZERO;
+                with - without
             })
         })
     }

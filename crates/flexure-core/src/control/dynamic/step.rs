@@ -89,36 +89,36 @@ impl<C: Scalar, T: Over<C>, L: Links<C, N>, F, const N: usize, const K: usize> S
 where
     F: DynamicLaw<C, N, K>,
 {
-    /// How ż moves with z, of which the numbers that `moves` chooses move at the rate 1.
+    /// ż with how it moves in `M` directions: number i of part k moves at the rate 1 in that which `direction` has for it.
     #[inline]
-    fn along(&self, moves: impl Fn(usize, usize) -> bool) -> [Vector<T, N>; K] {
-        type Tangent<T> = Dual<T, 1>;
-        let lift = |v: &Vector<T, N>| v.map(Tangent::constant);
-        let x = self.now.x.map(Tangent::constant);
-        let q_ld = self.now.q_ld.map(|q| Jet::from_fn(|k| Tangent::constant(q.coefficient(k))));
+    fn along<const M: usize>(
+        &self,
+        direction: impl Fn(usize, usize) -> Option<usize>,
+    ) -> [Vector<Dual<T, M>, N>; K] {
+        let lift = |v: &Vector<T, N>| v.map(Dual::constant);
+        let x = self.now.x.map(Dual::constant);
+        let q_ld = self.now.q_ld.map(|q| Jet::from_fn(|k| Dual::constant(q.coefficient(k))));
         let applied = Applied { asked: lift(&self.applied.asked), given: lift(&self.applied.given) };
         let z = core::array::from_fn(|k| {
             Vector::from_fn(|i| {
-                if moves(k, i) { Tangent::variable(self.z[k][i], 0) } else { Tangent::constant(self.z[k][i]) }
+                let z = self.z[k][i];
+                direction(k, i).map_or(Dual::constant(z), |direction| Dual::variable(z, direction))
             })
         });
-        let rate = self.law.rate(self.robot, &x, &q_ld, &z, &applied);
-        rate.map(|part| part.map(|Dual { gradient: [slope], .. }| slope))
+        self.law.rate(self.robot, &x, &q_ld, &z, &applied)
     }
 
-    /// 1 − T/2 ∂ż/∂z of the first `I` parts in `N` × `N` blocks.
+    /// 1 − T/2 ∂ż/∂z of the first `I` parts in `N` × `N` blocks, a block of columns at a time.
     #[inline]
     fn implicit<const I: usize>(&self, half: T) -> [[Matrix<T, N, N>; I]; I] {
         let mut matrix = [[Matrix::ZERO; I]; I];
         for column in 0..I {
-            for j in 0..N {
-                let slope = self.along(|k, i| k == column && i == j);
-                for (row, (blocks, slope)) in matrix.iter_mut().zip(&slope).enumerate() {
-                    for i in 0..N {
-                        let unit = if row == column && i == j { T::ONE } else { T::ZERO };
-                        blocks[column][(i, j)] = unit - half * slope[i];
-                    }
-                }
+            let rate = self.along::<N>(|k, i| (k == column).then_some(i));
+            for (row, (blocks, rate)) in matrix.iter_mut().zip(&rate).enumerate() {
+                blocks[column] = Matrix::from_fn(|i, j| {
+                    let unit = if row == column && i == j { T::ONE } else { T::ZERO };
+                    unit - half * rate[i].gradient[j]
+                });
             }
         }
         matrix
@@ -129,10 +129,10 @@ where
     fn implicit_of_joints<const I: usize>(&self, half: T) -> [[Vector<T, N>; I]; I] {
         let mut matrix = [[Vector::ZERO; I]; I];
         for column in 0..I {
-            let slope = self.along(|k, _| k == column);
-            for (row, (entries, slope)) in matrix.iter_mut().zip(&slope).enumerate() {
+            let rate = self.along::<1>(|k, _| (k == column).then_some(0));
+            for (row, (entries, rate)) in matrix.iter_mut().zip(&rate).enumerate() {
                 let unit = if row == column { T::ONE } else { T::ZERO };
-                entries[column] = slope.map(|slope| unit - half * slope);
+                entries[column] = rate.map(|Dual { gradient: [slope], .. }| unit - half * slope);
             }
         }
         matrix
