@@ -372,7 +372,7 @@ fn adaptive<F: DynamicLaw<f64, 2, K>, const K: usize>(name: &str, law: impl Fn(&
         let rate = law.rate(&robot, &x, &q_ld, &z, &Applied::fully(torque));
         let (filters, parameters) = rate.split_at(K - 10);
         let [a, Vector([b, unused]), g] = [0, 1, 2].map(|slot| parameters[slot]);
-        assert_eq!(unused, 0.0);
+        assert_eq!(Vector([unused]), Vector::ZERO);
         let rates = filters.iter().flat_map(Vector::iter).chain([a[0], a[1], b, g[0], g[1]]);
         case.agrees_with(name, &torque.iter().chain(rates).collect::<Vec<_>>());
     }

@@ -93,12 +93,12 @@ fn phantoms_have_no_parameters() {
     let [q_5, v_5, v_r_5, a_r_5, s_5] = [&q, &v, &v_r, &a_r, &s].map(short);
     let expected = exact.regressor_mul(&phi.each_ref().map(short), &q_5, &v_5, &v_r_5, &a_r_5);
     assert_eq!(short(&torque), expected);
-    assert_eq!([torque[5], torque[6]], [a_r[5], a_r[6]]);
+    assert_eq!(Vector([torque[5], torque[6]]), Vector([a_r[5], a_r[6]]));
     let powers = roomy.regressor_transpose_mul(&q, &v, &v_r, &a_r, &s);
     let expected = exact.regressor_transpose_mul(&q_5, &v_5, &v_r_5, &a_r_5, &s_5);
     for ((powers, expected), own) in powers.iter().zip(expected).zip(roomy.parameters()) {
         assert_eq!(short(powers), expected);
-        assert_eq!([powers[5], powers[6], own[5], own[6]], [0.0; 4]);
+        assert_eq!(Vector([powers[5], powers[6], own[5], own[6]]), Vector::ZERO);
     }
 }
 
