@@ -33,9 +33,10 @@ pub use backstepping::Backstepping;
 pub use cascade::Cascade;
 pub use composite_ph::CompositePh;
 pub use dynamic::{
-    Applied, ControlByInterconnection, DisturbanceRejecting, DynamicLaw, LinkPositionFeedback, LoadedLaw,
-    LoriaOrtega, MotorObserverPd, MotorPositionPd, MotorPositionPdCapped, Pid, PositionFeedback, Running,
-    SeaCascade, Seen, advanced, observer_gains,
+    Adaptation, AdaptiveCommandFilteredBackstepping, AdaptiveVcbc, Applied, CommandFilteredBackstepping,
+    ControlByInterconnection, DisturbanceRejecting, DynamicLaw, LinkPositionFeedback, LoadedLaw, LoriaOrtega,
+    MotorObserverPd, MotorPositionPd, MotorPositionPdCapped, Pid, PositionFeedback, Running, SeaCascade,
+    Seen, observer_gains,
 };
 pub use esp::Esp;
 pub use feedback_linearization::FeedbackLinearization;

@@ -62,6 +62,18 @@ impl<S: Scalar, const N: usize> Ldl<S, N> {
         })
     }
 
+    /// y = L⁻ᵀ e_i: 1 at `i`, 0 behind it, and of all such vectors the one whose yᵀ A y is least, which is pivot `i`.
+    #[inline]
+    pub fn pivotal(&self, i: usize) -> Vector<S, N> {
+        let mut y = Vector::from_fn(|k| if k == i { S::ONE } else { S::ZERO });
+        for k in (0..i).rev() {
+            for j in k + 1..=i {
+                y.0[k] -= self.lower[(j, k)] * y.0[j];
+            }
+        }
+        y
+    }
+
     /// `A⁻¹ b`, by substitution with L, D and Lᵀ.
     #[inline]
     pub fn solve(&self, b: &Vector<S, N>) -> Vector<S, N> {

@@ -179,6 +179,65 @@ pub trait Links<C: Scalar, const N: usize> {
         factor.solve(&(*torque - bias.map(|x| x.coefficient(0))))
     }
 
+    /// φ, the numbers that torques of the links are linear in: up to ten per joint, those that a robot has fewer of are 0. Of a
+    /// [`Tree`](crate::robots::Tree) mass in kg, first moments [kg m] and second moments of mass [kg m²] of its bodies.
+    ///
+    /// A closed form whose parameters shall be adapted gives them here and overrides [`regressor_mul`](Self::regressor_mul). One that says nothing
+    /// has none, and nothing is adapted.
+    #[inline]
+    fn parameters(&self) -> Parameters<C, N> {
+        [Vector::ZERO; 10]
+    }
+
+    /// Y(q, v, v_r, a_r) φ = M(q) a_r + C(q, v) v_r + g(q) [N m] of links with the numbers `parameters` in place of
+    /// [those of the robot](Self::parameters): linear in them but for what the robot has no numbers for.
+    #[inline]
+    fn regressor_mul<T: Over<C>>(
+        &self,
+        _parameters: &Parameters<T, N>,
+        q: &Vector<T, N>,
+        v: &Vector<T, N>,
+        v_r: &Vector<T, N>,
+        a_r: &Vector<T, N>,
+    ) -> Vector<T, N> {
+        self.inverse_dynamics(q, v, v_r, a_r)
+    }
+
+    /// Yᵀ s with the regressor Y(q, v, v_r, a_r) and a velocity `s` [rad/s]: how the power of Y φ against s in W grows with each number of φ. Slots
+    /// that the robot has no number in give 0.
+    #[expect(clippy::indexing_slicing, reason = "slots run over a const dimension")]
+    #[inline]
+    fn regressor_transpose_mul<T: Over<C>>(
+        &self,
+        q: &Vector<T, N>,
+        v: &Vector<T, N>,
+        v_r: &Vector<T, N>,
+        a_r: &Vector<T, N>,
+        s: &Vector<T, N>,
+    ) -> Parameters<T, N> {
+        let power = |parameters: &Parameters<T, N>| self.regressor_mul(parameters, q, v, v_r, a_r).dot(s);
+        let mut numbers = [Vector::ZERO; 10];
+        let without = power(&numbers);
+        core::array::from_fn(|slot| {
+            Vector::from_fn(|i| {
+                numbers[slot][i] = T::ONE;
+                let with = power(&numbers);
+                numbers[slot][i] = T::ZERO;
+                with - without
+            })
+        })
+    }
+
+    /// M(q) [kg m²] of links with the numbers `parameters`: what [`regressor_mul`](Self::regressor_mul) has for accelerations.
+    #[inline]
+    fn mass_matrix_of<T: Over<C>>(&self, parameters: &Parameters<T, N>, q: &Vector<T, N>) -> Matrix<T, N, N> {
+        let rest = Vector::ZERO;
+        let torque = |a: &Vector<T, N>| self.regressor_mul(parameters, q, &rest, &rest, a);
+        let gravity = torque(&rest);
+        // A row is a column.
+        Matrix(core::array::from_fn(|k| (torque(&unit(k)) - gravity).0))
+    }
+
     /// Cᵀ(q, v) v − g(q) [N m]: how the momentum M v changes beside joint torques and dampers. Ṁ v comes from the momentum along q + v t, and
     /// Cᵀ v = Ṁ v − C v.
     #[inline]
@@ -194,6 +253,9 @@ pub trait Links<C: Scalar, const N: usize> {
     }
 }
 
+/// Numbers that the torques of links are linear in: up to ten per joint ([`Links::parameters`]).
+pub type Parameters<T, const N: usize> = [Vector<T, N>; 10];
+
 /// The mass matrix at one position, ready for solving: from [`Links::factor`].
 pub trait MassFactor<T, const N: usize> {
     /// M⁻¹ b: accelerations [rad/s²] of torques [N m], velocities [rad/s] of momenta [kg m²/s].
@@ -205,6 +267,12 @@ impl<T: Scalar, const N: usize> MassFactor<T, N> for Ldl<T, N> {
     fn solve(&self, b: &Vector<T, N>) -> Vector<T, N> {
         Self::solve(self, b)
     }
+}
+
+/// 1 at `i`, else 0.
+#[inline]
+fn unit<T: Scalar, const N: usize>(i: usize) -> Vector<T, N> {
+    Vector::from_fn(|k| if k == i { T::ONE } else { T::ZERO })
 }
 
 /// `q` as dual numbers seeded with the identity.

@@ -11,7 +11,7 @@ mod state;
 
 pub use fjr::{Fjr, Power};
 pub use inverse_dynamics::FeedForward;
-pub use links::{Links, MassFactor};
+pub use links::{Links, MassFactor, Parameters};
 pub use matrices::LinkMatrices;
 pub use rotors::RotorCoupling;
 pub use state::{Motion, State};

@@ -1,7 +1,7 @@
 //! A single joint under gravity.
 
 use crate::linalg::{Ldl, Matrix, Vector};
-use crate::model::Links;
+use crate::model::{Links, Parameters};
 use crate::scalar::{Over, Scalar};
 
 /// One link on a horizontal axis; q = 0 hangs straight down.
@@ -34,6 +34,27 @@ impl<C: Scalar> Links<C, 1> for Pendulum<C> {
     #[inline]
     fn potential_energy<T: Over<C>>(&self, q: &Vector<T, 1>) -> T {
         (T::ONE - q[0].cos()).scale(self.weight_moment)
+    }
+
+    /// The inertia, then the weight moment.
+    #[inline]
+    fn parameters(&self) -> Parameters<C, 1> {
+        let mut parameters = [Vector::ZERO; 10];
+        let [first, second, ..] = &mut parameters;
+        (*first, *second) = (Vector([self.inertia]), Vector([self.weight_moment]));
+        parameters
+    }
+
+    #[inline]
+    fn regressor_mul<T: Over<C>>(
+        &self,
+        [inertia, weight_moment, ..]: &Parameters<T, 1>,
+        q: &Vector<T, 1>,
+        _: &Vector<T, 1>,
+        _: &Vector<T, 1>,
+        a_r: &Vector<T, 1>,
+    ) -> Vector<T, 1> {
+        Vector([inertia[0] * a_r[0] + weight_moment[0] * q[0].sin()])
     }
 
     #[inline]

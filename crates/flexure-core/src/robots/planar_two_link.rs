@@ -1,7 +1,7 @@
 //! The planar two-link arm in closed form.
 
 use crate::linalg::{Ldl, Matrix, Vector};
-use crate::model::Links;
+use crate::model::{Links, Parameters};
 use crate::scalar::{Over, Scalar};
 
 /// Two links in a horizontal plane: the paper's arm. M_l = [[a1 + a2 + 2 b c2, a2 + b c2], [a2 + b c2, a2]].
@@ -32,13 +32,21 @@ impl<C: Scalar> PlanarTwoLink<C> {
     /// The mass matrix where the elbow's angle has the cosine `c2`.
     #[inline]
     fn mass<T: Over<C>>(&self, c2: T) -> Matrix<T, 2, 2> {
-        let coupling = c2.scale(self.b);
-        let off_diagonal = T::constant(self.a2) + coupling;
-        Matrix([
-            [T::constant(self.a1) + coupling + off_diagonal, off_diagonal],
-            [off_diagonal, T::constant(self.a2)],
-        ])
+        mass([self.a1, self.a2].map(T::constant), c2.scale(self.b))
     }
+}
+
+/// The mass matrix from a1, a2 and b c2.
+#[inline]
+fn mass<T: Scalar>([a1, a2]: [T; 2], coupling: T) -> Matrix<T, 2, 2> {
+    let off_diagonal = a2 + coupling;
+    Matrix([[a1 + coupling + off_diagonal, off_diagonal], [off_diagonal, a2]])
+}
+
+/// C v_r with the Christoffel matrix C = h [[v2, v1 + v2], [−v1, 0]], h = −b s2.
+#[inline]
+fn coriolis<T: Scalar>(h: T, v: &Vector<T, 2>, v_r: &Vector<T, 2>) -> Vector<T, 2> {
+    Vector([h * (v[1] * v_r[0] + (v[0] + v[1]) * v_r[1]), -(h * v[0] * v_r[0])])
 }
 
 impl<C: Scalar> Links<C, 2> for PlanarTwoLink<C> {
@@ -68,7 +76,7 @@ impl<C: Scalar> Links<C, 2> for PlanarTwoLink<C> {
         Vector::ZERO
     }
 
-    /// With one sine and cosine for M and the Christoffel matrix C = h [[v2, v1 + v2], [−v1, 0]], h = −b s2.
+    /// With one sine and cosine for M and C.
     #[inline]
     fn inertial_torque<T: Over<C>>(
         &self,
@@ -78,9 +86,30 @@ impl<C: Scalar> Links<C, 2> for PlanarTwoLink<C> {
         a_r: &Vector<T, 2>,
     ) -> Vector<T, 2> {
         let (s2, c2) = q[1].sin_cos();
-        let h = -s2.scale(self.b);
-        let coriolis = Vector([h * (v[1] * v_r[0] + (v[0] + v[1]) * v_r[1]), -(h * v[0] * v_r[0])]);
-        self.mass(c2) * *a_r + coriolis
+        self.mass(c2) * *a_r + coriolis(-s2.scale(self.b), v, v_r)
+    }
+
+    /// (a1, a2), then (b, 0).
+    #[inline]
+    fn parameters(&self) -> Parameters<C, 2> {
+        let mut parameters = [Vector::ZERO; 10];
+        let [first, second, ..] = &mut parameters;
+        *first = Vector([self.a1, self.a2]);
+        *second = Vector([self.b, C::ZERO]);
+        parameters
+    }
+
+    #[inline]
+    fn regressor_mul<T: Over<C>>(
+        &self,
+        [Vector(a), Vector([b, _]), ..]: &Parameters<T, 2>,
+        q: &Vector<T, 2>,
+        v: &Vector<T, 2>,
+        v_r: &Vector<T, 2>,
+        a_r: &Vector<T, 2>,
+    ) -> Vector<T, 2> {
+        let (s2, c2) = q[1].sin_cos();
+        mass(*a, *b * c2) * *a_r + coriolis(-(*b * s2), v, v_r)
     }
 
     #[inline]

@@ -1,6 +1,6 @@
 //! What a body carries along the Newton–Euler recursion.
 
-use super::Vec3;
+use super::{RigidInertia, Sym3, Twist, Vec3};
 use crate::scalar::{Over, Scalar};
 
 /// The motion of a body and that of a reference beside it, at one posture: in axes of the body, rates taken in inertial space.
@@ -52,6 +52,30 @@ impl<S: Scalar> Carried<S> {
             Vec3::new(xy + rate.z, -xx - zz, yz - rate.x),
             Vec3::new(xz - rate.y, yz + rate.x, -xx - yy),
         ]
+    }
+
+    /// How the power of what moves a body like this grows with each number of the body, if it gives way with the twist `s`: points have the
+    /// velocity v + Ω x, Ω = [ω]×, so that P = ∫ (a + A x)·(v + Ω x) dm = m a·v + h·(Aᵀ v + a × ω) + Σ : Aᵀ Ω.
+    #[inline]
+    pub fn power(&self, s: &Twist<S>) -> RigidInertia<S> {
+        let (a, w, v) = (self.linear, s.angular, s.linear);
+        let [x, y, z] = self.spread;
+        // Columns of Aᵀ Ω = Σ_rows A_k Ω_kᵀ, with the rows (0, −ω_z, ω_y), (ω_z, 0, −ω_x), (−ω_y, ω_x, 0) of Ω.
+        let first = y.scaled(w.z) - z.scaled(w.y);
+        let second = z.scaled(w.x) - x.scaled(w.z);
+        let third = x.scaled(w.y) - y.scaled(w.x);
+        RigidInertia {
+            mass: a.dot(v),
+            first_moment: x.scaled(v.x) + y.scaled(v.y) + z.scaled(v.z) + a.cross(w),
+            second_moment: Sym3 {
+                xx: first.x,
+                xy: first.y + second.x,
+                xz: first.z + third.x,
+                yy: second.y,
+                yz: second.z + third.y,
+                zz: third.z,
+            },
+        }
     }
 
     /// Acceleration of the point of the body at `x` [m/s²]: a + A x.

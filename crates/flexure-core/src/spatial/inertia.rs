@@ -82,49 +82,67 @@ impl<C: Scalar> RigidInertia<C> {
         }
     }
 
+    /// The ten numbers: mass, first moments x, y, z, second moments xx, xy, xz, yy, yz, zz.
+    #[inline]
+    pub(crate) fn numbers(&self) -> [C; 10] {
+        let (Vec3 { x, y, z }, s) = (self.first_moment, &self.second_moment);
+        [self.mass, x, y, z, s.xx, s.xy, s.xz, s.yy, s.yz, s.zz]
+    }
+
+    /// The body with these [`numbers`](Self::numbers).
+    #[inline]
+    pub(crate) fn from_numbers([mass, x, y, z, xx, xy, xz, yy, yz, zz]: [C; 10]) -> Self {
+        let second_moment = Sym3 { xx, xy, xz, yy, yz, zz };
+        Self { mass, first_moment: Vec3 { x, y, z }, second_moment }
+    }
+
     /// What moves the body like this: with the accelerations a + A x of its points, f = m a + A h and n = h × a + ∫ x × A x dm,
-    /// which is twice the axial vector of A Σ.
+    /// which is twice the axial vector of A Σ. `times` multiplies by a number of the body.
     #[inline(always)]
-    pub(crate) fn wrench<T: Over<C>>(&self, body: &Carried<T>) -> Wrench<T> {
+    pub(crate) fn wrench<T: Scalar>(&self, body: &Carried<T>, times: impl Fn(T, C) -> T + Copy) -> Wrench<T> {
         let (h, s, a) = (&self.first_moment, &self.second_moment, body.linear);
         let [x, y, z] = &body.spread;
-        let reduced = self.about_axis(body);
+        let reduced = self.about_axis(body, times);
         Wrench {
             moment: Vec3 {
-                x: reduced.moment.x - y.z.scale(s.zz) - a.y.scale(h.z),
-                y: reduced.moment.y + x.z.scale(s.zz) + a.x.scale(h.z),
+                x: reduced.moment.x - times(y.z, s.zz) - times(a.y, h.z),
+                y: reduced.moment.y + times(x.z, s.zz) + times(a.x, h.z),
                 z: reduced.moment.z,
             },
             linear: Vec3 {
-                x: reduced.linear.x + x.z.scale(h.z) + a.x.scale(self.mass),
-                y: reduced.linear.y + y.z.scale(h.z) + a.y.scale(self.mass),
-                z: reduced.linear.z + z.z.scale(h.z) + a.z.scale(self.mass),
+                x: reduced.linear.x + times(x.z, h.z) + times(a.x, self.mass),
+                y: reduced.linear.y + times(y.z, h.z) + times(a.y, self.mass),
+                z: reduced.linear.z + times(z.z, h.z) + times(a.z, self.mass),
             },
         }
     }
 
     /// [`wrench`](Self::wrench) of a body without mass, h_z and Σ_zz.
     #[inline(always)]
-    pub(crate) fn about_axis<T: Over<C>>(&self, body: &Carried<T>) -> Wrench<T> {
+    pub(crate) fn about_axis<T: Scalar>(
+        &self,
+        body: &Carried<T>,
+        times: impl Fn(T, C) -> T + Copy,
+    ) -> Wrench<T> {
         let (h, s, a) = (&self.first_moment, &self.second_moment, body.linear);
         let [x, y, z] = &body.spread;
         Wrench {
             moment: Vec3 {
-                x: z.x.scale(s.xy) - y.x.scale(s.xz)
-                    + z.y.scale(s.yy)
-                    + (z.z - y.y).scale(s.yz)
-                    + a.z.scale(h.y),
-                y: x.y.scale(s.yz) - z.y.scale(s.xy) - z.x.scale(s.xx) + (x.x - z.z).scale(s.xz)
-                    - a.z.scale(h.x),
-                z: y.z.scale(s.xz) - x.z.scale(s.yz) + y.x.scale(s.xx) - x.y.scale(s.yy)
-                    + (y.y - x.x).scale(s.xy)
-                    + a.y.scale(h.x)
-                    - a.x.scale(h.y),
+                x: times(z.x, s.xy) - times(y.x, s.xz)
+                    + times(z.y, s.yy)
+                    + times(z.z - y.y, s.yz)
+                    + times(a.z, h.y),
+                y: times(x.y, s.yz) - times(z.y, s.xy) - times(z.x, s.xx) + times(x.x - z.z, s.xz)
+                    - times(a.z, h.x),
+                z: times(y.z, s.xz) - times(x.z, s.yz) + times(y.x, s.xx) - times(x.y, s.yy)
+                    + times(y.y - x.x, s.xy)
+                    + times(a.y, h.x)
+                    - times(a.x, h.y),
             },
             linear: Vec3 {
-                x: x.x.scale(h.x) + x.y.scale(h.y),
-                y: y.x.scale(h.x) + y.y.scale(h.y),
-                z: z.x.scale(h.x) + z.y.scale(h.y),
+                x: times(x.x, h.x) + times(x.y, h.y),
+                y: times(y.x, h.x) + times(y.y, h.y),
+                z: times(z.x, h.x) + times(z.y, h.y),
             },
         }
     }

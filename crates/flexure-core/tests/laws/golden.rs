@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 use std::fs;
 
 use flexure_core::control::{
-    Applied, CompositePh, ControlByInterconnection, ControlLaw, DisturbanceRejecting, DynamicLaw, IdaPbc,
+    Adaptation, AdaptiveCommandFilteredBackstepping, AdaptiveVcbc, Applied, CommandFilteredBackstepping,
+    CompositePh, ControlByInterconnection, ControlLaw, DisturbanceRejecting, DynamicLaw, IdaPbc,
     ImmersionInvariance, InnerLoop, LinkImpedance, LinkPositionFeedback, LoriaOrtega, Lqr, MotorObserverPd,
     MotorPd, MotorPositionPd, MotorPositionPdCapped, Pid, PositionFeedback, QuadraticCost, SeaCascade,
     SlidingMode, observer_gains,
 };
 use flexure_core::linalg::{Ldl, Matrix, Vector};
-use flexure_core::model::{Fjr, Links, Motion};
+use flexure_core::model::{Fjr, Links, Motion, Parameters};
 use flexure_core::scalar::{Jet, Over, Scalar};
 use serde::Deserialize;
 
@@ -20,11 +21,17 @@ const TOLERANCE: f64 = 1e-9;
 /// The paper's links with gravity along them: a robot of one's own.
 #[derive(Clone, Copy, Deserialize)]
 pub struct TwoLink {
-    a1: f64,
-    a2: f64,
-    b: f64,
-    g1: f64,
-    g2: f64,
+    pub a1: f64,
+    pub a2: f64,
+    pub b: f64,
+    pub g1: f64,
+    pub g2: f64,
+}
+
+impl TwoLink {
+    /// The upright arm of the golden files.
+    pub const UPRIGHT: Self =
+        Self { a1: 0.180081887, a2: 0.010720825, b: 0.016469145, g1: 5.29277949, g2: 0.47102715 };
 }
 
 impl Links<f64, 2> for TwoLink {
@@ -47,6 +54,36 @@ impl Links<f64, 2> for TwoLink {
     fn factor<T: Over<f64>>(&self, q: &Vector<T, 2>) -> Ldl<T, 2> {
         self.mass_matrix(q).ldl()
     }
+
+    fn parameters(&self) -> Parameters<f64, 2> {
+        slots([self.a1, self.a2, self.b, self.g1, self.g2])
+    }
+
+    fn regressor_mul<T: Over<f64>>(
+        &self,
+        [Vector([a1, a2]), Vector([b, _]), Vector([g1, g2]), ..]: &Parameters<T, 2>,
+        q: &Vector<T, 2>,
+        v: &Vector<T, 2>,
+        v_r: &Vector<T, 2>,
+        a_r: &Vector<T, 2>,
+    ) -> Vector<T, 2> {
+        let (s2, c2) = q[1].sin_cos();
+        let (coupling, h, outer) = (*b * c2, *b * s2, *g2 * (q[0] + q[1]).cos());
+        let both = (*a2 + coupling) * (a_r[0] + a_r[1]);
+        Vector([
+            (*a1 + coupling) * a_r[0] + both - h * (v[1] * v_r[0] + (v[0] + v[1]) * v_r[1])
+                + *g1 * q[0].cos()
+                + outer,
+            both - coupling * a_r[1] + h * v[0] * v_r[0] + outer,
+        ])
+    }
+}
+
+/// Where the two links keep a1, a2, b, g1, g2 among the numbers of a robot.
+fn slots<T: Scalar>([a1, a2, b, g1, g2]: [T; 5]) -> Parameters<T, 2> {
+    let mut slots = [Vector::ZERO; 10];
+    (slots[0], slots[1], slots[2]) = (Vector([a1, a2]), Vector([b, T::ZERO]), Vector([g1, g2]));
+    slots
 }
 
 #[derive(Deserialize)]
@@ -131,7 +168,11 @@ impl Case {
     }
 
     fn agrees(&self, law: &str, torque: &Vector<f64, 2>, rate: &[Vector<f64, 2>]) {
-        let found: Vec<f64> = torque.iter().chain(rate.iter().flat_map(|part| part.iter())).collect();
+        self.agrees_with(law, &torque.iter().chain(rate.iter().flat_map(Vector::iter)).collect::<Vec<_>>());
+    }
+
+    /// Torque, then rates.
+    fn agrees_with(&self, law: &str, found: &[f64]) {
         let expected: Vec<f64> = self.torque.iter().chain(&self.memory_rate).copied().collect();
         assert_eq!(found.len(), expected.len(), "{law}");
         let scale = expected.iter().fold(1.0, |m: f64, x| m.max(x.abs()));
@@ -320,5 +361,63 @@ fn lqr() {
             assert!((found - expected).abs() <= TOLERANCE * 100.0, "{k}: {found} against {expected}");
         }
         law
+    });
+}
+
+/// Gains of backstepping from links to motors.
+fn backstepping(case: &Case) -> CommandFilteredBackstepping<f64, 2> {
+    CommandFilteredBackstepping {
+        shaping: case.gain("shaping"),
+        link_damping: case.gain("link_damping"),
+        metric: case.gain("metric"),
+        motor_shaping: case.gain("motor_shaping"),
+        rate_metric: case.gain("rate_metric"),
+        rate_shaping: case.gain("rate_shaping"),
+        bandwidth: case.gain("bandwidth"),
+    }
+}
+
+#[test]
+fn command_filtered_backstepping() {
+    dynamic("command-filtered-backstepping", backstepping);
+}
+
+/// An adaptive law at every case of its file: numbers per joint, then a1, a2, b, g1, g2.
+fn adaptive<F: DynamicLaw<f64, 2, K>, const K: usize>(name: &str, law: impl Fn(&Case) -> F) {
+    for case in cases(name) {
+        let (law, robot, x, q_ld) = (law(&case), case.arm(), case.motion(), case.q_ld());
+        let (filters, parameters) = case.memory.split_at(2 * (K - 10));
+        let parameters = slots(parameters.try_into().expect("five numbers"));
+        let z: [_; K] = std::array::from_fn(|k| match k.checked_sub(K - 10) {
+            Some(slot) => parameters[slot],
+            None => Vector([filters[2 * k], filters[2 * k + 1]]),
+        });
+        let torque = law.torque(&robot, &x, &q_ld, &z);
+        let rate = law.rate(&robot, &x, &q_ld, &z, &Applied::fully(torque));
+        let (filters, parameters) = rate.split_at(K - 10);
+        let [a, Vector([b, unused]), g] = [0, 1, 2].map(|slot| parameters[slot]);
+        assert_eq!(Vector([unused]), Vector::ZERO);
+        let rates = filters.iter().flat_map(Vector::iter).chain([a[0], a[1], b, g[0], g[1]]);
+        case.agrees_with(name, &torque.iter().chain(rates).collect::<Vec<_>>());
+    }
+}
+
+fn adaptation(case: &Case) -> Adaptation<f64, 2> {
+    let Gain::List(gain) = &case.gains["adaptation"] else { panic!("a list") };
+    let gain = slots(gain.as_slice().try_into().expect("five numbers"));
+    let (low, high) = (slots([f64::NEG_INFINITY; 5]), slots([f64::INFINITY; 5]));
+    Adaptation { gain, low, high, least: Vector([0.1; 2]) }
+}
+
+#[test]
+fn adaptive_laws() {
+    adaptive("adaptive-command-filtered-backstepping", |case| AdaptiveCommandFilteredBackstepping {
+        nominal: backstepping(case),
+        adaptation: adaptation(case),
+    });
+    adaptive("adaptive-vcbc", |case| AdaptiveVcbc {
+        backstepping: backstepping(case),
+        link_metric: case.gain("link_metric"),
+        adaptation: adaptation(case),
     });
 }

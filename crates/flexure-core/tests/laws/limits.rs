@@ -92,14 +92,14 @@ fn integrals_give_way_to_limits() {
     let robot: Arm = plausible_arm();
     let law = Pid {
         motor: MotorPd { stiffness: Vector([12.0, 3.0]), damping: Vector([4.0, 1.0]) },
-        integral: Vector([20.0, 5.0]),
+        integral: Vector([6.0, 1.5]),
     };
     let (goal, limit, period) = (Vector([1.5, 0.0]).map(Jet::value), Vector([2.0, 1.0]), 1e-3);
     let overshoot = |knows: bool| {
         let mut x = Motion::at_rest(Vector::ZERO);
         let mut running = Running::start(&law, &robot, &x, &goal);
         let (mut applied, mut farthest) = (Applied::NOTHING, 0.0_f64);
-        for k in 0..15_000 {
+        for k in 0..30_000 {
             if k > 0 {
                 running.advance(&law, &robot, &x, &goal, &applied, period);
             }

@@ -1,5 +1,7 @@
 //! The cited laws and those with memory: golden values, identities, what they read, how memory moves from instant to instant.
 
+mod adaptive;
+mod adaptive_runs;
 mod all;
 #[path = "../suite/common/mod.rs"]
 mod common;
@@ -8,6 +10,7 @@ mod identities;
 mod limits;
 mod mpc;
 mod optimal;
+mod parameters;
 mod reads;
 mod soft_springs;
 mod step;

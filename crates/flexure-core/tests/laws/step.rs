@@ -1,8 +1,6 @@
 //! How memory moves from one control instant to the next.
 
-use flexure_core::control::{
-    Applied, ControlByInterconnection, ControlLaw, DynamicLaw, Running, Seen, advanced,
-};
+use flexure_core::control::{Applied, ControlByInterconnection, ControlLaw, DynamicLaw, Running, Seen};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion};
 use flexure_core::reference::{Reference, Sine};
@@ -75,7 +73,7 @@ impl<L: Links<f64, N>, const N: usize> Visitor<N> for Trapezoidal<L, N> {
     fn dynamic<const K: usize>(&mut self, name: &str, law: &impl DynamicLaw<f64, N, K>) {
         let (period, [before, now]) = (1e-3, &self.seen);
         let z = law.start(&self.robot, &before.x, &before.q_ld);
-        let next = advanced(law, &self.robot, [before, now], &z, &self.applied, period);
+        let next = law.advanced(&self.robot, [before, now], &z, &self.applied, period);
         let rate = |seen: &Seen<f64, N>, z: &[Vector<f64, N>; K]| {
             law.rate(&self.robot, &seen.x, &seen.q_ld, z, &self.applied)
         };

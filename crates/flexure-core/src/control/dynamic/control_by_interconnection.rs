@@ -1,11 +1,12 @@
 //! Regulation by the power port of the motors.
 
 use super::motor_position_pd::motor_error;
-use super::{Applied, DynamicLaw};
+use super::step::advanced;
+use super::{Applied, DynamicLaw, Seen};
 use crate::control::Signals;
 use crate::linalg::Vector;
 use crate::model::{Fjr, Links, Motion};
-use crate::scalar::{Jet, Over, Scalar};
+use crate::scalar::{Jet, Over, Piecewise, Scalar};
 
 /// Control by interconnection of Ortega and Borja, *New results on control by interconnection and energy-balancing passivity-based control of
 /// port-Hamiltonian systems*, IEEE Conf. Decision and Control, 2014: their method, with a choice of controller that is this project's.
@@ -40,17 +41,6 @@ impl<C: Scalar, const N: usize> DynamicLaw<C, N, 2> for ControlByInterconnection
         [x.q_m, Vector::ZERO]
     }
 
-    /// x_1 by increments of motor positions instead of integrals of velocities, which would drift.
-    #[inline]
-    fn corrected<T: Over<C>>(
-        &self,
-        (before, [x_1, _]): (&Motion<T, N>, &[Vector<T, N>; 2]),
-        now: &Motion<T, N>,
-        [_, x_2]: [Vector<T, N>; 2],
-    ) -> [Vector<T, N>; 2] {
-        [*x_1 + (now.q_m - before.q_m), x_2]
-    }
-
     #[inline]
     fn torque<T: Over<C>, L: Links<C, N>>(
         &self,
@@ -73,5 +63,20 @@ impl<C: Scalar, const N: usize> DynamicLaw<C, N, 2> for ControlByInterconnection
         _: &Applied<T, N>,
     ) -> [Vector<T, N>; 2] {
         [x.v_m, x.v_m - Vector::from_fn(|i| x_2[i].scale(self.elastic[i] / self.viscous[i]))]
+    }
+
+    /// x_1 by increments of motor positions instead of integrals of velocities, which would drift.
+    #[inline]
+    fn advanced<T: Over<C> + Piecewise, L: Links<C, N>>(
+        &self,
+        robot: &Fjr<C, L, N>,
+        [before, now]: [&Seen<T, N>; 2],
+        z: &[Vector<T, N>; 2],
+        applied: &Applied<T, N>,
+        period: T,
+    ) -> [Vector<T, N>; 2] {
+        let [_, x_2] = advanced::<2, _, _, _, _, N, 2>(self, robot, [before, now], z, applied, period);
+        let [x_1, _] = z;
+        [*x_1 + (now.x.q_m - before.x.q_m), x_2]
     }
 }

@@ -1,9 +1,10 @@
 //! What laws with memory have in common.
 
+use super::step::{Seen, advanced};
 use crate::control::Signals;
 use crate::linalg::Vector;
 use crate::model::{Fjr, Links, Motion};
-use crate::scalar::{Jet, Over, Scalar};
+use crate::scalar::{Jet, Over, Piecewise, Scalar};
 
 /// A tracking law with memory: `K` numbers per joint z that obey an ordinary differential equation of their own.
 ///
@@ -75,7 +76,7 @@ use crate::scalar::{Jet, Over, Scalar};
 /// let u = law.torque(&robot, &x, &q_ld, &running.memory);
 /// assert!((u[0] + 2.0 * 3.0).abs() < 1e-9);
 /// ```
-pub trait DynamicLaw<C: Scalar, const N: usize, const K: usize> {
+pub trait DynamicLaw<C: Scalar, const N: usize, const K: usize>: Sized {
     /// What it reads of the motion.
     const READS: Signals;
 
@@ -111,18 +112,6 @@ pub trait DynamicLaw<C: Scalar, const N: usize, const K: usize> {
         z: &[Vector<T, N>; K],
     ) -> Vector<T, N>;
 
-    /// The memory `z` of an instant `now` after what the step from the one `before` made of it: a law may know parts of its memory better than its
-    /// rate does.
-    #[inline]
-    fn corrected<T: Over<C>>(
-        &self,
-        _before: (&Motion<T, N>, &[Vector<T, N>; K]),
-        _now: &Motion<T, N>,
-        z: [Vector<T, N>; K],
-    ) -> [Vector<T, N>; K] {
-        z
-    }
-
     /// ż, while the motors get `applied`.
     fn rate<T: Over<C>, L: Links<C, N>>(
         &self,
@@ -132,6 +121,20 @@ pub trait DynamicLaw<C: Scalar, const N: usize, const K: usize> {
         z: &[Vector<T, N>; K],
         applied: &Applied<T, N>,
     ) -> [Vector<T, N>; K];
+
+    /// z at the second of two instants that it has `seen`, a `period` in s after it was `z`: by the trapezoidal rule, with all of it solved for together. A
+    /// law whose memory is slow in part, or has bounds, says so here.
+    #[inline]
+    fn advanced<T: Over<C> + Piecewise, L: Links<C, N>>(
+        &self,
+        robot: &Fjr<C, L, N>,
+        seen: [&Seen<T, N>; 2],
+        z: &[Vector<T, N>; K],
+        applied: &Applied<T, N>,
+        period: T,
+    ) -> [Vector<T, N>; K] {
+        advanced::<K, _, _, _, _, N, K>(self, robot, seen, z, applied, period)
+    }
 }
 
 /// What the motors get of what was asked for.

@@ -1,5 +1,9 @@
 //! Laws with memory: filters, observers, integrators and parameters that they keep from one instant to the next.
 
+mod adaptation;
+mod adaptive_backstepping;
+mod adaptive_vcbc;
+mod command_filtered;
 mod control_by_interconnection;
 mod dirty_derivative;
 mod disturbance_rejecting;
@@ -13,6 +17,10 @@ mod position_feedback;
 mod sea_cascade;
 mod step;
 
+pub use adaptation::Adaptation;
+pub use adaptive_backstepping::AdaptiveCommandFilteredBackstepping;
+pub use adaptive_vcbc::AdaptiveVcbc;
+pub use command_filtered::CommandFilteredBackstepping;
 pub use control_by_interconnection::ControlByInterconnection;
 pub use disturbance_rejecting::{DisturbanceRejecting, LoadedLaw};
 pub use law::{Applied, DynamicLaw};
@@ -24,4 +32,4 @@ pub use motor_position_pd::{MotorPositionPd, MotorPositionPdCapped};
 pub use pid::Pid;
 pub use position_feedback::PositionFeedback;
 pub use sea_cascade::SeaCascade;
-pub use step::{Running, Seen, advanced};
+pub use step::{Running, Seen};

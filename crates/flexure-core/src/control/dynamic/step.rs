@@ -16,10 +16,10 @@ const CORRECTIONS: usize = 2;
 /// The memory `z` a `period` in s later: the trapezoidal rule z⁺ = z + T/2 (ż(`before`, z) + ż(`now`, z⁺)), both rates under the torque that was
 /// `applied` in between.
 ///
-/// Of a linear filter this is Tustin's, which keeps passivity and is stable for any period. z⁺ is found by Newton's method from Euler's step, with the
-/// Jacobian of ż by dual numbers.
+/// Of a linear filter this is Tustin's, which keeps passivity and is stable for any period. The first `I` parts of z⁺ are found by Newton's method from
+/// Euler's step, with the Jacobian of ż by dual numbers; the others, which are slow, by as many corrections without it.
 #[inline]
-pub fn advanced<C: Scalar, T: Over<C>, L: Links<C, N>, F, const N: usize, const K: usize>(
+pub fn advanced<const I: usize, C: Scalar, T: Over<C>, L: Links<C, N>, F, const N: usize, const K: usize>(
     law: &F,
     robot: &Fjr<C, L, N>,
     [before, now]: [&Seen<T, N>; 2],
@@ -30,6 +30,7 @@ pub fn advanced<C: Scalar, T: Over<C>, L: Links<C, N>, F, const N: usize, const 
 where
     F: DynamicLaw<C, N, K>,
 {
+    const { assert!(I <= K, "no more parts than there are") }
     let half = period * T::from_ratio(1, 2);
     let at = |seen: &Seen<T, N>, z: &[Vector<T, N>; K]| law.rate(robot, &seen.x, &seen.q_ld, z, applied);
     let first = at(before, z);
@@ -39,24 +40,28 @@ where
         core::array::from_fn(|k| z[k] - next[k] + (first[k] + last[k]).scaled(half))
     };
     let slope = Slope { law, robot, now, z: &next, applied };
-    let next = if F::JOINTWISE {
+    if F::JOINTWISE {
         let matrix = slope.implicit_of_joints(half);
-        solved(next, |next| eliminate_each(matrix, missing(next)))
+        corrected::<I, _, N, K>(next, missing, |stiff| eliminate_each(matrix, stiff))
     } else {
         let matrix = slope.implicit(half);
-        solved(next, |next| eliminate(matrix, missing(next)))
-    };
-    law.corrected((&before.x, z), &now.x, next)
+        corrected::<I, _, N, K>(next, missing, |stiff| eliminate(matrix, stiff))
+    }
 }
 
-/// `z` after [`CORRECTIONS`].
+/// `z` after [`CORRECTIONS`] by what is `missing`, the first `I` parts of it `solved` for.
 #[inline]
-fn solved<T: Scalar, const N: usize, const K: usize>(
+fn corrected<const I: usize, T: Scalar, const N: usize, const K: usize>(
     mut z: [Vector<T, N>; K],
-    correction: impl Fn(&[Vector<T, N>; K]) -> [Vector<T, N>; K],
+    missing: impl Fn(&[Vector<T, N>; K]) -> [Vector<T, N>; K],
+    solved: impl Fn([Vector<T, N>; I]) -> [Vector<T, N>; I],
 ) -> [Vector<T, N>; K] {
     for _ in 0..CORRECTIONS {
-        z = added(&z, &correction(&z), T::ONE);
+        let mut correction = missing(&z);
+        if let Some(stiff) = correction.first_chunk_mut::<I>() {
+            *stiff = solved(*stiff);
+        }
+        z = added(&z, &correction, T::ONE);
     }
     z
 }
@@ -84,50 +89,50 @@ impl<C: Scalar, T: Over<C>, L: Links<C, N>, F, const N: usize, const K: usize> S
 where
     F: DynamicLaw<C, N, K>,
 {
-    /// How ż moves with z, of which the numbers that `moves` chooses move at the rate 1.
+    /// ż with how it moves in `M` directions: number i of part k moves at the rate 1 in that which `direction` has for it.
     #[inline]
-    fn along(&self, moves: impl Fn(usize, usize) -> bool) -> [Vector<T, N>; K] {
-        type Tangent<T> = Dual<T, 1>;
-        let lift = |v: &Vector<T, N>| v.map(Tangent::constant);
-        let x = self.now.x.map(Tangent::constant);
-        let q_ld = self.now.q_ld.map(|q| Jet::from_fn(|k| Tangent::constant(q.coefficient(k))));
+    fn along<const M: usize>(
+        &self,
+        direction: impl Fn(usize, usize) -> Option<usize>,
+    ) -> [Vector<Dual<T, M>, N>; K] {
+        let lift = |v: &Vector<T, N>| v.map(Dual::constant);
+        let x = self.now.x.map(Dual::constant);
+        let q_ld = self.now.q_ld.map(|q| Jet::from_fn(|k| Dual::constant(q.coefficient(k))));
         let applied = Applied { asked: lift(&self.applied.asked), given: lift(&self.applied.given) };
         let z = core::array::from_fn(|k| {
             Vector::from_fn(|i| {
-                if moves(k, i) { Tangent::variable(self.z[k][i], 0) } else { Tangent::constant(self.z[k][i]) }
+                let z = self.z[k][i];
+                direction(k, i).map_or(Dual::constant(z), |direction| Dual::variable(z, direction))
             })
         });
-        let rate = self.law.rate(self.robot, &x, &q_ld, &z, &applied);
-        rate.map(|part| part.map(|Dual { gradient: [slope], .. }| slope))
+        self.law.rate(self.robot, &x, &q_ld, &z, &applied)
     }
 
-    /// 1 − T/2 ∂ż/∂z in `N` × `N` blocks.
+    /// 1 − T/2 ∂ż/∂z of the first `I` parts in `N` × `N` blocks, a block of columns at a time.
     #[inline]
-    fn implicit(&self, half: T) -> [[Matrix<T, N, N>; K]; K] {
-        let mut matrix = [[Matrix::ZERO; K]; K];
-        for column in 0..K {
-            for j in 0..N {
-                let slope = self.along(|k, i| k == column && i == j);
-                for (row, (blocks, slope)) in matrix.iter_mut().zip(&slope).enumerate() {
-                    for i in 0..N {
-                        let unit = if row == column && i == j { T::ONE } else { T::ZERO };
-                        blocks[column][(i, j)] = unit - half * slope[i];
-                    }
-                }
+    fn implicit<const I: usize>(&self, half: T) -> [[Matrix<T, N, N>; I]; I] {
+        let mut matrix = [[Matrix::ZERO; I]; I];
+        for column in 0..I {
+            let rate = self.along::<N>(|k, i| (k == column).then_some(i));
+            for (row, (blocks, rate)) in matrix.iter_mut().zip(&rate).enumerate() {
+                blocks[column] = Matrix::from_fn(|i, j| {
+                    let unit = if row == column && i == j { T::ONE } else { T::ZERO };
+                    unit - half * rate[i].gradient[j]
+                });
             }
         }
         matrix
     }
 
-    /// The same where no joint moves another's: a `K` × `K` matrix a joint, all of whose columns come at once.
+    /// The same where no joint moves another's: an `I` × `I` matrix a joint, all of whose columns come at once.
     #[inline]
-    fn implicit_of_joints(&self, half: T) -> [[Vector<T, N>; K]; K] {
-        let mut matrix = [[Vector::ZERO; K]; K];
-        for column in 0..K {
-            let slope = self.along(|k, _| k == column);
-            for (row, (entries, slope)) in matrix.iter_mut().zip(&slope).enumerate() {
+    fn implicit_of_joints<const I: usize>(&self, half: T) -> [[Vector<T, N>; I]; I] {
+        let mut matrix = [[Vector::ZERO; I]; I];
+        for column in 0..I {
+            let rate = self.along::<1>(|k, _| (k == column).then_some(0));
+            for (row, (entries, rate)) in matrix.iter_mut().zip(&rate).enumerate() {
                 let unit = if row == column { T::ONE } else { T::ZERO };
-                entries[column] = slope.map(|slope| unit - half * slope);
+                entries[column] = rate.map(|Dual { gradient: [slope], .. }| unit - half * slope);
             }
         }
         matrix
@@ -176,7 +181,7 @@ impl<C: Float, const N: usize, const K: usize> Running<C, N, K> {
         period: C,
     ) {
         let now = Seen { x: *x, q_ld: *q_ld };
-        let next = advanced(law, robot, [&self.seen, &now], &self.memory, applied, period);
+        let next = law.advanced(robot, [&self.seen, &now], &self.memory, applied, period);
         if next.iter().all(|part| part.iter().all(C::is_finite)) {
             *self = Self { memory: next, seen: now };
         }

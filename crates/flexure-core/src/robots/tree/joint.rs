@@ -216,10 +216,31 @@ impl<C: Scalar> Joint<C> {
     /// What moves the body like this.
     #[inline]
     pub(super) fn wrench<T: Over<C>>(&self, body: &Carried<T>) -> Wrench<T> {
+        self.wrench_on(&self.inertia, body, T::scale)
+    }
+
+    /// What moves a `load` in place of the body; `times` multiplies by a number of it.
+    #[inline(always)]
+    pub(super) fn wrench_on<T: Scalar, P: Scalar>(
+        &self,
+        load: &RigidInertia<P>,
+        body: &Carried<T>,
+        times: impl Fn(T, P) -> T + Copy,
+    ) -> Wrench<T> {
         match self.kind {
-            JointKind::Revolute => self.inertia.about_axis(body),
-            JointKind::Prismatic => self.inertia.wrench(body),
+            JointKind::Revolute => load.about_axis(body, times),
+            JointKind::Prismatic => load.wrench(body, times),
         }
+    }
+
+    /// How the power of what moves the body grows with each number of it, if it gives way with the twist `s`: 0 for what the parent has.
+    #[inline]
+    pub(super) fn power<T: Scalar>(&self, body: &Carried<T>, s: &Twist<T>) -> RigidInertia<T> {
+        let mut power = body.power(s);
+        if !self.is_prismatic() {
+            power.split_axis();
+        }
+        power
     }
 
     /// `Sᵀ f`: the torque [N m] or force in N at the joint.

@@ -1,11 +1,11 @@
 //! Mass matrix, inverse dynamics and potential energy of a tree.
 
-use super::joint::Pose;
+use super::joint::{Joint, Pose};
 use super::{Tree, TreeFactor};
 use crate::linalg::{Matrix, Vector};
-use crate::model::Links;
+use crate::model::{Links, Parameters};
 use crate::scalar::{Jet, Over, Scalar};
-use crate::spatial::{Carried, Vec3, Wrench};
+use crate::spatial::{Carried, RigidInertia, Twist, Vec3, Wrench};
 
 impl<C: Scalar, const N: usize> Tree<C, N> {
     /// Where the joints are; phantoms slide, which takes no sines.
@@ -49,17 +49,43 @@ impl<C: Scalar, const N: usize> Tree<C, N> {
         a_r: &Vector<T, N>,
         base: Vec3<T>,
     ) -> Vector<T, N> {
+        self.newton_euler_of::<T, OWN>(poses, [v, v_r, a_r], base, |_, joint, body| joint.wrench(body))
+    }
+
+    /// Visits the bodies from the base outwards with how they move.
+    #[inline]
+    fn carried<T: Over<C>, const OWN: bool>(
+        &self,
+        poses: &[Pose<T>; N],
+        [v, v_r, a_r]: [&Vector<T, N>; 3],
+        base: Vec3<T>,
+        mut visit: impl FnMut(usize, &Joint<C>, &Carried<T>),
+    ) {
         let ground = Carried::straight(base);
         let mut bodies = Vector([ground; N]);
-        let mut force = Vector([Wrench::ZERO; N]);
         for (i, (joint, pose)) in self.chain(poses) {
             // Written where it stays: series in lanes are kilobytes.
             let (carriers, rest) = bodies.0.split_at_mut(i);
             let Some(body) = rest.first_mut() else { break };
             let carrier = carriers.get(joint.parent).unwrap_or(&ground);
             joint.carry::<T, OWN>(pose, carrier, [v[i], v_r[i], a_r[i]], body);
-            force[i] = joint.wrench(body);
+            visit(i, joint, body);
         }
+    }
+
+    /// [`newton_euler`](Self::newton_euler) with the force that `wrench` says for a body that moves.
+    #[inline]
+    fn newton_euler_of<T: Over<C>, const OWN: bool>(
+        &self,
+        poses: &[Pose<T>; N],
+        [v, v_r, a_r]: [&Vector<T, N>; 3],
+        base: Vec3<T>,
+        wrench: impl Fn(usize, &Joint<C>, &Carried<T>) -> Wrench<T>,
+    ) -> Vector<T, N> {
+        let mut force = Vector([Wrench::ZERO; N]);
+        self.carried::<T, OWN>(poses, [v, v_r, a_r], base, |i, joint, body| {
+            force[i] = wrench(i, joint, body);
+        });
         // Phantoms: unit inertia.
         let mut torque = *a_r;
         for (i, (joint, pose)) in self.chain(poses).rev() {
@@ -195,6 +221,57 @@ impl<C: Scalar, const N: usize> Links<C, N> for Tree<C, N> {
     fn mass_mul<T: Over<C>>(&self, q: &Vector<T, N>, a: &Vector<T, N>) -> Vector<T, N> {
         let rest = Vector::ZERO;
         self.newton_euler::<T, true>(&self.poses(q), &rest, &rest, a, Vec3::ZERO)
+    }
+
+    /// Of the bodies in their turned frames, less what parents have: mass, first moments x, y, z, second moments xx, xy, xz, yy, yz, zz.
+    #[inline]
+    fn parameters(&self) -> Parameters<C, N> {
+        let mut parameters = [Vector::ZERO; 10];
+        for (i, joint) in self.joints.iter().enumerate().take(self.count) {
+            for (slot, number) in parameters.iter_mut().zip(joint.inertia.numbers()) {
+                slot[i] = number;
+            }
+        }
+        parameters
+    }
+
+    #[inline]
+    fn regressor_mul<T: Over<C>>(
+        &self,
+        parameters: &Parameters<T, N>,
+        q: &Vector<T, N>,
+        v: &Vector<T, N>,
+        v_r: &Vector<T, N>,
+        a_r: &Vector<T, N>,
+    ) -> Vector<T, N> {
+        self.newton_euler_of::<T, false>(&self.poses(q), [v, v_r, a_r], self.upwards(), |i, joint, body| {
+            let load = RigidInertia::from_numbers(parameters.map(|slot| slot[i]));
+            joint.wrench_on(&load, body, T::mul)
+        })
+    }
+
+    #[inline]
+    fn regressor_transpose_mul<T: Over<C>>(
+        &self,
+        q: &Vector<T, N>,
+        v: &Vector<T, N>,
+        v_r: &Vector<T, N>,
+        a_r: &Vector<T, N>,
+        s: &Vector<T, N>,
+    ) -> Parameters<T, N> {
+        let poses = self.poses(q);
+        let mut powers = [Vector::ZERO; 10];
+        let mut twists = [Twist::ZERO; N];
+        self.carried::<T, false>(&poses, [v, v_r, a_r], self.upwards(), |i, joint, body| {
+            let (carriers, rest) = twists.split_at_mut(i);
+            let (Some(twist), Some(pose)) = (rest.first_mut(), poses.get(i)) else { return };
+            let carrier = carriers.get(joint.parent).copied().unwrap_or(Twist::ZERO);
+            *twist = joint.twist_to_child(pose, &carrier) + joint.along_axis(s[i]);
+            for (slot, power) in powers.iter_mut().zip(joint.power(body, twist).numbers()) {
+                slot[i] = power;
+            }
+        });
+        powers
     }
 
     #[inline]
