@@ -10,6 +10,7 @@ mod pages;
 mod replay;
 mod sketch;
 mod tables;
+mod ultimate;
 mod view;
 
 pub use assumptions::assumptions;
@@ -45,4 +46,5 @@ pub use tables::margins::margins_table;
 pub use tables::proof::{certificate_table, proof_table};
 pub use tables::summary::{joint_table, summary_table, usage_table};
 pub use tables::sweep::sweep_table;
+pub use ultimate::Ultimate;
 pub use view::{Film, Viewed, view};

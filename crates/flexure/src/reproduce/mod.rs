@@ -13,8 +13,8 @@ use crate::prove::question::{Direct, Proof, Question, Region, certified, prove};
 use crate::prove::standing::is_about;
 use crate::prove::summary::ProofSummary;
 use crate::report::{
-    CertificateReport, FigureOptions, Film, JointMarks, RunReport, RunsReport, Scene, Sketch, Verdict,
-    Viewed, assumptions, comparison, pushes, run_figure, view,
+    CertificateReport, FigureOptions, Film, JointMarks, RunReport, RunsReport, Scene, Sketch, Ultimate,
+    Verdict, Viewed, assumptions, comparison, pushes, run_figure, view,
 };
 use crate::sampled::{Sampled, probe};
 use crate::scenario::{Hold, Scenario, load_scenario};
@@ -22,14 +22,17 @@ use crate::simulate::{Excerpt, LimitWatch, Run, Sink, Summary, TraceFile, run_in
 
 pub use outputs::{trace_file, write_certificates, write_experiment, write_report};
 
-/// The experiments of the paper: each shaping function from rest off the reference, and from a smooth start.
-pub const REPRODUCED: [&str; 6] = [
+/// The experiments of the paper: each shaping function from rest off the reference, and from a smooth start; those that the paper
+/// measured also with encoders and filtered velocities.
+pub const REPRODUCED: [&str; 8] = [
     "two-link-tanh",
     "two-link-linear",
     "two-link-coupled-tanh",
     "two-link-tanh-smooth",
     "two-link-linear-smooth",
     "two-link-coupled-tanh-smooth",
+    "two-link-tanh-practical",
+    "two-link-coupled-tanh-practical",
 ];
 
 /// A scenario that was run.
@@ -97,6 +100,7 @@ impl Experiment {
             happenings: pushes(&scenario),
             settled: run.summary.settling_time,
             decay,
+            ultimate: Ultimate::of(&scenario, &run, &sketch),
         };
         let figure = run_figure(&sketch, &options);
         Ok(Self { scenario, run, sampled, exceeded, sketch, film, figure, proved })
