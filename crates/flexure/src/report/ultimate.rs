@@ -1,5 +1,7 @@
 //! What position errors come down to where they do not come down to zero.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
 use crate::report::Sketch;
@@ -12,7 +14,7 @@ use crate::simulate::Run;
 /// ```
 /// use flexure::report::{Sketch, Ultimate};
 ///
-/// let mut scenario = flexure::Scenario::load("two-link-tanh-practical")?;
+/// let mut scenario = flexure::Scenario::load("two-link-tanh-sensors")?;
 /// scenario.duration = 4.5; // s
 /// let mut sketch = Sketch::new(&scenario.signals()?);
 /// let run = flexure::simulate::run_into(&scenario, &mut [&mut sketch], &flexure::progress::unwatched)?;
@@ -28,19 +30,43 @@ pub struct Ultimate {
     pub links: Vec<f64>,
     /// Largest |q_m − q_md|, the same; nothing for laws that have no q_md.
     pub motors: Vec<f64>,
+    /// Largest |σ_l|, the same [kg m²/s]; nothing for laws that have none.
+    pub link_momenta: Vec<f64>,
+    /// Largest |σ_m|, the same.
+    pub motor_momenta: Vec<f64>,
 }
 
 impl Ultimate {
     /// Of a run of `scenario` that is drawn in `sketch`; none without imperfections, and of a run that did not come to its end.
     pub fn of(scenario: &Scenario, run: &Run, sketch: &Sketch) -> Option<Self> {
         let is_over = run.divergence.is_none() && run.broken_off.is_none();
-        (is_over && !scenario.imperfections.is_empty())
-            .then(|| Self::from(run.summary.following.accepted.settling, sketch))
+        let from = run.summary.following.accepted.settling;
+        let [links, motors, link_momenta, motor_momenta] =
+            ["e_l", "e_m", "sigma_l", "sigma_m"].map(|errors| sketch.largest(errors, from));
+        (is_over && !scenario.imperfections.is_empty()).then_some(Self {
+            from,
+            links,
+            motors,
+            link_momenta,
+            motor_momenta,
+        })
     }
+}
 
-    /// Of whatever is drawn in `sketch`, `from` this time on \[s\].
-    pub(crate) fn from(from: f64, sketch: &Sketch) -> Self {
-        let [links, motors] = ["e_l", "e_m"].map(|errors| sketch.largest(errors, from));
-        Self { from, links, motors }
-    }
+/// How far a loop converges, and which of its imperfections is why.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Practical {
+    /// The scenario.
+    pub name: String,
+    /// Shaping function.
+    pub phi: String,
+    /// Names of the joints.
+    pub joints: Vec<String>,
+    /// A step of the encoders of the links, a joint each \[rad\]; nothing without them.
+    pub steps: Vec<f64>,
+    /// What errors come down to.
+    #[serde(flatten)]
+    pub ultimate: Ultimate,
+    /// What they come down to with one imperfection and no other, by its kind. Velocities are true where no filter makes them.
+    pub alone: BTreeMap<&'static str, Ultimate>,
 }

@@ -84,7 +84,7 @@ pub(crate) const BOUND: Stroke = Stroke { color: INK, width: 1.8, dash: &[8.0, 4
 const BOUNDS: [Stroke; 2] = [BOUND, Stroke { width: 1.0, dash: &[4.0, 3.0, 1.0, 3.0], ..BOUND }];
 /// The same of what was measured.
 const LEVELS: [Stroke; 2] =
-    [Stroke { color: INK, width: 2.4, dash: &[] }, Stroke { color: INK, width: 1.2, dash: &[] }];
+    [Stroke { dash: &[14.0, 4.0], ..BOUND }, Stroke { width: 1.0, dash: &[7.0, 2.0], ..BOUND }];
 
 /// Positions, errors, momentum errors and torques of `run` over time.
 ///

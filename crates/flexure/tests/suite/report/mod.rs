@@ -9,8 +9,8 @@ use flexure::report::AssumedNumber;
 use flexure::report::RunsReport;
 use flexure::report::decimate::{Thinned, bucket_size, decimate, envelope};
 use flexure::report::{
-    CertificateReport, FigureOptions, JointMarks, RunReport, Sketch, Verdict, WIDTH, certificate_table,
-    comparison, four_panel, html, proof_table, summary_table,
+    CertificateReport, FigureOptions, JointMarks, Practical, RunReport, Sketch, Ultimate, Verdict, WIDTH,
+    certificate_table, comparison, four_panel, html, proof_table, summary_table,
 };
 use flexure::scenario::load_scenario;
 use flexure::simulate::{Summary, Trace};
@@ -308,6 +308,7 @@ fn report() -> RunsReport {
             phi: "<script>phi</script>".to_owned(),
             file: Some("<script>.certificate.json".to_owned()),
         }],
+        practical: vec![practical()],
         assumptions: vec![AssumedNumber {
             file: "robots/<script>.toml".to_owned(),
             key: "joints.stiffness".to_owned(),
@@ -315,6 +316,25 @@ fn report() -> RunsReport {
             note: "not in the paper's table".to_owned(),
         }],
         provenance: vec!["flexure 0.1.0".to_owned()],
+    }
+}
+
+fn practical() -> Practical {
+    let errors = vec![1.25e-3, 2e-3];
+    let ultimate = Ultimate {
+        from: 3.7,
+        links: errors.clone(),
+        motors: errors.clone(),
+        link_momenta: errors.clone(),
+        motor_momenta: errors,
+    };
+    Practical {
+        name: "<script>practical".to_owned(),
+        phi: "tanh".to_owned(),
+        joints: vec!["<script>".to_owned(), "elbow".to_owned()],
+        steps: vec![5e-4, 4e-4],
+        alone: [("encoder", ultimate.clone())].into(),
+        ultimate,
     }
 }
 
@@ -351,6 +371,10 @@ fn the_page_stands_alone_and_comes_out_the_same() {
     assert!(!page.contains("0.123"), "the wall-clock time has no place in a reproducible page");
     assert_eq!(page, html(&report()));
     assert!(page.contains("69.0") && page.contains("variational pH"), "the certificate's row");
+    assert!(
+        page.contains("encoder alone") && page.contains("an encoder step is 0.5 and 0.4 mrad"),
+        "what errors come down to"
+    );
 }
 
 #[test]
