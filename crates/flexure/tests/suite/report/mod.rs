@@ -10,7 +10,7 @@ use flexure::report::RunsReport;
 use flexure::report::decimate::{Thinned, bucket_size, decimate, envelope};
 use flexure::report::{
     CertificateReport, FigureOptions, JointMarks, Practical, RunReport, Sketch, Ultimate, Verdict, WIDTH,
-    certificate_table, comparison, four_panel, html, proof_table, summary_table,
+    certificate_table, comparison, four_panel, html, proof_table, run_figure, summary_table,
 };
 use flexure::scenario::load_scenario;
 use flexure::simulate::{Summary, Trace};
@@ -286,6 +286,33 @@ fn pictures_are_1600_wide_and_bad_ones_are_errors() {
     let runs: Vec<(&str, &Sketch)> = names.iter().map(|name| (name.as_str(), &sketch)).collect();
     let error = comparison(&runs).png().unwrap_err();
     assert!(error.height > 10.0 * error.width, "{error}");
+}
+
+/// A line for the links and one for the motors, in the panel of all joints or in that of each, in front of their numbers.
+#[test]
+fn what_errors_come_down_to_is_a_line_and_in_the_legend() {
+    for (joints, lines) in [(2, 2), (5, 10)] {
+        let sketch = Sketch::of(&fake::trace(joints, 3_000, 6.0));
+        let drawn = |ultimate| {
+            let svg = run_figure(&sketch, &FigureOptions { ultimate, ..FigureOptions::default() }).svg();
+            check(&svg);
+            svg
+        };
+        let [mut links, mut motors] = [1e-3, 1e-2].map(|error| vec![error; joints]);
+        (links[1], motors[1]) = (1.25e-3, 2e-2);
+        let found =
+            Ultimate { from: 2.0, links, motors, link_momenta: Vec::new(), motor_momenta: Vec::new() };
+        let (without, with) = (drawn(None), drawn(Some(found.clone())));
+        assert_eq!(curves(&with), curves(&without) + lines);
+        let said = texts(&with);
+        for entry in ["largest eₗ from 2 s on: 1.25 mrad", "largest eₘ from 2 s on: 20.0 mrad"] {
+            assert!(said.iter().any(|text| text == entry), "{entry} in {said:?}");
+        }
+        // Laws without motor errors have half of them.
+        let links = drawn(Some(Ultimate { motors: Vec::new(), ..found }));
+        assert_eq!(curves(&links), curves(&without) + lines / 2);
+        assert!(!texts(&links).iter().any(|text| text.contains("largest eₘ")));
+    }
 }
 
 fn report() -> RunsReport {
