@@ -178,7 +178,7 @@ fn at_rest_less_than_half_a_step_is_not_seen() {
     assert!(largest(&left) < 0.6 * STEP, "{left:?}");
 }
 
-/// Steady link errors are the filter's: with encoders forty times finer nine tenths of them are still there. What encoders add is torque.
+/// Steady link errors are the filter's: with encoders forty times finer four fifths of them and more are still there. What encoders add is torque.
 #[test]
 fn finer_encoders_leave_the_filter_s_error() {
     for name in LAWS {
