@@ -14,12 +14,11 @@ use crate::simulate::Run;
 /// ```
 /// use flexure::report::{Sketch, Ultimate};
 ///
-/// let mut scenario = flexure::Scenario::load("two-link-tanh-sensors")?;
-/// scenario.duration = 4.5; // s
+/// let scenario = flexure::Scenario::load("two-link-tanh-sensors")?;
 /// let mut sketch = Sketch::new(&scenario.signals()?);
 /// let run = flexure::simulate::run_into(&scenario, &mut [&mut sketch], &flexure::progress::unwatched)?;
 /// let ultimate = Ultimate::of(&scenario, &run, &sketch).ok_or("it has imperfections")?;
-/// assert!(ultimate.from == 3.7 && ultimate.links.iter().all(|error| *error < 1e-3)); // s, rad
+/// assert!(ultimate.from == 5.0 && ultimate.links.iter().all(|error| *error < 1e-3)); // s, rad
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]

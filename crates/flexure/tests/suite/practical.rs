@@ -105,7 +105,7 @@ fn errors_come_down_to_millirads_and_without_sensors_to_microradians() {
             ("sigma_m", &bound.motor_momenta),
         ] {
             for (column, bound) in trace.joints(signal).iter().zip(bounds) {
-                let late = (0..t.len()).filter(|&i| t[i] >= 3.7);
+                let late = (0..t.len()).filter(|&i| t[i] >= 5.0);
                 let seen = late.fold(0.0, |most: f64, i| most.max(column[i].abs()));
                 assert_eq!(seen.to_bits(), bound.to_bits(), "{signal} of {name}");
             }
@@ -115,7 +115,7 @@ fn errors_come_down_to_millirads_and_without_sensors_to_microradians() {
         let links = ideal
             .joints("e_l")
             .iter()
-            .map(|e| e[3700..].iter().fold(0.0, |most: f64, e| most.max(e.abs())))
+            .map(|e| e[5000..].iter().fold(0.0, |most: f64, e| most.max(e.abs())))
             .collect::<Vec<_>>();
         assert!(largest(&links) < 2e-6, "{links:?}");
         assert!(ratios(&bound.links, &links).iter().all(|ratio| *ratio > 1e3), "{bound:?} {links:?}");
