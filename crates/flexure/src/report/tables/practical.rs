@@ -53,12 +53,9 @@ pub(crate) fn sentences(runs: &[Practical]) -> Vec<String> {
                 second.phi, first.phi
             ));
         }
-        sentences.push(format!(
-            "The paper has both smaller under {}. Here those of positions are {}, those of momenta {}.",
-            second.phi,
-            compared(&positions),
-            compared(&momenta)
-        ));
+        let [positions, momenta] = [&positions, &momenta].map(compared);
+        sentences
+            .push(format!("The paper has both smaller; here positions: {positions}; momenta: {momenta}."));
     }
     sentences
 }
@@ -71,14 +68,16 @@ fn compared([links, motors]: &[Vec<f64>; 2]) -> &'static str {
     } else if links.iter().all(|ratio| *ratio > 1.0) {
         "larger in all links"
     } else {
-        "smaller in some joints only"
+        "smaller in some joints"
     }
 }
 
 /// Numbers joint by joint; once if all are the same.
 fn list(numbers: &[f64]) -> String {
     let mut words: Vec<String> = numbers.iter().map(|number| short(*number, 3)).collect();
-    words.dedup();
+    if words.windows(2).all(|pair| pair[0] == pair[1]) {
+        words.truncate(1);
+    }
     words.join(" and ")
 }
 
@@ -90,7 +89,7 @@ mod tests {
     use crate::report::Ultimate;
     use crate::report::ultimate::Practical;
 
-    /// Errors of positions are `positions` times those of the other one, of momenta half of them.
+    /// Errors of links and motors alike: `positions` in rad, `momenta` in kg m²/s.
     fn run(phi: &str, positions: [f64; 2], momenta: f64) -> Practical {
         let positions = positions.to_vec();
         let ultimate = Ultimate {
@@ -124,18 +123,14 @@ mod tests {
             "Errors of positions, coupled-tanh over tanh: links 2 and 1.5; motors 2 and 1.5."
         );
         assert_eq!(larger[2], "Errors of momenta, coupled-tanh over tanh: links 0.5; motors 0.5.");
-        assert!(
-            larger[3].ends_with("positions are larger in all links, those of momenta smaller."),
-            "{}",
-            larger[3]
-        );
+        assert!(larger[3].ends_with("positions: larger in all links; momenta: smaller."), "{}", larger[3]);
         let mixed = said([2e-3, 1e-3], 0.8);
         assert!(
-            mixed[3].ends_with("smaller in some joints only, those of momenta larger in all links."),
+            mixed[3].ends_with("positions: smaller in some joints; momenta: larger in all links."),
             "{}",
             mixed[3]
         );
-        assert!(said([0.5e-3, 1e-3], 0.2)[3].ends_with("positions are smaller, those of momenta smaller."));
+        assert!(said([0.5e-3, 1e-3], 0.2)[3].ends_with("positions: smaller; momenta: smaller."));
         assert_eq!(sentences(&[first]).len(), 1);
         assert!(sentences(&[]).is_empty());
     }
