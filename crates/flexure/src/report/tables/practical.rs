@@ -8,8 +8,8 @@ use crate::report::ultimate::Practical;
 /// The ultimate bounds of several runs and what each imperfection makes of them alone, in so many columns; then what that means, a line a
 /// sentence.
 pub fn practical_table(runs: &[Practical], width: usize) -> String {
-    let sentences: String = sentences(runs).iter().map(|sentence| format!("\n{sentence}")).collect();
-    practical(runs).text(width) + &sentences
+    let table = practical(runs).text(width);
+    std::iter::once(table).chain(sentences(runs)).collect::<Vec<_>>().join("\n")
 }
 
 /// A row for all imperfections of a run, and one for each of them alone.
