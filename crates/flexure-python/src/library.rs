@@ -8,8 +8,8 @@ use flexure::files::{Unfinished, prepare};
 use flexure::progress::Parts;
 use flexure::prove::summary::ProofSummary;
 use flexure::reproduce::{
-    Certified, REPRODUCED, certificates, reproduce as experiments, write_certificates, write_experiment,
-    write_report,
+    Certified, REPRODUCED, certificates, practical, reproduce as experiments, write_certificates,
+    write_experiment, write_report,
 };
 use flexure::robot::{DriveClass, ImportOptions};
 use flexure::scenario::Drafts;
@@ -93,7 +93,7 @@ pub fn import_urdf<'py>(
 }
 
 /// The paper's experiments, as `flexure reproduce`: traces, figures, certificates and report.html in the folder `out`; a dict with the
-/// summaries of the runs and the certificates.
+/// summaries of the runs, the certificates and how far the practical ones converge.
 #[pyfunction]
 #[pyo3(signature = (out, *, progress = None))]
 pub fn reproduce<'py>(
@@ -112,11 +112,12 @@ pub fn reproduce<'py>(
         return Err(PyKeyboardInterrupt::new_err(()));
     }
     let certified = py.detach(certificates).map_err(|problems| raised(py, &problems))?;
+    let practical = py.detach(|| practical(&runs)).map_err(|problems| raised(py, &problems))?;
     let write = || -> Result<PathBuf, Unfinished> {
         let mut written = runs.iter().zip(traces);
         written.try_for_each(|(experiment, trace)| write_experiment(experiment, trace).map(drop))?;
         write_certificates(&out, &certified)?;
-        write_report(&out, &runs, &certified)
+        write_report(&out, &runs, &certified, &practical)
     };
     let report = py.detach(write).map_err(|reason| unfinished(py, reason))?;
     let summaries: Vec<&Summary> = runs.iter().map(|experiment| &experiment.run.summary).collect();
@@ -124,6 +125,7 @@ pub fn reproduce<'py>(
     let found = PyDict::new(py);
     found.set_item("scenarios", document(py, &summaries)?)?;
     found.set_item("certificates", document(py, &certificates)?)?;
+    found.set_item("practical", document(py, &practical)?)?;
     found.set_item("report", report)?;
     Ok(found)
 }

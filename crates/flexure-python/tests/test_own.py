@@ -113,4 +113,4 @@ class TestDrafts:
 
     def test_the_paper(self, tmp_path: Path) -> None:
         found = flexure.reproduce(tmp_path)
-        assert len(found["scenarios"]) == 6 and (tmp_path / "report.html").stat().st_size > 100_000
+        assert len(found["scenarios"]) == 8 and len(found["practical"]) == 2 and (tmp_path / "report.html").stat().st_size > 100_000

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use flexure::files::{Problems, WriteError, prepare};
 use flexure::prove::summary::ProofSummary;
-use flexure::report::{certificate_table, summary_table};
+use flexure::report::{Practical, certificate_table, practical_table, summary_table};
 use flexure::reproduce::{
-    Certified, Experiment, REPRODUCED, certificates, reproduce as experiments, write_certificates,
+    Certified, Experiment, REPRODUCED, certificates, practical, reproduce as experiments, write_certificates,
     write_experiment, write_report,
 };
 use rayon::prelude::*;
@@ -23,6 +23,7 @@ struct Reproduction<'a> {
     scenarios: Vec<Outcome<'a>>,
     certificates: Vec<ProofSummary>,
     certificate_files: Vec<PathBuf>,
+    practical: Vec<Practical>,
     report: PathBuf,
 }
 
@@ -52,13 +53,15 @@ pub fn reproduce(out: &Path, json: bool) -> Result<(), Failure> {
     }
     let certified = certificates()?;
     let certificate_files = write_certificates(out, &certified)?;
-    let report = write_report(out, &experiments, &certified)?;
+    let practical = practical(&experiments)?;
+    let report = write_report(out, &experiments, &certified, &practical)?;
     let certificates: Vec<_> = certified.iter().map(Certified::summary).collect();
     if json {
         let scenarios = experiments.iter().zip(files).map(|(e, files)| Outcome::new(e, files)).collect();
-        print::json(&Reproduction { scenarios, certificates, certificate_files, report })?;
+        print::json(&Reproduction { scenarios, certificates, certificate_files, practical, report })?;
     } else {
         print::line(&table(&experiments))?;
+        print::line(&practical_table(&practical, print::columns()))?;
         print::line(&certificate_table(&certificates, print::columns()))?;
         print::line(&format!(
             "wrote {}, and figures (svg, png), traces (csv) and certificates (json) beside it",

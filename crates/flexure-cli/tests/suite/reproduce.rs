@@ -6,14 +6,19 @@ use serde_json::Value;
 
 use crate::command::{Place, assert_summary};
 
-const EXPERIMENTS: [&str; 6] = [
+const EXPERIMENTS: [&str; 8] = [
     "two-link-tanh",
     "two-link-linear",
     "two-link-coupled-tanh",
     "two-link-tanh-smooth",
     "two-link-linear-smooth",
     "two-link-coupled-tanh-smooth",
+    "two-link-tanh-sensors",
+    "two-link-coupled-tanh-sensors",
 ];
+
+/// Those that converge practically.
+const PRACTICAL: [&str; 2] = ["two-link-tanh-sensors", "two-link-coupled-tanh-sensors"];
 
 /// Those whose rates are proved.
 const CERTIFIED: [&str; 3] = ["two-link-tanh", "two-link-linear", "two-link-coupled-tanh"];
@@ -71,6 +76,19 @@ fn all_files_the_same_bytes_on_any_number_of_threads() {
         assert_eq!(certificate["direct"]["verdict"], "proved", "the full inequality says so too");
         place.run(&["verify", &format!("1/{name}.certificate.json")]).done();
     }
+    let practical = one["practical"].as_array().unwrap();
+    assert_eq!(practical.len(), PRACTICAL.len());
+    for (bounds, name) in practical.iter().zip(PRACTICAL) {
+        assert_eq!((&bounds["name"], &bounds["from"]), (&name.into(), &5.0.into()));
+        let alone: Vec<_> = bounds["alone"].as_object().unwrap().keys().collect();
+        assert_eq!(alone, ["encoder", "velocity-filter"]);
+        // The largest is what the run was held to, and the figure says it.
+        let scenario = scenarios.iter().find(|scenario| scenario["name"] == name).unwrap();
+        let links = bounds["links"].as_array().unwrap().iter().map(|link| link.as_f64().unwrap());
+        assert_eq!(Value::from(links.fold(0.0, f64::max)), scenario["used"][0]["value"]);
+        assert_eq!(scenario["rate_certified"], Value::Null, "nothing is proved of a loop with sensors");
+        assert!(place.read(&format!("1/{name}.svg")).contains("from 5 s on: "), "{name}");
+    }
     assert_eq!(one["report"], "out/report.html");
     let page = place.read("1/report.html");
     for name in EXPERIMENTS {
@@ -86,9 +104,10 @@ fn the_table_has_a_line_a_run_and_fits_100_columns() {
     assert!(outcome.stdout.lines().all(|line| line.chars().count() <= 100), "{}", outcome.stdout);
     for name in EXPERIMENTS {
         let of_run = |line: &&str| line.split_whitespace().next() == Some(name);
-        let lines = if CERTIFIED.contains(&name) { 2 } else { 1 };
+        // Of the summary, of the proof, of all imperfections and each of the two alone.
+        let lines = 1 + usize::from(CERTIFIED.contains(&name)) + 3 * usize::from(PRACTICAL.contains(&name));
         assert_eq!(outcome.stdout.lines().filter(of_run).count(), lines, "{name} in\n{}", outcome.stdout);
     }
     assert!(outcome.stdout.contains("out/report.html"));
-    assert_eq!(place.names("out").len(), 22);
+    assert_eq!(place.names("out").len(), 28);
 }

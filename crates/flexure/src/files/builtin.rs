@@ -20,6 +20,7 @@ pub const ROBOTS: &[(&str, &str)] = data!("robots":
 pub const SCENARIOS: &[(&str, &str)] = data!("scenarios":
     "two-link-tanh" "two-link-linear" "two-link-coupled-tanh"
     "two-link-tanh-smooth" "two-link-linear-smooth" "two-link-coupled-tanh-smooth"
+    "two-link-tanh-sensors" "two-link-coupled-tanh-sensors"
     "two-link-hardware" "two-link-everything" "two-link-tanh-10khz"
     "pendulum-tanh" "panda-tanh-smooth" "planar-2r-tanh" "planar-3r-tanh" "tomei-3r-tanh" "tomei-3r-tanh-coupled" "tomei-3r-5kg-tanh");
 

@@ -10,6 +10,7 @@ mod pages;
 mod replay;
 mod sketch;
 mod tables;
+mod ultimate;
 mod view;
 
 pub use assumptions::assumptions;
@@ -42,7 +43,9 @@ pub use tables::excitation::excitation_table;
 pub use tables::identified::identified_table;
 pub use tables::leaderboard::leaderboard_table;
 pub use tables::margins::margins_table;
+pub use tables::practical::practical_table;
 pub use tables::proof::{certificate_table, proof_table};
 pub use tables::summary::{joint_table, summary_table, usage_table};
 pub use tables::sweep::sweep_table;
+pub use ultimate::{Practical, Ultimate};
 pub use view::{Film, Viewed, view};

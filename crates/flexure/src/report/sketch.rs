@@ -103,6 +103,15 @@ impl Sketch {
         of(&self.error, stroke)
     }
 
+    /// The largest absolute value of the signal called `prefix` from a time on, joint by joint.
+    pub(super) fn largest(&self, prefix: &str, from: f64) -> Vec<f64> {
+        let of_joint = |(_, signal): &(usize, Thinned)| {
+            let late = signal.points().into_iter().filter(|(t, _)| *t >= from);
+            late.fold(0.0, |largest: f64, (_, value)| largest.max(value.abs()))
+        };
+        self.signals(prefix).iter().map(of_joint).collect()
+    }
+
     /// Its time axis.
     pub(super) fn span(&self) -> Range {
         self.span.filter(|span| span.low < span.high).unwrap_or(Range { low: 0.0, high: 1.0 })

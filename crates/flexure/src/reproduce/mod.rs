@@ -1,6 +1,7 @@
 //! A scenario with everything that comes out of it, and the experiments of the paper.
 
 mod outputs;
+mod practical;
 
 use std::path::Path;
 
@@ -13,23 +14,27 @@ use crate::prove::question::{Direct, Proof, Question, Region, certified, prove};
 use crate::prove::standing::is_about;
 use crate::prove::summary::ProofSummary;
 use crate::report::{
-    CertificateReport, FigureOptions, Film, JointMarks, RunReport, RunsReport, Scene, Sketch, Verdict,
-    Viewed, assumptions, comparison, pushes, run_figure, view,
+    CertificateReport, FigureOptions, Film, JointMarks, Practical, RunReport, RunsReport, Scene, Sketch,
+    Ultimate, Verdict, Viewed, assumptions, comparison, pushes, run_figure, view,
 };
 use crate::sampled::{Sampled, probe};
 use crate::scenario::{Hold, Scenario, load_scenario};
 use crate::simulate::{Excerpt, LimitWatch, Run, Sink, Summary, TraceFile, run_into};
 
 pub use outputs::{trace_file, write_certificates, write_experiment, write_report};
+pub use practical::practical;
 
-/// The experiments of the paper: each shaping function from rest off the reference, and from a smooth start.
-pub const REPRODUCED: [&str; 6] = [
+/// The experiments of the paper: each shaping function from rest off the reference, and from a smooth start; those that the paper
+/// measured also with encoders and filtered velocities.
+pub const REPRODUCED: [&str; 8] = [
     "two-link-tanh",
     "two-link-linear",
     "two-link-coupled-tanh",
     "two-link-tanh-smooth",
     "two-link-linear-smooth",
     "two-link-coupled-tanh-smooth",
+    "two-link-tanh-sensors",
+    "two-link-coupled-tanh-sensors",
 ];
 
 /// A scenario that was run.
@@ -51,6 +56,8 @@ pub struct Experiment {
     pub figure: Scene,
     /// Whether a proved bound of its errors is in the figure.
     pub proved: bool,
+    /// What its errors come down to, if it has imperfections and came to its end.
+    pub ultimate: Option<Ultimate>,
 }
 
 impl Experiment {
@@ -90,6 +97,7 @@ impl Experiment {
         };
         let subtitle = describe(&scenario) + &ended;
         let proved = decay.is_some();
+        let ultimate = Ultimate::of(&scenario, &run, &sketch);
         let options = FigureOptions {
             title: scenario.name.clone(),
             subtitle,
@@ -97,9 +105,10 @@ impl Experiment {
             happenings: pushes(&scenario),
             settled: run.summary.settling_time,
             decay,
+            ultimate: ultimate.clone(),
         };
         let figure = run_figure(&sketch, &options);
-        Ok(Self { scenario, run, sampled, exceeded, sketch, film, figure, proved })
+        Ok(Self { scenario, run, sampled, exceeded, sketch, film, figure, proved, ultimate })
     }
 }
 
@@ -195,11 +204,16 @@ pub fn reproduce(
         .collect()
 }
 
-/// The report of some experiments: those that join their reference smoothly first, with their rates; those from rest are warnings.
+/// The report of some experiments: those that join their reference smoothly first, with their rates; those from rest, and those with
+/// imperfections, are warnings.
 ///
 /// # Errors
 /// As [`Scenario::open`].
-pub fn report(experiments: &[Experiment], certificates: &[Certified]) -> Result<RunsReport, Problems> {
+pub fn report(
+    experiments: &[Experiment],
+    certificates: &[Certified],
+    practical: &[Practical],
+) -> Result<RunsReport, Problems> {
     let smooth = || experiments.iter().filter(|experiment| experiment.scenario.smooth_start.is_some());
     let sketches: Vec<_> = smooth().map(|e| (e.scenario.name.as_str(), &e.sketch)).collect();
     let verdict = verdict_of(experiments, certificates);
@@ -216,6 +230,7 @@ pub fn report(experiments: &[Experiment], certificates: &[Certified]) -> Result<
         runs: experiments.iter().map(run_report).collect(),
         comparison_svg: (!sketches.is_empty()).then(|| comparison(&sketches).svg()),
         certificates: certificates.iter().map(certificate_report).collect(),
+        practical: practical.to_vec(),
         assumptions: assumptions(experiments.iter().map(|experiment| &experiment.scenario)),
         provenance: vec![
             format!("flexure {}", env!("CARGO_PKG_VERSION")),
@@ -228,10 +243,13 @@ pub fn report(experiments: &[Experiment], certificates: &[Certified]) -> Result<
 /// The run that moves in the report.
 const SHOWN: [&str; 1] = ["two-link-tanh-smooth"];
 
-/// What came of the runs that join their reference smoothly, what the others take, and what was proved of their laws.
+/// What came of the runs that join their reference smoothly, what the others take, what those with imperfections come down to, and what
+/// was proved of their laws.
 fn verdict_of(experiments: &[Experiment], certificates: &[Certified]) -> Verdict {
+    let (ideal, real): (Vec<&Experiment>, Vec<&Experiment>) =
+        experiments.iter().partition(|experiment| experiment.scenario.imperfections.is_empty());
     let (smooth, from_rest): (Vec<&Experiment>, Vec<&Experiment>) =
-        experiments.iter().partition(|experiment| experiment.scenario.smooth_start.is_some());
+        ideal.into_iter().partition(|experiment| experiment.scenario.smooth_start.is_some());
     let largest = |runs: &[&Experiment], of: fn(&Summary) -> f64| {
         runs.iter().map(|experiment| of(&experiment.run.summary)).fold(0.0, f64::max)
     };
@@ -242,9 +260,18 @@ fn verdict_of(experiments: &[Experiment], certificates: &[Certified]) -> Verdict
     });
     let rates: Vec<String> = rates.collect();
     let (error, prefix) = small(largest(&smooth, |summary| summary.max_abs_e_l));
+    let bounds: Vec<String> = real.iter().filter_map(|experiment| experiment.comes_down_to()).collect();
+    let practical = if bounds.is_empty() {
+        String::new()
+    } else {
+        format!(
+            " With encoders and filtered velocities link errors come down to a bound: {}.",
+            bounds.join(", ")
+        )
+    };
     let words = format!(
         "{follow} of {} runs that join the reference smoothly follow it: link errors of {} {prefix}rad at most, torques of {} N m. The {} from rest \
-         off it take up to {} N m. Proved contraction rates for position errors of up to 3 rad, in continuous time: {}.",
+         off it take up to {} N m.{practical} Proved contraction rates for position errors of up to 3 rad, in continuous time: {}.",
         smooth.len(),
         error,
         engineering(largest(&smooth, |summary| summary.max_abs_u_m)),
@@ -252,7 +279,9 @@ fn verdict_of(experiments: &[Experiment], certificates: &[Certified]) -> Verdict
         engineering(largest(&from_rest, |summary| summary.max_abs_u_m)),
         if rates.is_empty() { "none".to_owned() } else { rates.join(", ") }
     );
-    Verdict { good: Some(follow == smooth.len() && rates.len() == certificates.len()), words }
+    let good =
+        follow == smooth.len() && rates.len() == certificates.len() && real.iter().all(|run| run.is_good());
+    Verdict { good: Some(good), words }
 }
 
 impl Experiment {
@@ -262,6 +291,13 @@ impl Experiment {
         divergence.is_none()
             && summary.following.follows
             && self.sampled.as_ref().is_none_or(|loop_| loop_.stable)
+    }
+
+    /// Its shaping function and its ultimate bound, if it has one.
+    fn comes_down_to(&self) -> Option<String> {
+        let links = self.ultimate.as_ref()?.links.iter().copied().fold(0.0, f64::max);
+        let (error, prefix) = small(links);
+        Some(format!("{} {error} {prefix}rad", self.scenario.controller.phi().unwrap_or_default()))
     }
 
     /// For its animation: whether it is good, if that is known, and what came of it in a sentence.
@@ -281,7 +317,8 @@ const INTRODUCTION: &str = "The experiments of Reyes-Báez, van der Schaft, Jaya
     contraction based controllers for tracking of flexible-joints port-Hamiltonian robots: theory and experiments”, \
     in simulation: a planar two-link arm with elastic joints follows sin t on both joints under the three shaping \
     functions of the paper. Each runs twice: from rest at zero, where the reference already moves at 1 rad/s, and \
-    with a reference that joins the sine smoothly from rest.";
+    with a reference that joins the sine smoothly from rest. The two that the paper measured on the arm run once more with \
+    encoders and a velocity filter: there it found practical convergence.";
 
 fn certificate_report(certified: &Certified) -> CertificateReport {
     let scenario = &certified.scenario;
@@ -302,7 +339,11 @@ fn run_report(experiment: &Experiment) -> RunReport {
         summary: experiment.run.summary.clone(),
         figure_svg: experiment.figure.svg(),
         description: outcome(&experiment.run.summary),
-        warning: experiment.scenario.smooth_start.is_none().then(|| from_rest(experiment)),
+        warning: match (experiment.scenario.smooth_start, &experiment.ultimate) {
+            (None, _) => Some(from_rest(experiment)),
+            (Some(_), Some(_)) => Some(noisy(&experiment.run.summary)),
+            (Some(_), None) => None,
+        },
     }
 }
 
@@ -317,6 +358,16 @@ fn from_rest(Experiment { scenario, run, .. }: &Experiment) -> String {
         } else {
             "nothing limits torques here, and such a start shows what the formulas do, not what a drive could"
         }
+    )
+}
+
+/// What is to be minded of a run with imperfections.
+fn noisy(summary: &Summary) -> String {
+    format!(
+        "the torque changes by {} N m from one control instant to the next, root mean square, and goes up to {} N m: nothing limits torques here, and \
+         such noise shows what the gains make of the readings, not what a drive could. Nothing is proved of this loop.",
+        engineering(summary.rms_torque_change),
+        engineering(summary.max_abs_u_m)
     )
 }
 

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::files::{Unfinished, WriteError, create_folder, folder_of, write_atomic};
-use crate::report::{html, write_certificate, write_figure};
+use crate::report::{Practical, html, write_certificate, write_figure};
 use crate::reproduce::{Certified, Experiment, certificate_name, report};
 use crate::scenario::Scenario;
 use crate::simulate::{Excerpt, TraceFile};
@@ -52,10 +52,11 @@ pub fn write_report(
     folder: &Path,
     experiments: &[Experiment],
     certificates: &[Certified],
+    practical: &[Practical],
 ) -> Result<PathBuf, Unfinished> {
     create_folder(folder)?;
     let path = folder.join("report.html");
-    let page = html(&report(experiments, certificates)?);
+    let page = html(&report(experiments, certificates, practical)?);
     write_atomic(&path, |out| out.write_all(page.as_bytes()))?;
     Ok(path)
 }

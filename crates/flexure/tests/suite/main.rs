@@ -39,6 +39,7 @@ mod mangled_files;
 mod model_error;
 mod plant;
 mod plant_files;
+mod practical;
 mod random_robots;
 mod rates;
 mod real_loop;

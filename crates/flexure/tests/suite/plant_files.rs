@@ -140,7 +140,7 @@ fn results_say_what_the_law_does_not_know() {
     assert!(summary.energy_drift < 1e-9, "{summary:?}");
     let said = "unknown to the law: rotor coupling, spring hardening";
     assert!(experiment.figure.svg().contains("with rotor coupling, spring hardening"));
-    assert!(html(&report(std::slice::from_ref(&experiment), &[]).unwrap()).contains(said));
+    assert!(html(&report(std::slice::from_ref(&experiment), &[], &[]).unwrap()).contains(said));
     let table = summary_table(std::slice::from_ref(summary), WIDTH);
     assert!(table.contains("unknown") && table.contains("rotor coupling"), "{table}");
 }

@@ -1,6 +1,6 @@
 //! The figure of a run with many joints: a row of small panels for each.
 
-use super::run::{FigureOptions, falling, legend_of_bounds};
+use super::run::{FigureOptions, bounds_of, legend_of_bounds};
 use crate::files::number::{power_of_ten, significant};
 use crate::report::Sketch;
 use crate::report::draw::axes::{Axes, Axis};
@@ -14,7 +14,7 @@ use crate::report::draw::sheet::{MARGIN, line_legend, page};
 use crate::report::draw::style::{INK, LIMIT, MUTED, Stroke, bold, letters};
 use crate::report::draw::ticks;
 use crate::simulate::SETTLED;
-use crate::units::{self, of_joints};
+use crate::units;
 
 const WIDTH: f64 = 1200.0;
 /// Height of a row, and of the frames in it [px].
@@ -70,7 +70,7 @@ pub fn joint_panels(run: &Sketch, options: &FigureOptions) -> Scene {
         );
         let seen = Errors {
             curves: &drawn(&errors, joint),
-            bounds: &bounds(options, joint),
+            bounds: &bounds_of(options, |errors| errors.get(joint).copied()),
             settled: options.settled,
         };
         marked.settled |= row.errors(&mut scene, place(1), &seen, &marks);
@@ -99,13 +99,6 @@ fn share(mut curves: Vec<Curve>, marks: &JointMarks) -> (Vec<Curve>, &'static st
         .flat_map(|curve| &mut curve.values)
         .for_each(|value| *value *= 100.0 / marks.torque_limit);
     (curves, "% of the limit", [-100.0, 100.0])
-}
-
-/// What is proved of the errors of a joint.
-fn bounds(options: &FigureOptions, joint: usize) -> Vec<Falling> {
-    let Some(decay) = &options.decay else { return Vec::new() };
-    let starts = decay.links.get(joint).zip(decay.motors.get(joint));
-    starts.map_or_else(Vec::new, |(link, motor)| falling(decay, [*link, *motor]))
 }
 
 /// What the panel of a joint's errors shows.
@@ -250,10 +243,7 @@ fn legend(marked: Marked, options: &FigureOptions, happenings: &[Happening]) -> 
         entry("reference", Stroke::reference()),
     ];
     if marked.settled {
-        let within = format!(
-            "1 {}",
-            of_joints(units::ANGLE, "m", &options.joints.iter().map(|joint| joint.kind).collect::<Vec<_>>())
-        );
+        let within = format!("1 {}", options.angles("m"));
         let when = if options.settled.is_some() { ", and settled below it" } else { "" };
         entries.push((within + when, DOTTED));
     }

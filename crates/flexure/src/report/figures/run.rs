@@ -5,9 +5,8 @@
 //! Errors and momentum errors are absolute values on a logarithmic axis: an exponential decay is a straight line.
 
 use super::joint_panels::joint_panels;
-use crate::files::number::significant;
+use crate::files::number::{short, significant, small};
 use crate::prove::decay::Decay;
-use crate::report::Sketch;
 use crate::report::draw::curve::Curve;
 use crate::report::draw::falling::Falling;
 use crate::report::draw::marks::{self, Happening, JointMarks, What};
@@ -16,8 +15,9 @@ use crate::report::draw::range::Range;
 use crate::report::draw::scene::Scene;
 use crate::report::draw::sheet::{MARGIN, line_legend, page};
 use crate::report::draw::style::{INK, LIMIT, Stroke, hue};
+use crate::report::{Sketch, Ultimate};
 use crate::robot::JointKind;
-use crate::units;
+use crate::units::{self, of_joints};
 
 /// What is written above the panels.
 #[derive(Clone, Debug, Default)]
@@ -34,12 +34,20 @@ pub struct FigureOptions {
     pub settled: Option<f64>,
     /// What is proved of the position errors of this loop, if anything is.
     pub decay: Option<Decay>,
+    /// What its position errors come down to, of a loop that converges practically.
+    pub ultimate: Option<Ultimate>,
 }
 
 impl FigureOptions {
     /// The joint with this index, from 0.
     pub(crate) fn joint(&self, index: usize) -> JointMarks {
         self.joints.get(index).cloned().unwrap_or_else(|| JointMarks::named(format!("joint {}", index + 1)))
+    }
+
+    /// The unit of position errors of all joints, with a prefix.
+    pub(crate) fn angles(&self, prefix: &str) -> String {
+        let kinds: Vec<JointKind> = self.joints.iter().map(|joint| joint.kind).collect();
+        of_joints(units::ANGLE, prefix, &kinds)
     }
 
     /// Limits of the joints, each in its colour.
@@ -74,6 +82,9 @@ const WIDTH: f64 = 1200.0;
 pub(crate) const BOUND: Stroke = Stroke { color: INK, width: 1.8, dash: &[8.0, 4.0, 2.0, 4.0] };
 /// Of links and of motors.
 const BOUNDS: [Stroke; 2] = [BOUND, Stroke { width: 1.0, dash: &[4.0, 3.0, 1.0, 3.0], ..BOUND }];
+/// The same of what was measured.
+const LEVELS: [Stroke; 2] =
+    [Stroke { dash: &[14.0, 4.0], ..BOUND }, Stroke { width: 1.0, dash: &[7.0, 2.0], ..BOUND }];
 
 /// Positions, errors, momentum errors and torques of `run` over time.
 ///
@@ -138,28 +149,51 @@ pub fn four_panel(run: &Sketch, options: &FigureOptions) -> Scene {
     four(&view, &panels, options, &legend(joints, options, &view.happenings))
 }
 
-/// What is proved of the errors of all links and of all motors: the bounds of the joints that may have the largest.
+/// What bounds the errors of all links and of all motors: the bounds of the joints that have the largest.
 fn bounds(options: &FigureOptions) -> Vec<Falling> {
-    let Some(decay) = &options.decay else { return Vec::new() };
-    let largest = |errors: &[f64]| errors.iter().copied().fold(0.0, f64::max);
-    falling(decay, [largest(&decay.links), largest(&decay.motors)])
+    bounds_of(options, |errors| Some(largest(errors)))
 }
 
-/// The proved bounds of errors that start with these, of a link and of a motor.
-pub(crate) fn falling(decay: &Decay, starts: [f64; 2]) -> Vec<Falling> {
-    let bound = |(start, stroke)| Falling { start, rate: decay.rate, stroke };
-    starts.into_iter().zip(BOUNDS).map(bound).collect()
+/// The bounds of errors of links and of motors, each the one that `of` chooses from those of the joints: what is proved, and what the
+/// errors came down to.
+pub(crate) fn bounds_of(options: &FigureOptions, of: impl Fn(&[f64]) -> Option<f64>) -> Vec<Falling> {
+    let lines = |errors: [&Vec<f64>; 2], from, rate, strokes: [Stroke; 2]| {
+        let chosen = errors.map(|errors| of(errors).filter(|&bound| bound > 0.0));
+        let line =
+            |(start, stroke): (Option<f64>, Stroke)| Some(Falling { start: start?, from, rate, stroke });
+        chosen.into_iter().zip(strokes).filter_map(line).collect::<Vec<_>>()
+    };
+    let proved =
+        options.decay.as_ref().map(|decay| lines([&decay.links, &decay.motors], 0.0, decay.rate, BOUNDS));
+    let measured = options
+        .ultimate
+        .as_ref()
+        .map(|ultimate| lines([&ultimate.links, &ultimate.motors], ultimate.from, 0.0, LEVELS));
+    [proved, measured].into_iter().flatten().flatten().collect()
 }
 
-/// Proved bounds in the legend: none of a run of which nothing is proved.
+/// Bounds in the legend: none of a run of which nothing is proved, and that has no imperfections.
 pub(crate) fn legend_of_bounds(options: &FigureOptions) -> Vec<(String, Stroke)> {
-    let Some(decay) = &options.decay else { return Vec::new() };
-    let rate = significant(decay.rate, 3);
-    let words = [
-        format!("proved bound of eₗ in continuous time, shrinking at {rate} 1/s"),
-        "the same of eₘ".to_owned(),
-    ];
-    words.into_iter().zip(BOUNDS).collect()
+    let proved = options.decay.as_ref().map(|decay| {
+        let rate = significant(decay.rate, 3);
+        [
+            (format!("proved bound of eₗ in continuous time, shrinking at {rate} 1/s"), BOUNDS[0]),
+            ("the same of eₘ".to_owned(), BOUNDS[1]),
+        ]
+    });
+    let measured = options.ultimate.iter().flat_map(|ultimate| {
+        let from = short(ultimate.from, 4);
+        let sides = [("eₗ", &ultimate.links), ("eₘ", &ultimate.motors)].into_iter().zip(LEVELS);
+        sides.filter(|((_, errors), _)| !errors.is_empty()).map(move |((name, errors), stroke)| {
+            let (error, prefix) = small(largest(errors));
+            (format!("largest {name} from {from} s on: {error} {}", options.angles(prefix)), stroke)
+        })
+    });
+    proved.into_iter().flatten().chain(measured).collect()
+}
+
+fn largest(errors: &[f64]) -> f64 {
+    errors.iter().copied().fold(0.0, f64::max)
 }
 
 /// Four panels on one page, with a title and one legend.

@@ -7,6 +7,7 @@ pub(crate) mod kit;
 pub(crate) mod leaderboard;
 pub(crate) mod margins;
 pub(crate) mod markdown;
+pub(crate) mod practical;
 pub(crate) mod run;
 pub(crate) mod runs;
 pub(crate) mod sweep;

@@ -5,8 +5,10 @@ use maud::{Markup, PreEscaped, html as markup};
 use super::certificates::{self, CertificateReport};
 use super::kit::{Page, Section, Verdict, figure};
 use super::markdown::{ERRATA, subscripts};
+use super::practical;
 use crate::files::number::{NONE, engineering};
 use crate::report::tables::summary::proved_rate;
+use crate::report::ultimate::Practical;
 use crate::simulate::Summary;
 use crate::units;
 
@@ -27,6 +29,8 @@ pub struct RunsReport {
     pub motion: Option<String>,
     /// Summaries of the proofs, a table each.
     pub certificates: Vec<CertificateReport>,
+    /// How far runs with imperfections converge, a table of all.
+    pub practical: Vec<Practical>,
     /// Numbers that no source gives.
     pub assumptions: Vec<AssumedNumber>,
     /// How the numbers came about: version, seeds, what makes them reproducible.
@@ -75,6 +79,13 @@ pub fn html(report: &RunsReport) -> String {
             "certificates",
             "Proved rates",
             certificates::section(&report.certificates),
+        ));
+    }
+    if !report.practical.is_empty() {
+        sections.push(Section::new(
+            "practical",
+            "Practical convergence",
+            practical::section(&report.practical),
         ));
     }
     sections.push(Section::new("summary", "All runs in numbers", summary_table(runs)));

@@ -7,6 +7,7 @@ pub(crate) mod grid;
 pub(crate) mod identified;
 pub(crate) mod leaderboard;
 pub(crate) mod margins;
+pub(crate) mod practical;
 pub(crate) mod proof;
 pub(crate) mod summary;
 pub(crate) mod sweep;

@@ -9,8 +9,8 @@ use flexure::report::AssumedNumber;
 use flexure::report::RunsReport;
 use flexure::report::decimate::{Thinned, bucket_size, decimate, envelope};
 use flexure::report::{
-    CertificateReport, FigureOptions, JointMarks, RunReport, Sketch, Verdict, WIDTH, certificate_table,
-    comparison, four_panel, html, proof_table, summary_table,
+    CertificateReport, FigureOptions, JointMarks, Practical, RunReport, Sketch, Ultimate, Verdict, WIDTH,
+    certificate_table, comparison, four_panel, html, proof_table, run_figure, summary_table,
 };
 use flexure::scenario::load_scenario;
 use flexure::simulate::{Summary, Trace};
@@ -288,6 +288,33 @@ fn pictures_are_1600_wide_and_bad_ones_are_errors() {
     assert!(error.height > 10.0 * error.width, "{error}");
 }
 
+/// A line for the links and one for the motors, in the panel of all joints or in that of each, in front of their numbers.
+#[test]
+fn what_errors_come_down_to_is_a_line_and_in_the_legend() {
+    for (joints, lines) in [(2, 2), (5, 10)] {
+        let sketch = Sketch::of(&fake::trace(joints, 3_000, 6.0));
+        let drawn = |ultimate| {
+            let svg = run_figure(&sketch, &FigureOptions { ultimate, ..FigureOptions::default() }).svg();
+            check(&svg);
+            svg
+        };
+        let [mut links, mut motors] = [1e-3, 1e-2].map(|error| vec![error; joints]);
+        (links[1], motors[1]) = (1.25e-3, 2e-2);
+        let found =
+            Ultimate { from: 2.0, links, motors, link_momenta: Vec::new(), motor_momenta: Vec::new() };
+        let (without, with) = (drawn(None), drawn(Some(found.clone())));
+        assert_eq!(curves(&with), curves(&without) + lines);
+        let said = texts(&with);
+        for entry in ["largest eₗ from 2 s on: 1.25 mrad", "largest eₘ from 2 s on: 20.0 mrad"] {
+            assert!(said.iter().any(|text| text == entry), "{entry} in {said:?}");
+        }
+        // Laws without motor errors have half of them.
+        let links = drawn(Some(Ultimate { motors: Vec::new(), ..found }));
+        assert_eq!(curves(&links), curves(&without) + lines / 2);
+        assert!(!texts(&links).iter().any(|text| text.contains("largest eₘ")));
+    }
+}
+
 fn report() -> RunsReport {
     let trace = fake::trace(2, 3_000, 6.0);
     let run = |name: &str| RunReport {
@@ -308,6 +335,7 @@ fn report() -> RunsReport {
             phi: "<script>phi</script>".to_owned(),
             file: Some("<script>.certificate.json".to_owned()),
         }],
+        practical: vec![practical()],
         assumptions: vec![AssumedNumber {
             file: "robots/<script>.toml".to_owned(),
             key: "joints.stiffness".to_owned(),
@@ -315,6 +343,25 @@ fn report() -> RunsReport {
             note: "not in the paper's table".to_owned(),
         }],
         provenance: vec!["flexure 0.1.0".to_owned()],
+    }
+}
+
+fn practical() -> Practical {
+    let errors = vec![1.25e-3, 2e-3];
+    let ultimate = Ultimate {
+        from: 3.7,
+        links: errors.clone(),
+        motors: errors.clone(),
+        link_momenta: errors.clone(),
+        motor_momenta: errors,
+    };
+    Practical {
+        name: "<script>practical".to_owned(),
+        phi: "tanh".to_owned(),
+        joints: vec!["<script>".to_owned(), "elbow".to_owned()],
+        steps: vec![5e-4, 4e-4],
+        alone: [("encoder", ultimate.clone())].into(),
+        ultimate,
     }
 }
 
@@ -351,6 +398,10 @@ fn the_page_stands_alone_and_comes_out_the_same() {
     assert!(!page.contains("0.123"), "the wall-clock time has no place in a reproducible page");
     assert_eq!(page, html(&report()));
     assert!(page.contains("69.0") && page.contains("variational pH"), "the certificate's row");
+    assert!(
+        page.contains("encoder alone") && page.contains("an encoder step is 0.5 and 0.4 mrad"),
+        "what errors come down to"
+    );
 }
 
 #[test]
