@@ -79,12 +79,22 @@ pub(super) fn quarters<T: Copy, const A: usize, const N: usize>(x: &Vector<T, N>
     core::array::from_fn(|k| part(x, k * A))
 }
 
+/// A matrix of 4 × 4 blocks of `A` rows.
+#[inline]
+pub(super) fn squares<T: Copy, const A: usize, const N: usize>(
+    blocks: [[Matrix<T, A, A>; 4]; 4],
+) -> Matrix<T, N, N> {
+    const { assert!(4 * A == N, "the blocks make up the whole") }
+    let blocks = Matrix(blocks);
+    Matrix::from_fn(|i, j| blocks[(i / A, j / A)][(i % A, j % A)])
+}
+
 /// A block-diagonal matrix of four blocks of `A` rows.
 #[inline]
 pub(super) fn four<T: Scalar, const A: usize, const N: usize>(
     diagonal: [Matrix<T, A, A>; 4],
 ) -> Matrix<T, N, N> {
-    const { assert!(4 * A == N, "the blocks make up the whole") }
-    let blocks = Vector(diagonal);
-    Matrix::from_fn(|i, j| if i / A == j / A { blocks[i / A][(i % A, j % A)] } else { T::ZERO })
+    let diagonal = Vector(diagonal);
+    let blocks = Matrix::<_, 4, 4>::from_fn(|i, j| if i == j { diagonal[i] } else { Matrix::ZERO });
+    squares(blocks.0)
 }

@@ -7,6 +7,7 @@ use crate::scalar::{Over, Piecewise, Scalar};
 use crate::virtual_system::{ErrorState, closed_loop};
 
 use super::blocks::{four, join, quarters, stack};
+use super::instant::after;
 use super::{ControlSystem, MatrixField};
 
 /// The error x̃ = (q̃_l, q̃_m, σ_l, σ_m), of `D = 4 N` numbers, under v-CBC while the robot passes through `motion`: a [`ControlSystem`] with
@@ -24,21 +25,6 @@ pub struct ErrorLoop<'a, C, L, Pl, Pm, const N: usize> {
     pub motion: Motion<C, N>,
 }
 
-impl<C, L, Pl, Pm, const N: usize> ErrorLoop<'_, C, L, Pl, Pm, N>
-where
-    C: Scalar,
-    L: Links<C, N>,
-    Pl: Shaping<C, N>,
-    Pm: Shaping<C, N>,
-{
-    /// The real motion at `t` in s.
-    #[inline]
-    pub fn motion_at<T: Over<C>>(&self, t: T) -> Motion<T, N> {
-        let motion = self.motion.lift::<T>();
-        Motion { q_l: motion.q_l + motion.v_l.scaled(t), q_m: motion.q_m + motion.v_m.scaled(t), ..motion }
-    }
-}
-
 impl<C, L, Pl, Pm, const N: usize, const D: usize, const M: usize> ControlSystem<C, D, M>
     for ErrorLoop<'_, C, L, Pl, Pm, N>
 where
@@ -50,7 +36,7 @@ where
     #[inline]
     fn drift<T: Over<C> + Piecewise>(&self, x: &Vector<T, D>, t: T) -> Vector<T, D> {
         let x = ErrorState::from_vector(x);
-        closed_loop(self.robot, self.law, &x, &self.motion_at(t), &Input::ZERO).to_vector()
+        closed_loop(self.robot, self.law, &x, &after(&self.motion, t), &Input::ZERO).to_vector()
     }
     /// Ψ.
     #[inline]
@@ -61,7 +47,7 @@ where
     fn output<T: Over<C> + Piecewise>(&self, x: &Vector<T, D>, t: T) -> Vector<T, M> {
         const { assert!(2 * N == M, "an input and an output for each momentum") }
         let error = ErrorState::<T, N>::from_vector(x);
-        let s_l = self.robot.links.factor(&self.motion_at(t).q_l).solve(&error.sigma_l);
+        let s_l = self.robot.links.factor(&after(&self.motion, t).q_l).solve(&error.sigma_l);
         let s_m = self.robot.motor_inertia.map(C::recip).diag_mul(&error.sigma_m);
         stack(&s_l, &s_m)
     }
@@ -77,7 +63,7 @@ where
 {
     #[inline]
     fn at<T: Over<C> + Piecewise>(&self, x: &Vector<T, D>, t: T) -> Matrix<T, D, D> {
-        let factor = self.robot.links.factor(&self.motion_at(t).q_l);
+        let factor = self.robot.links.factor(&after(&self.motion, t).q_l);
         let unit = Matrix::<T, N, N>::identity();
         let inverse_mass = Matrix(core::array::from_fn(|j| factor.solve(&unit.row(j)).0));
         let Pi_l = Matrix::diagonal(&self.law.link.metric.at(&ErrorState::<T, N>::from_vector(x).e_l));

@@ -24,3 +24,14 @@ impl<C: Scalar, F: MatrixField<C, N>, const N: usize> MatrixField<C, N> for &F {
         (*self).at(x, t)
     }
 }
+
+/// The weight Θ of a metric, upper triangular with ΘᵀΘ = Π: the Riemannian length √(δxᵀ Π δx) is the 2-norm of Θ δx.
+#[derive(Clone, Copy, Debug)]
+pub struct Root<F>(pub F);
+
+impl<C: Scalar, F: MatrixField<C, N>, const N: usize> MatrixField<C, N> for Root<F> {
+    #[inline]
+    fn at<T: Over<C> + Piecewise>(&self, x: &Vector<T, N>, t: T) -> Matrix<T, N, N> {
+        self.0.at(x, t).ldl().root()
+    }
+}

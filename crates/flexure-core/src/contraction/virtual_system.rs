@@ -214,9 +214,9 @@ where
 
 /// A virtual system in closed loop with its real system: the state (x, x_v), of `D = 2 N` numbers.
 #[derive(Clone, Copy, Debug)]
-pub struct Together<V, const N: usize, const M: usize>(pub V);
+pub struct Together<'a, V, const N: usize, const M: usize>(pub &'a V);
 
-impl<C, V, const N: usize, const M: usize, const D: usize> Dynamics<C, D> for Together<V, N, M>
+impl<C, V, const N: usize, const M: usize, const D: usize> Dynamics<C, D> for Together<'_, V, N, M>
 where
     C: Scalar,
     V: VirtualSystem<C, N, M>,

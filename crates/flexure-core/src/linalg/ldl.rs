@@ -1,6 +1,8 @@
 //! Pivot-free `L D Lᵀ`: the same arithmetic for every symmetric positive definite matrix, so it runs on intervals,
 //! lanes and jets as it runs on `f64`.
 
+use core::cmp::Ordering;
+
 use super::{Matrix, Vector};
 use crate::scalar::Scalar;
 
@@ -48,6 +50,16 @@ impl<S: Scalar, const N: usize> Ldl<S, N> {
     #[inline]
     pub fn pivots(&self) -> &Vector<S, N> {
         &self.pivots
+    }
+
+    /// The upper triangular matrix `R = √D Lᵀ`, with `A = Rᵀ R`.
+    #[inline]
+    pub fn root(&self) -> Matrix<S, N, N> {
+        Matrix::from_fn(|i, j| match i.cmp(&j) {
+            Ordering::Less => self.pivots[i].sqrt() * self.lower[(j, i)],
+            Ordering::Equal => self.pivots[i].sqrt(),
+            Ordering::Greater => S::ZERO,
+        })
     }
 
     /// `A⁻¹ b`, by substitution with L, D and Lᵀ.

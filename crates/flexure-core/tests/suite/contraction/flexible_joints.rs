@@ -8,10 +8,11 @@ use flexure_core::control::{Input, Shaping, Vcbc};
 use flexure_core::linalg::{Matrix, Vector};
 use flexure_core::model::{Fjr, Links, State};
 use flexure_core::reference::{Reference, Sine};
-use flexure_core::virtual_system::{Structure, error_coordinates};
+use flexure_core::robots::Pendulum;
+use flexure_core::virtual_system::{ErrorState, Structure, error_coordinates};
 
 use super::{norm, solution};
-use crate::common::{Numbers, branched, coupled_tanh, flexible, gains, linear, planar, tanh};
+use crate::common::{Numbers, coupled_tanh, flexible, gains, linear, planar, tanh};
 
 type Flexible<L, P, const N: usize> = FlexibleJoints<f64, L, P, P, Sine<f64, N>, N>;
 
@@ -81,15 +82,77 @@ fn method<L: Links<f64, N>, P: Shaping<f64, N>, const N: usize, const N2: usize,
     matrices_are_close(&linearised.state, &jacobian_of_structure(&structure), 1e-11);
 }
 
-#[test]
-fn planar_arm() {
-    let r = &mut Numbers(1);
+/// Corollaries feedback-interconnection and strucutr-preserving by the general functions: the closed loop is differentially passive from ω to M⁻¹σ
+/// in its metric, R = 0 and Q = 2 diag(Π ∂φ, M⁻¹ (D + K_d) M⁻¹), whatever the arm does.
+fn port<L: Links<f64, N>, P: Shaping<f64, N>, const N: usize, const N2: usize, const D: usize>(
+    robot: &Fjr<f64, L, N>,
+    law: &Vcbc<f64, P, P, N>,
+    r: &mut Numbers,
+) {
+    let error = ErrorLoop { robot, law, motion: r.motion(1.5) };
+    let (x, omega): (Vector<f64, D>, Vector<f64, N2>) = (r.vector(1.5), r.vector(5.0));
+    let matrices = passivity_matrices(&error, &error, &x, &omega, 0.0);
+    matrices_are_close(&matrices.mismatch, &Matrix::ZERO, 1e-12);
+
+    let [dx, d_omega]: [Vector<f64, D>; 2] = [r.vector(1.0), r.vector(1.0)];
+    let d_omega: Vector<f64, N2> = Vector::from_fn(|i| d_omega[i]);
+    let balance = differential_passivity(&error, &error, &[x, dx], &[omega, d_omega], 0.0);
+    let state = ErrorState::from_vector(&x);
+    let structure = Structure::new(robot, law, &state, &error.motion);
+    let delta = ErrorState::<f64, N>::from_vector(&dx);
+    assert!((balance.storage - structure.storage(&delta)).abs() < 1e-11 * balance.storage);
+    let (s_l, s_m) = (structure.metric[2] * delta.sigma_l, structure.metric[3] * delta.sigma_m);
+    let slope_l = structure.metric[0] * law.link.shaping.slope(&state.e_l);
+    let slope_m = structure.metric[1] * law.motor.shaping.slope(&state.e_m);
+    let lost = delta.e_l.dot(&(slope_l * delta.e_l))
+        + delta.e_m.dot(&(slope_m * delta.e_m))
+        + s_l.dot(&(robot.link_damping + law.link.damping).diag_mul(&s_l))
+        + s_m.dot(&(robot.motor_damping + law.motor.damping).diag_mul(&s_m));
+    // What cancels is the coupling and δσᵀ Ṁ⁻¹ δσ, of the size of what is lost times the condition of M.
+    let expected = balance.supplied - lost;
+    assert!((balance.rate - expected).abs() < 1e-9 * lost.abs().max(1.0), "{balance:?} against {expected}");
+}
+
+fn sweep<L: Links<f64, N>, const N: usize, const N2: usize, const D: usize>(links: fn() -> L, seed: u64) {
+    let r = &mut Numbers(seed);
     for hardening in [false, true] {
         let law = gains(tanh, hardening, r);
-        method::<_, _, 2, 4, 8>(flexible(planar(), r), law, r);
+        method::<_, _, N, N2, D>(flexible(links(), r), law, r);
         let law = gains(linear, hardening, r);
-        method::<_, _, 2, 4, 8>(flexible(planar(), r), law, r);
+        method::<_, _, N, N2, D>(flexible(links(), r), law, r);
         let law = gains(coupled_tanh, hardening, r);
-        method::<_, _, 2, 4, 8>(flexible(planar(), r), law, r);
+        method::<_, _, N, N2, D>(flexible(links(), r), law, r);
     }
+    for _ in 0..5 {
+        port::<_, _, N, N2, D>(&flexible(links(), r), &gains(tanh, false, r), r);
+        port::<_, _, N, N2, D>(&flexible(links(), r), &gains(coupled_tanh, false, r), r);
+    }
+}
+
+#[test]
+fn planar_arm() {
+    sweep::<_, 2, 4, 8>(planar, 1);
+}
+
+#[test]
+fn pendulum_under_gravity() {
+    sweep::<_, 1, 2, 4>(|| Pendulum { inertia: 0.3, weight_moment: 4.0 }, 2);
+}
+
+/// Theorem partialcontraction: the robot under u = ζ(x, x, t) and its virtual system from elsewhere meet, and both meet the reference.
+#[test]
+fn robot_and_virtual_system_meet_on_the_reference() {
+    let r = &mut Numbers(3);
+    let design: Flexible<_, _, 2> =
+        FlexibleJoints { robot: flexible(planar(), r), law: gains(linear, false, r), reference: sines(r) };
+    let x: Vector<f64, 8> = design.reference(&Vector::ZERO, 0.0);
+    let (away, elsewhere): (Vector<f64, 8>, Vector<f64, 8>) = (r.vector(0.02), r.vector(0.02));
+    let start: Vector<f64, 16> =
+        Vector::from_fn(|i| if i < 8 { x[i] + away[i] } else { x[i - 8] + elsewhere[i - 8] });
+    let (h, steps) = (2e-4, 10_000);
+    let end = solution(&Together::<_, 8, 2>(&design), start, h, steps);
+    let (x, x_v) = (Vector::from_fn(|i| end[i]), Vector::from_fn(|i| end[8 + i]));
+    let target: Vector<f64, 8> = design.reference(&x, h * steps as f64);
+    let (real, copy) = (norm(&(x - target)), norm(&(x_v - target)));
+    assert!(real < 1e-5 * norm(&away) && copy < 1e-5 * norm(&elsewhere), "{real:e} and {copy:e}");
 }

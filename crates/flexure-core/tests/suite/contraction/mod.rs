@@ -1,9 +1,16 @@
 //! The theory on systems of one's own: what the functions say against solutions, closed forms and each other.
 
+mod finsler;
 mod flexible_joints;
+mod full_matrices;
+#[cfg(feature = "interval")]
+mod measures;
 mod passivity;
+mod port_hamiltonian;
 mod solutions;
 mod systems;
+#[cfg(feature = "interval")]
+mod virtual_systems;
 
 use flexure_core::contraction::{Dynamics, runge_kutta};
 use flexure_core::linalg::Vector;
