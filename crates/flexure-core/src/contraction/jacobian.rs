@@ -37,7 +37,7 @@ where
     let [theta, theta_rate] = field_rate(weight, x, &system.rate(x, t), t);
     let transformed = theta_rate + theta * system.jacobian(x, t);
     let factor = (theta.transpose() * theta).ldl();
-    // Row i of A Θ⁻¹ is the solution of ΘᵀΘ y = Θᵀ... transposed: (A Π⁻¹ Θᵀ)ᵀ = Θ Π⁻¹ Aᵀ.
+    // A Θ⁻¹ = (A Π⁻¹) Θᵀ, and the rows of A Π⁻¹ are Π⁻¹ times those of A.
     let solved = Matrix(transformed.0.map(|row| factor.solve(&Vector(row)).0));
     solved * theta.transpose()
 }

@@ -24,7 +24,7 @@ use super::{ControlSystem, Dynamics, MatrixField};
 ///
 /// Then the real state converges to the reference. Paper, theorem partialcontraction.
 ///
-/// A ball between magnets, pushed apart by a spring that hardens, in twenty lines:
+/// A scalar system with a cubic term:
 ///
 /// ```
 /// use flexure_core::contraction::{ControlSystem, VirtualSystem, generalised_jacobian, measure_2, runge_kutta};

@@ -8,7 +8,7 @@ use crate::scalar::Piecewise;
 /// It is the left Perron vector of the matrix with the entries A_ii and |A_ij|, whose Perron root the least measure is: there is a diagonal Θ
 /// with a negative measure if and only if that matrix is Hurwitz. Entries are positive where the matrix is irreducible.
 ///
-/// F. Blanchini and S. Miani, *Set-Theoretic Methods in Control*, 2nd ed., section 4.5; powers of the matrix by squaring.
+/// This is the theorem of Perron and Frobenius: w A ≤ μ w for a positive row w and the least μ.
 #[inline]
 pub fn diagonal_weight<S: Piecewise, const N: usize>(a: &Matrix<S, N, N>) -> Vector<S, N> {
     /// The power 2^40: what is left of other eigenvectors is rounding, unless two agree to 11 digits.

@@ -32,7 +32,7 @@ fn norms_and_their_upper_rates_are_those_of_lines() {
             [z.iter().map(f64::abs).sum(), z.iter().fold(0.0, |m: f64, x| m.max(x.abs()))]
         };
         for (norm, size) in NORMS.into_iter().zip([0, 1]) {
-            assert_eq!(norm.of(&z), sizes(&z)[size]);
+            assert_eq!(Vector([norm.of(&z)]), Vector([sizes(&z)[size]]));
             // Both are linear up to the next corner: rounding over h is what is left.
             let h = 1e-6;
             let ahead = (sizes(&(z + rate.scaled(h)))[size] - sizes(&z)[size]) / h;
@@ -84,7 +84,7 @@ fn finsler_functions_decay_along_solutions() {
             let mut state = Vector([x[0], x[1], delta[0], delta[1]]);
             let h = 0.01;
             for k in 0..300 {
-                let t = k as f64 * h;
+                let t = f64::from(k) * h;
                 let next = runge_kutta::<f64, f64, 4>(&prolonged, &state, t, h);
                 // The step of Runge–Kutta is exact to 1e-9.
                 assert!(value(&next, t + h) <= value(&state, t) * (-h).exp() * (1.0 + 1e-8));

@@ -113,7 +113,8 @@ fn rotations_find_eigenvalues() {
         let expected = 2.0 - 2.0 * ((k + 1) as f64 * core::f64::consts::PI / 8.0).cos();
         assert!((found - expected).abs() < 1e-14, "{found} against {expected}");
     }
-    assert_eq!(symmetric_eigenvalues(&Matrix::diagonal(&Vector([3.0, -1.0, 3.0]))).0, [3.0, -1.0, 3.0]);
+    let diagonal = Vector([3.0, -1.0, 3.0]);
+    assert_eq!(symmetric_eigenvalues(&Matrix::diagonal(&diagonal)), diagonal);
 }
 
 /// J̄ is the rate of z = Θ δx: along a solution that the error loop itself makes, with a weight that depends on the error, on the motion of the

@@ -7,6 +7,7 @@ mod full_matrices;
 mod measures;
 mod passivity;
 mod port_hamiltonian;
+mod sides;
 mod solutions;
 mod systems;
 #[cfg(feature = "interval")]

@@ -21,9 +21,10 @@ struct Capacitor {
     leak: f64,
 }
 
-/// A coil whose iron saturates: λ̇ = −R i + u, y = i = λ + λ³/3.
+/// A coil whose iron saturates: λ̇ = −R i + u, y = i = λ + b λ³.
 struct Iron {
     resistance: f64,
+    bend: f64,
 }
 
 macro_rules! one_port {
@@ -74,14 +75,14 @@ impl Capacitor {
 
 impl Iron {
     fn current<T: Scalar>(&self, flux: T) -> T {
-        flux + flux.square() * flux * T::from_ratio(1, 3)
+        flux + flux.square() * flux * T::from_f64(self.bend)
     }
 }
 
 /// The slope of the current: the only metric that fits the port of an iron coil.
 impl MatrixField<f64, 1> for Iron {
     fn at<T: Over<f64> + Piecewise>(&self, x: &Vector<T, 1>, _: T) -> Matrix<T, 1, 1> {
-        Matrix([[T::ONE + x[0].square()]])
+        Matrix([[T::ONE + x[0].square() * T::from_f64(3.0 * self.bend)]])
     }
 }
 
@@ -118,11 +119,11 @@ fn a_coil_dissipates_in_its_resistor() {
 #[test]
 fn without_resistors_the_balance_is_an_equality() {
     let circuit: Interconnection<_, _, f64, 1, 1, 1> = Interconnection {
-        first: Iron { resistance: 0.0 },
-        second: Iron { resistance: 0.0 },
+        first: Iron { resistance: 0.0, bend: 0.0 },
+        second: Iron { resistance: 0.0, bend: 0.0 },
         coupling: Matrix::identity(),
     };
-    // Two linear elements: at zero flux the slope of the current is 1.
+    // Two linear elements, of which the slope of the current is 1.
     let metric = Matrix::<f64, 2, 2>::identity();
     let zero = Vector([0.0; 2]);
     let matrices = passivity_matrices::<f64, f64, 2, 2>(&circuit, &metric, &zero, &zero, 0.0);
@@ -134,16 +135,16 @@ fn without_resistors_the_balance_is_an_equality() {
 /// than its resistor dissipates.
 #[test]
 fn passive_is_less_than_differentially_passive() {
-    let iron = Iron { resistance: 0.3 };
+    let iron = Iron { resistance: 0.3, bend: 0.5 };
     for flux in [-2.0, -0.5, 0.3, 1.5] {
         let (x, u) = (Vector([flux]), Vector([40.0 * f64::signum(flux)]));
         // H = ∫ i dλ has Ḣ = i λ̇ = −R i² + i u.
         let (rate, i) = (ControlSystem::<f64, 1, 1>::rate_under(&iron, &x, &u, 0.0)[0], iron.current(flux));
         assert!(i * rate <= i * u[0]);
         let matrices = passivity_matrices::<f64, f64, 1, 1>(&iron, &iron, &x, &u, 0.0);
-        // Q = −(2 λ λ̇ − 2 R (1 + λ²)²).
-        let slope = 1.0 + flux * flux;
-        let expected = 2.0 * (0.3 * slope * slope - flux * rate);
+        // Π = 1 + 3 b λ², and Q = −(Π̇ − 2 R Π²) with Π̇ = 6 b λ λ̇.
+        let slope = 1.0 + 1.5 * flux * flux;
+        let expected = 0.6 * slope * slope - 3.0 * flux * rate;
         assert!((matrices.dissipation[(0, 0)] - expected).abs() < 1e-12 * expected.abs().max(1.0));
         assert!(matrices.mismatch[(0, 0)].abs() < 1e-15);
         assert!(matrices.dissipation[(0, 0)] < 0.0, "{flux}: {matrices:?}");
@@ -191,5 +192,68 @@ fn the_standard_feedback_has_the_papers_signs() {
     let expected = [-0.3 * i - i * i * i - v + e[0], -0.1 * v - f64::tanh(v) + i + e[1]];
     for (found, expected) in found.iter().zip(expected) {
         assert!((found - expected).abs() < 1e-15);
+    }
+}
+
+/// Lemma dPBC for any structure: δx̃̇ = (Ξ − Υ) Π δx̃ + Ψ δu, δỹ = Ψᵀ Π δx̃ with Ξ skew, Π positive and Υ any square matrix.
+struct Lemma {
+    Xi: Matrix<f64, 3, 3>,
+    Upsilon: Matrix<f64, 3, 3>,
+    Pi: Matrix<f64, 3, 3>,
+    Psi: Matrix<f64, 3, 2>,
+}
+
+impl<C: Scalar> ControlSystem<C, 3, 2> for Lemma {
+    fn drift<T: Over<C> + Piecewise>(&self, x: &Vector<T, 3>, _: T) -> Vector<T, 3> {
+        ((self.Xi - self.Upsilon) * self.Pi).map(T::from_f64) * *x
+    }
+    fn port<T: Over<C> + Piecewise>(&self, _: &Vector<T, 3>, _: T) -> Matrix<T, 3, 2> {
+        self.Psi.map(T::from_f64)
+    }
+    fn output<T: Over<C> + Piecewise>(&self, x: &Vector<T, 3>, _: T) -> Vector<T, 2> {
+        (self.Psi.transpose() * self.Pi).map(T::from_f64) * *x
+    }
+}
+
+/// Its port fits, and Q is Π (Υ + Υᵀ) Π: passive where that is positive semidefinite and not where it is not, whatever Ξ is.
+#[test]
+fn the_structure_of_the_lemma_is_differentially_passive() {
+    let mut r = Numbers(3);
+    let random =
+        |r: &mut Numbers| -> Matrix<f64, 3, 3> { Matrix(core::array::from_fn(|_| r.vector::<3>(1.0).0)) };
+    let (mut passive, mut active) = (0, 0);
+    for _ in 0..50 {
+        let (a, b) = (random(&mut r), random(&mut r));
+        let system = Lemma {
+            Xi: a - a.transpose(),
+            Upsilon: random(&mut r) + Matrix::identity().scaled(0.8),
+            Pi: b.transpose() * b + Matrix::identity(),
+            Psi: Matrix(core::array::from_fn(|_| r.vector::<2>(1.0).0)),
+        };
+        let (x, u): (Vector<f64, 3>, Vector<f64, 2>) = (r.vector(1.0), r.vector(1.0));
+        let matrices = passivity_matrices::<f64, f64, 3, 2>(&system, &system.Pi, &x, &u, 0.0);
+        let expected = system.Pi * (system.Upsilon + system.Upsilon.transpose()) * system.Pi;
+        let difference = matrices.dissipation - expected;
+        assert!(difference.0.as_flattened().iter().all(|d| d.abs() < 1e-12));
+        assert!(matrices.mismatch.0.as_flattened().iter().all(|m| m.abs() < 1e-13));
+        // Congruent matrices have the same signs.
+        let damped = smallest(&(system.Upsilon + system.Upsilon.transpose())) > 0.0;
+        assert_eq!(damped, smallest(&matrices.dissipation) > 0.0);
+        (passive, active) = if damped { (passive + 1, active) } else { (passive, active + 1) };
+    }
+    assert!(passive > 5 && active > 5, "{passive} and {active}");
+}
+
+/// The converse: what is differentially passive in a constant metric is incrementally passive, with ½ (x_1 − x_2)ᵀ Π (x_1 − x_2) as storage, and so
+/// passive about each of its rests.
+#[test]
+fn differentially_passive_is_passive() {
+    let mut r = Numbers(4);
+    for _ in 0..50 {
+        let [x_1, x_2, u_1, u_2]: [Vector<f64, 1>; 4] = core::array::from_fn(|_| r.vector(2.0));
+        let rate = |x, u| ControlSystem::<f64, 1, 1>::rate_under(&COIL, x, u, 0.0)[0];
+        let output = |x| ControlSystem::<f64, 1, 1>::output(&COIL, x, 0.0)[0];
+        let stored = (x_1[0] - x_2[0]) / COIL.inductance * (rate(&x_1, &u_1) - rate(&x_2, &u_2));
+        assert!(stored <= (output(&x_1) - output(&x_2)) * (u_1[0] - u_2[0]) + 1e-13);
     }
 }

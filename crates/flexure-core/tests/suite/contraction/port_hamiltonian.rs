@@ -163,7 +163,7 @@ fn the_potential_is_the_integral_of_the_integral() {
     let (e, de): (Vector<f64, 3>, Vector<f64, 3>) = (r.vector(1.0), r.vector(1.0));
     let rate = metric.potential(&moving(&e, &de)).gradient[0];
     assert!((rate - metric.integral(&e).dot(&de)).abs() < 1e-13 * rate.abs().max(1.0));
-    assert_eq!(metric.potential(&Vector([0.0; 3])), 0.0);
+    assert_eq!(Vector([metric.potential(&Vector([0.0; 3]))]), Vector([0.0]));
 }
 
 /// With a metric that softens, H̃ has no lower bound and Π is not positive: the closed loop still loses energy in its dampers, so ω ↦ ỹ is
@@ -199,6 +199,31 @@ struct Wavy;
 impl<C: Scalar> Shaping<C, 1> for Wavy {
     fn eval<T: Over<C>>(&self, error: &Vector<T, 1>) -> Vector<T, 1> {
         error.map(|z| z + z.sin() * T::from_f64(1.5))
+    }
+}
+
+/// χ = z³: strictly incrementally passive, with no rate at 0.
+struct Cube;
+
+impl<C: Scalar> Shaping<C, 1> for Cube {
+    fn eval<T: Over<C>>(&self, error: &Vector<T, 1>) -> Vector<T, 1> {
+        error.map(|z| z.square() * z)
+    }
+}
+
+/// Incremental passivity asks for less than the contraction inequality: the cube is strictly monotone, and no β > 0 holds for all pairs or at 0.
+/// With a constant metric the inequality is enough for it (lemma incrementa-static).
+#[test]
+fn incrementally_passive_maps_need_not_contract() {
+    let (r, one) = (&mut Numbers(8), Matrix([[1.0]]));
+    for _ in 0..100 {
+        let [z_1, z_2]: [Vector<f64, 1>; 2] = [r.vector(2.0), r.vector(2.0)];
+        assert!(incremental_passivity(&Cube, &one, 0.0, [&z_1, &z_2]) > 0.0);
+    }
+    for beta in [1.0, 1e-2, 1e-6] {
+        let near = Vector([0.1 * f64::sqrt(beta)]);
+        assert!(incremental_passivity(&Cube, &one, beta, [&-near, &near]) < 0.0);
+        assert!(slope_inequality(&Cube, &one, beta, &Vector([0.0]))[(0, 0)] < 0.0);
     }
 }
 

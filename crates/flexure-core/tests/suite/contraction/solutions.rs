@@ -45,8 +45,8 @@ fn prolonged_systems_are_limits_of_differences() {
         let difference = (ahead - behind).scaled(0.5 / h);
         close(&Vector([found[2], found[3]]), &difference, 1e-8);
         close(&Vector([output[1]]), &(y_ahead - y_behind).scaled(0.5 / h), 1e-8);
-        assert_eq!([found[0], found[1]], at(0.0).0.0);
-        assert_eq!(output[0], at(0.0).1[0]);
+        assert_eq!(Vector([found[0], found[1]]), at(0.0).0);
+        assert_eq!(Vector([output[0]]), at(0.0).1);
 
         // δẋ = A δx + B δu, δy = C δx.
         let linearised = ControlSystem::<f64, 2, 1>::linearised(&DRIVEN, &x, &u, t);
