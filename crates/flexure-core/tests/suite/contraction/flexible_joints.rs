@@ -11,12 +11,12 @@ use flexure_core::reference::{Reference, Sine};
 use flexure_core::robots::Pendulum;
 use flexure_core::virtual_system::{ErrorState, Structure, error_coordinates};
 
-use super::{norm, solution};
+use super::{matrices_are_close, norm, solution};
 use crate::common::{Numbers, coupled_tanh, flexible, gains, linear, planar, tanh};
 
 type Flexible<L, P, const N: usize> = FlexibleJoints<f64, L, P, P, Sine<f64, N>, N>;
 
-/// sin-like references of every joint.
+/// Sines of every joint.
 fn sines<const N: usize>(r: &mut Numbers) -> Sine<f64, N> {
     Sine {
         offset: r.vector(0.3),
@@ -29,17 +29,6 @@ fn sines<const N: usize>(r: &mut Numbers) -> Sine<f64, N> {
 fn jacobian_of_structure<const N: usize, const D: usize>(s: &Structure<f64, N>) -> Matrix<f64, D, D> {
     let blocks = s.jacobian();
     Matrix::from_fn(|i, j| blocks[i / N][j / N][(i % N, j % N)])
-}
-
-fn matrices_are_close<const R: usize, const K: usize>(
-    a: &Matrix<f64, R, K>,
-    b: &Matrix<f64, R, K>,
-    tolerance: f64,
-) {
-    let scale = b.0.as_flattened().iter().fold(1.0, |m: f64, x| m.max(x.abs()));
-    for (x, y) in a.0.as_flattened().iter().zip(b.0.as_flattened()) {
-        assert!((x - y).abs() <= tolerance * scale, "{x} against {y} of {scale}");
-    }
 }
 
 /// A state at random, with velocities as wide as positions.
@@ -74,7 +63,8 @@ fn method<L: Links<f64, N>, P: Shaping<f64, N>, const N: usize, const N2: usize,
     let q_ld = design.reference.at(t);
     let error = error_coordinates(&design.robot, &design.law, &virtual_state, &motion, &q_ld, &Input::ZERO);
     let structure = Structure::new(&design.robot, &design.law, &error, &motion);
-    matrices_are_close(&general, &jacobian_of_structure(&structure), 1e-6);
+    // Θ⁻¹ = (ΘᵀΘ)⁻¹ Θᵀ loses the square of the condition of Θ, which has entries of K⁻¹ and M: 4e-9 here.
+    matrices_are_close(&general, &jacobian_of_structure(&structure), 1e-7);
 
     // The same matrix from the error loop, a third way.
     let errors = ErrorLoop { robot: &design.robot, law: &design.law, motion };

@@ -11,18 +11,8 @@ use flexure_core::model::{Fjr, Links, Motion, State};
 use flexure_core::scalar::{Over, Scalar};
 use flexure_core::virtual_system::virtual_dynamics;
 
+use super::matrices_are_close;
 use crate::common::{Numbers, branched, close, flexible, moving, planar};
-
-fn matrices_are_close<const R: usize, const K: usize>(
-    a: &Matrix<f64, R, K>,
-    b: &Matrix<f64, R, K>,
-    tolerance: f64,
-) {
-    let scale = b.0.as_flattened().iter().fold(1.0, |m: f64, x| m.max(x.abs()));
-    for (x, y) in a.0.as_flattened().iter().zip(b.0.as_flattened()) {
-        assert!((x - y).abs() <= tolerance * scale, "{x} against {y} of {scale}");
-    }
-}
 
 /// (J_v − R_v) ∂H_v + g u is the virtual system, J_v is skew, and its variation is (J_v − R_v) ∂²H_v δx_v + g δu, of the form of lemma dPBC with
 /// R_v in place of Υ. The balance of H_v: what −½ Ṁ supplies goes into ∂H_v/∂t, so that only the dampers are left, for any u.
