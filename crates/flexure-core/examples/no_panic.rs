@@ -6,6 +6,9 @@
 
 use std::hint::black_box;
 
+use flexure_core::contraction::{
+    ClosedLoop, ErrorLoop, Root, generalised_jacobian, measure_1, measure_2, measure_2_margins,
+};
 use flexure_core::control::{
     Backstepping, Cascade, ControlLaw, CoupledTanh, Esp, FeedbackLinearization, FeedforwardPd,
     GravityCancellation, Input, IntegralManifold, Linear, Lqr, Mpc, Passivity, Pd, PdOnlineGravity,
@@ -214,6 +217,15 @@ fn estimators_forget(
 }
 
 #[cfg_attr(link_check, no_panic)]
+fn measures(
+    system: ErrorLoop<f64, PlanarTwoLink<f64>, CoupledTanh<f64, 2>, CoupledTanh<f64, 2>, 2>,
+) -> [f64; 3] {
+    let closed: ClosedLoop<_, _, 4> = ClosedLoop { system, feedback: V([0.0; 4]) };
+    let jacobian = generalised_jacobian::<f64, f64, 8>(&closed, &Root(system), &V([0.1; 8]), 0.0);
+    [measure_1(&jacobian), measure_2(&jacobian), measure_2_margins(&jacobian, 0.0)[7]]
+}
+
+#[cfg_attr(link_check, no_panic)]
 fn jets(x: Jet<f64, 5>) -> Jet<f64, 5> {
     (x.sin() * x.exp() + x.tanh() / x.ln()).sqrt().atan().ln_cosh().square()
 }
@@ -262,5 +274,6 @@ fn main() {
         singular_perturbation as fn(&_, &_, &_, &_) -> _,
         torque_feedback as fn(&_, &_, &_, &_) -> _,
     ));
+    black_box(measures as fn(_) -> _);
     assert!(jets(black_box(Jet::variable(0.5))).coefficient(4).is_finite());
 }

@@ -17,6 +17,7 @@
     )
 )]
 
+pub mod contraction;
 pub mod control;
 pub mod estimate;
 pub mod guard;

@@ -42,6 +42,19 @@ impl<C: Scalar, const N: usize> Metric<C, N> {
             }),
         }
     }
+
+    /// The potential of which [`integral`](Self::integral) is the gradient, 0 at no error [N m rad].
+    #[inline]
+    pub fn potential<T: Over<C>>(&self, error: &Vector<T, N>) -> T {
+        match self {
+            Self::Constant(base) => T::from_f64(0.5) * error.dot(&base.diag_mul(error)),
+            Self::Hardening { base, hardening } => {
+                let square = error.map(T::square);
+                let quartic = square.dot(&hardening.diag_mul(&square)) * T::from_ratio(1, 12);
+                T::from_f64(0.5) * error.dot(&base.diag_mul(error)) + quartic
+            }
+        }
+    }
 }
 
 /// Design data of the link side: (Π_l, φ_l, K_ld).

@@ -11,6 +11,7 @@ mod state;
 
 pub use fjr::{Fjr, Power};
 pub use inverse_dynamics::FeedForward;
+pub(crate) use links::seeded;
 pub use links::{Links, MassFactor, Parameters};
 pub use matrices::LinkMatrices;
 pub use rotors::RotorCoupling;

@@ -5,6 +5,7 @@
 mod allocations;
 mod closed_loop;
 mod common;
+mod contraction;
 mod disturbances;
 #[cfg(feature = "interval")]
 mod enclosed_trees;

@@ -41,10 +41,10 @@ mod starting;
 mod torque_feedback;
 mod vcbc;
 
-use flexure_core::control::{self, Applied, ControlLaw as _, DynamicLaw as _, Seen, Signals};
+use flexure_core::control::{self, Applied, ControlLaw as _, DynamicLaw as _, Seen};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion};
-use flexure_core::scalar::{Jet, Over, Scalar};
+use flexure_core::scalar::{Jet, Over, Piecewise, Scalar};
 
 use crate::files::Entry;
 use crate::robot::Robot;

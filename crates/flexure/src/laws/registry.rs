@@ -88,7 +88,7 @@ pub(super) struct Maker {
 }
 
 /// The most parts that any law's memory has.
-pub const PARTS: usize = 4;
+pub const PARTS: usize = 17;
 
 /// The memory of a law, a number per joint for each part; parts beyond what the law has are not used.
 pub type LawMemory<T, const N: usize> = [Vector<T, N>; PARTS];
@@ -185,8 +185,8 @@ macro_rules! laws {
                 }
             }
 
-            /// The memory a `period` in s later: [`advanced`].
-            pub fn advanced<T: Over<C>, L: Links<C, N>>(
+            /// The memory a `period` in s later.
+            pub fn advanced<T: Over<C> + Piecewise, L: Links<C, N>>(
                 &self,
                 robot: &Fjr<C, L, N>,
                 seen: [&Seen<T, N>; 2],
@@ -197,7 +197,7 @@ macro_rules! laws {
                 match self {
                     $(Self::$kind(_) => *z,)+
                     $(Self::$dynamic(law) => {
-                        all(control::advanced(&**law, robot, seen, first(z), applied, period))
+                        all(law.advanced(robot, seen, first(z), applied, period))
                     })+
                 }
             }
