@@ -118,6 +118,8 @@ pub const ADMITTANCE: Unit = Unit::new("rad/(N m s)", -1).sliding(&Unit::new("m/
 pub const ADMITTANCE_RATE: Unit = Unit::new("rad/(N m s^2)", 0)
     .raised("rad/(N m s²)")
     .sliding(&Unit::new("m/(N s^2)", 0).raised("m/(N s²)"));
+/// Rates of adaptation.
+pub const PER_ENERGY: Unit = Unit::new("1/J", -1);
 /// Third derivatives of positions.
 pub const JERK: Unit =
     Unit::new("rad/s^3", 3).raised("rad/s³").sliding(&Unit::new("m/s^3", 3).raised("m/s³"));

@@ -3,8 +3,12 @@
 //! A law is a file here, which says what `[controller]` has for it, and a line in the list below; its equations are those of
 //! [`flexure_core::control`].
 
+mod adaptation;
+mod adaptive_command_filtered_backstepping;
+mod adaptive_vcbc;
 mod backstepping;
 mod cascade;
+mod command_filtered_backstepping;
 mod composite_ph;
 mod control_by_interconnection;
 mod disturbance_rejecting;
@@ -21,6 +25,7 @@ mod integral_manifold;
 mod link_impedance;
 mod link_position_feedback;
 mod loria_ortega;
+mod lqr;
 mod motor_observer_pd;
 mod motor_position_pd;
 mod motor_position_pd_capped;
@@ -83,7 +88,8 @@ laws! {
         ida_pbc::IdaPbc,
         link_impedance::LinkImpedance,
         composite_ph::CompositePh,
-        sliding_mode::SlidingMode;
+        sliding_mode::SlidingMode,
+        lqr::Lqr;
     dynamic:
         position_feedback::PositionFeedback,
         link_position_feedback::LinkPositionFeedback,
@@ -94,7 +100,10 @@ laws! {
         loria_ortega::LoriaOrtega,
         disturbance_rejecting::DisturbanceRejecting,
         sea_cascade::SeaCascade,
-        pid::Pid;
+        pid::Pid,
+        command_filtered_backstepping::CommandFilteredBackstepping,
+        adaptive_command_filtered_backstepping::AdaptiveCommandFilteredBackstepping,
+        adaptive_vcbc::AdaptiveVcbc;
 }
 
 /// What is known of the kind of law `kind`; none for names that are not registered.
