@@ -17,19 +17,14 @@ use crate::scalar::{Dual, Jet, Over, Scalar};
 pub struct LinkImpedance<C, const N: usize> {
     /// Motor inertias that the robot shall seem to have, the diagonal of B_θ [kg m²].
     pub inertia: Vector<C, N>,
-    /// K_des at the links and D_θ at the motors.
+    /// K_i, [in series](in_series) with the springs K_des, and D_θ.
     pub motor: MotorPd<C, N>,
 }
 
-impl<C: Scalar, const N: usize> LinkImpedance<C, N> {
-    /// K_i, the diagonal [N m/rad]: in series with the springs it is K_des.
-    #[inline]
-    pub fn inner_stiffness<L>(&self, robot: &Fjr<C, L, N>) -> Vector<C, N> {
-        Vector::from_fn(|i| {
-            let (k, wanted) = (robot.stiffness[i], self.motor.stiffness[i]);
-            k * wanted / (k - wanted)
-        })
-    }
+/// K_i = (K_des⁻¹ − K⁻¹)⁻¹ [N m/rad]: what is K_des = `wanted` in series with a spring of `stiffness`, which must be more.
+#[inline]
+pub fn in_series<C: Scalar>(stiffness: C, wanted: C) -> C {
+    stiffness * wanted / (stiffness - wanted)
 }
 
 impl<C: Scalar, const N: usize> ControlLaw<C, N> for LinkImpedance<C, N> {
@@ -50,7 +45,7 @@ impl<C: Scalar, const N: usize> ControlLaw<C, N> for LinkImpedance<C, N> {
             let stiffness = if i == j { T::constant(robot.stiffness[i]) } else { T::ZERO };
             gravity[i].gradient[j] + stiffness
         });
-        let pull = self.inner_stiffness(robot).diag_mul(&(q - q_ld.map(|q| q.coefficient(0))));
+        let pull = self.motor.stiffness.diag_mul(&(q - q_ld.map(|q| q.coefficient(0))));
         let pull = robot.stiffness.diag_mul(&slope.ldl().solve(&pull));
         let shaped = gravity.map(|g| g.value) - pull - self.motor.damping.diag_mul(&x.v_m);
         let spring = robot.spring_torque(&x.q_l, &x.q_m);

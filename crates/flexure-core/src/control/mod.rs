@@ -48,7 +48,7 @@ pub use immersion_invariance::ImmersionInvariance;
 pub use inner_loop::InnerLoop;
 pub use integral_manifold::IntegralManifold;
 pub use law::ControlLaw;
-pub use link_impedance::LinkImpedance;
+pub use link_impedance::{LinkImpedance, in_series};
 pub use motor_pd::MotorPd;
 pub use optimal::{LinearModel, Lqr, Mpc, NoRegulator, QuadraticCost, Regulator};
 pub use passivity::Passivity;

@@ -8,7 +8,7 @@ use flexure_core::control::{
     CompositePh, ControlByInterconnection, ControlLaw, DisturbanceRejecting, DynamicLaw, IdaPbc,
     ImmersionInvariance, InnerLoop, LinkImpedance, LinkPositionFeedback, LoriaOrtega, Lqr, MotorObserverPd,
     MotorPd, MotorPositionPd, MotorPositionPdCapped, Pid, PositionFeedback, QuadraticCost, SeaCascade,
-    SlidingMode, observer_gains,
+    SlidingMode, in_series, observer_gains,
 };
 use flexure_core::linalg::{Ldl, Matrix, Vector};
 use flexure_core::model::{Fjr, Links, Motion, Parameters};
@@ -262,9 +262,10 @@ fn ida_pbc() {
 
 #[test]
 fn link_impedance() {
-    fixed("link-impedance", |case| LinkImpedance {
-        inertia: case.gain("inertia"),
-        motor: case.motor(["stiffness", "damping"]),
+    fixed("link-impedance", |case| {
+        let MotorPd { stiffness, damping } = case.motor(["stiffness", "damping"]);
+        let stiffness = Vector::from_fn(|i| in_series(case.arm().stiffness[i], stiffness[i]));
+        LinkImpedance { inertia: case.gain("inertia"), motor: MotorPd { stiffness, damping } }
     });
 }
 

@@ -4,7 +4,8 @@
 use flexure_core::control::{
     Applied, ControlByInterconnection, ControlLaw, DisturbanceRejecting, DynamicLaw, IdaPbc,
     ImmersionInvariance, InnerLoop, LinkImpedance, LinkPositionFeedback, LoriaOrtega, MotorObserverPd,
-    MotorPd, MotorPositionPd, MotorPositionPdCapped, PositionFeedback, SlidingMode, observer_gains,
+    MotorPd, MotorPositionPd, MotorPositionPdCapped, PositionFeedback, SlidingMode, in_series,
+    observer_gains,
 };
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, MassFactor, Motion};
@@ -312,7 +313,7 @@ pub mod checks {
         // Stiffer than gravity by enough for the fixed point of the links at rest to have ended.
         robot.stiffness = robot.stiffness.scaled(20.0);
         let goal = r.vector(1.0);
-        let stiffness = robot.stiffness.scaled(0.3);
+        let stiffness = robot.stiffness.map(|k| in_series(k, 0.3 * k));
         let law = LinkImpedance { inertia: r.between(0.05, 0.3), motor: MotorPd { stiffness, ..motor(r) } };
         let x = r.motion(1.0);
         let course = Course::new(&robot, &x, &law.torque(&robot, &x, &resting(&goal)));
@@ -321,7 +322,7 @@ pub mod checks {
         let q = robot.links_at_rest(&along.q_m);
         let gravity = robot.links.gravity_torque(&q);
         let e = -robot.links.potential_energy(&q) - half(&robot.stiffness.map(f64::recip), &gravity);
-        let f = half(&law.inner_stiffness(&robot), &(q - goal.lift()));
+        let f = half(&law.motor.stiffness, &(q - goal.lift()));
         let damping = Vector::from_fn(|i| {
             law.motor.damping[i] + law.inertia[i] * robot.motor_damping[i] / robot.motor_inertia[i]
         });

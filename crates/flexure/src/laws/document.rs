@@ -36,5 +36,10 @@ impl Controller {
 /// Reads `[controller]` for `robot`, if that could be read. With `kind` alone the gains are the starting ones.
 pub(crate) fn read(field: &Field<'_>, joints: &Joints, robot: Option<&Robot>) -> Option<Controller> {
     let maker = field.any_table()?.choice("kind", MAKERS)?;
-    (maker.read)(field, joints, &Starting { robot })
+    let controller = (maker.read)(field, joints, &Starting { robot })?;
+    if let Some(message) = robot.and_then(|robot| controller.objection(robot)) {
+        field.error("gains", message, "leave the gains out to start from those made for the robot");
+        return None;
+    }
+    Some(controller)
 }

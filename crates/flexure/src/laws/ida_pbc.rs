@@ -32,6 +32,19 @@ impl LawKind for IdaPbc {
         ),
     ];
 
+    fn objection(gains: &Self::Gains, robot: &Robot) -> Option<String> {
+        let [inertia, _, damping, cross] = gains;
+        let joint = (0..cross.len()).find(|&i| {
+            (cross[i] * inertia[i] / robot.motor_inertia[i]).powi(2) > robot.link_damping[i] * damping[i]
+        })?;
+        Some(format!(
+            "cross of joint {} is {} N m s/rad, too much for its dampers: (cross · inertia / motor_inertia)² must not exceed link_damping · damping, or \
+             motion feeds energy into the loop",
+            joint + 1,
+            cross[joint]
+        ))
+    }
+
     type Core<C: Scalar, const N: usize> = control::IdaPbc<C, N>;
 
     fn core<C: Scalar, const N: usize>(

@@ -1,6 +1,6 @@
 //! Impedance of the links by energy that only motors see.
 
-use flexure_core::control::{self, MotorPd};
+use flexure_core::control::{self, MotorPd, in_series};
 use flexure_core::linalg::Vector;
 use flexure_core::scalar::Scalar;
 
@@ -32,14 +32,28 @@ impl LawKind for LinkImpedance {
         MOTOR[1],
     ];
 
+    fn objection(gains: &Self::Gains, robot: &Robot) -> Option<String> {
+        let [_, wanted, _] = gains;
+        let joint = robot.stiffness.iter().zip(wanted).position(|(k, wanted)| wanted >= k)?;
+        Some(format!(
+            "stiffness of joint {} is {} N m/rad, not below the {} N m/rad of its spring: links are as soft as their springs at least",
+            joint + 1,
+            wanted[joint],
+            robot.stiffness[joint]
+        ))
+    }
+
     type Core<C: Scalar, const N: usize> = control::LinkImpedance<C, N>;
 
     fn core<C: Scalar, const N: usize>(
         gains: &Self::Gains,
-        _: &Robot,
+        robot: &Robot,
         vector: impl Fn(&Vec<f64>) -> Vector<C, N>,
     ) -> Self::Core<C, N> {
-        let [inertia, stiffness, damping] = gains.each_ref().map(vector);
+        let [inertia, wanted, damping] = gains;
+        let stiffness: Vec<f64> =
+            robot.stiffness.iter().zip(wanted).map(|(k, wanted)| in_series(*k, *wanted)).collect();
+        let [inertia, stiffness, damping] = [inertia, &stiffness, damping].map(&vector);
         control::LinkImpedance { inertia, motor: MotorPd { stiffness, damping } }
     }
 }

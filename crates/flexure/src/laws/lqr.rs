@@ -50,6 +50,15 @@ impl LawKind for Lqr {
         ),
     ];
 
+    fn objection(gains: &Self::Gains, robot: &Robot) -> Option<String> {
+        let found = designed(robot, gains).ok()?;
+        let none = found.iter().flatten().flatten().any(|gain| !gain.is_finite());
+        none.then(|| {
+            "no feedback is optimal for these weights: they leave a motion unseen, or lie too far apart"
+                .to_owned()
+        })
+    }
+
     type Core<C: Scalar, const N: usize> = control::Lqr<C, N>;
 
     fn core<C: Scalar, const N: usize>(

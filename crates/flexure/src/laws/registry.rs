@@ -33,6 +33,11 @@ pub trait LawKind {
     /// Keys, units and starting values of the gains, in the order in which they are tuned.
     const GAINS: <Self::Gains as GainSet>::Shape;
 
+    /// Why these gains are none for `robot`, if they are not.
+    fn objection(_gains: &Self::Gains, _robot: &Robot) -> Option<String> {
+        None
+    }
+
     /// The law itself: a [`ControlLaw`](flexure_core::control::ControlLaw), or a [`DynamicLaw`] with as many parts as `MEMORY` has.
     type Core<C: Scalar, const N: usize>: Clone + Debug;
 
@@ -281,6 +286,13 @@ macro_rules! laws {
             pub fn memory(&self) -> &'static [(&'static str, &'static str)] {
                 match self {
                     $(Self::$kind(_) => <$file::$kind as LawKind>::MEMORY,)+
+                }
+            }
+
+            /// Why these gains are none for `robot`, if they are not.
+            pub(crate) fn objection(&self, robot: &Robot) -> Option<String> {
+                match self {
+                    $(Self::$kind(gains) => <$file::$kind as LawKind>::objection(gains, robot),)+
                 }
             }
 

@@ -168,7 +168,8 @@ fn every_room_is_there_and_described() {
     }
 }
 
-/// The one file that turns a joint count into a type is used where robots, loops and proofs are made.
+/// The one file that turns a joint count into a type is used where robots, loops and proofs are made, and laws that are designed
+/// for their robot.
 #[test]
 fn sizes_are_chosen_in_few_places() {
     let users: Vec<String> = sources(&source())
@@ -176,7 +177,7 @@ fn sizes_are_chosen_in_few_places() {
         .filter(|(file, text)| file != "robot/sized.rs" && text.contains("sized!("))
         .map(|(file, _)| file)
         .collect();
-    assert!(users.len() <= 8, "{users:?}");
+    assert!(users.len() <= 10, "{users:?}");
     assert!(
         users
             .iter()

@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use flexure::compare::{Entrant, entrants};
-use flexure::core::control::ControlLaw;
 use flexure::core::linalg::{Matrix, Vector};
 use flexure::core::model::{Fjr, Links as LinkModel, MassFactor, Motion};
 use flexure::core::robots::Tree;
@@ -89,7 +88,9 @@ fn gains_change_by_their_order() {
         for (((path, a), (same, b)), doubled) in controller.gains().iter().zip(changed.gains()).zip(&doubled)
         {
             assert_eq!(*path, same);
-            assert!(a.iter().all(|x| *x > 0.0) && b == doubled, "{name}: {path}");
+            // Cross damping is made from the dampers of the robot, which has none.
+            let least = if path == "cross" { 0.0 } else { f64::MIN_POSITIVE };
+            assert!(a.iter().all(|x| *x >= least) && b == doubled, "{name}: {path}");
         }
     }
     let scenario = load_scenario("two-link-coupled-tanh").expect("built in");
@@ -111,11 +112,14 @@ fn unknown_kinds_have_no_gains() {
 }
 
 /// At 1 kHz starting gains keep every law near smooth motions, but for laws of two time scales where a link is too light for
-/// damping of its motor to reach it.
+/// damping of its motor to reach it, and laws whose filters lag behind stiff springs.
 #[test]
 fn starting_gains_follow() {
     let mut strayed = Vec::new();
-    let two_time_scales = |kind| ["integral-manifold", "singular-perturbation"].contains(&kind);
+    let two_time_scales =
+        |kind| ["integral-manifold", "singular-perturbation", "composite-ph"].contains(&kind);
+    // Filters as slow as 1 kHz asks for lag behind stiff springs: by the lag times the stiffness over that of the loop.
+    let lags = |kind: &str| kind.ends_with("command-filtered-backstepping") || kind == "adaptive-vcbc";
     for (name, kind) in ["panda-tanh-smooth", "tomei-3r-tanh", "planar-3r-tanh"]
         .into_iter()
         .flat_map(|name| names().map(move |kind| (name, kind)))
@@ -127,7 +131,7 @@ fn starting_gains_follow() {
         let run = run(&scenario, &flexure::progress::unwatched).expect("few joints");
         let error = run.summary.max_abs_e_l;
         // Not a number if it diverged.
-        if error.is_nan() || error > NEAR {
+        if error.is_nan() || error > if lags(kind) { LAGGING } else { NEAR } {
             strayed.push((name, kind, error));
         }
         assert_eq!(run.summary.rate_pointwise.is_nan(), kind != "vcbc", "{kind}");
@@ -137,6 +141,8 @@ fn starting_gains_follow() {
 
 /// In rad.
 const NEAR: f64 = 0.25;
+/// Of laws with filters, in rad.
+const LAGGING: f64 = 3.5;
 
 /// A file that names a kind alone has the starting gains of its robot, and written down they are read as they are.
 #[test]
@@ -253,13 +259,18 @@ fn every_law_runs_on_every_number() {
     let (x, q_ld) = place();
     for kind in names() {
         let controller = Controller::default_for(kind, &data).expect("registered");
-        let law = any_law::<f64, 3>(&controller, |x| x);
-        let u = law.torque(&robot, &x, &q_ld);
+        let law = any_law::<f64, 3>(&controller, &data, |x| x);
+        let z = law.start(&robot, &x, &q_ld);
+        let u = law.torque(&robot, &x, &q_ld, &z);
         let dual_motion = x.map(|x| Dual::<f64, 1> { value: x, gradient: [x.sin()] });
-        let dual = law.torque(&robot, &dual_motion, &on(&q_ld, Dual::constant));
-        let jet = law.torque(&robot, &x.map(|x| Jet::<f64, 2>::new([x, x.sin()])), &on(&q_ld, Jet::value));
-        let law = any_law::<Interval, 3>(&controller, Interval::point);
-        let bounds = law.torque(&enclosed, &x.map(Interval::point), &on(&q_ld, Interval::point));
+        let dual_z = z.map(|part| part.map(Dual::constant));
+        let dual = law.torque(&robot, &dual_motion, &on(&q_ld, Dual::constant), &dual_z);
+        let jet_motion = x.map(|x| Jet::<f64, 2>::new([x, x.sin()]));
+        let jet_z = z.map(|part| part.map(Jet::value));
+        let jet = law.torque(&robot, &jet_motion, &on(&q_ld, Jet::value), &jet_z);
+        let law = any_law::<Interval, 3>(&controller, &data, Interval::point);
+        let interval_z = z.map(|part| part.map(Interval::point));
+        let bounds = law.torque(&enclosed, &x.map(Interval::point), &on(&q_ld, Interval::point), &interval_z);
         for i in 0..3 {
             assert_eq!(
                 [dual[i].value, jet[i].coefficient(0)].map(f64::to_bits),
@@ -367,8 +378,10 @@ fn joints_that_are_not_there_change_no_law() {
         entrants(&[]).expect("all laws").iter().map(|law| law.name()).chain(["vcbc:coupled-tanh".into()])
     {
         let controller = Entrant::named(&name).expect("known").controller(&data).expect("three joints");
-        let u = any_law::<f64, 3>(&controller, |x| x).torque(&robot, &x, &q_ld);
-        let more = any_law::<f64, 5>(&controller, |x| x).torque(&padded, &far, &q_far);
+        let (law, larger) =
+            (any_law::<f64, 3>(&controller, &data, |x| x), any_law::<f64, 5>(&controller, &data, |x| x));
+        let u = law.torque(&robot, &x, &q_ld, &law.start(&robot, &x, &q_ld));
+        let more = larger.torque(&padded, &far, &q_far, &larger.start(&padded, &far, &q_far));
         assert_eq!(head(&more).0.map(f64::to_bits), u.0.map(f64::to_bits), "{name}");
         assert_eq!([more[3], more[4]].map(|u| u.abs().to_bits()), [0; 2], "{name}");
     }

@@ -61,8 +61,8 @@ fn function_exists(path: &str) -> bool {
 /// `file::function` in the `tests` folder of either crate.
 fn test_exists(path: &str) -> bool {
     let Some((file, name)) = path.split_once("::") else { return false };
-    ["flexure-core", "flexure"].iter().any(|krate| {
-        let text = module(&root().join("crates").join(krate).join("tests/suite"), file);
+    ["flexure-core/tests/suite", "flexure-core/tests/laws", "flexure/tests/suite"].iter().any(|folder| {
+        let text = module(&root().join("crates").join(folder), file);
         declares(&text, "#[test]\nfn ", name)
     })
 }

@@ -279,7 +279,7 @@ pub const SCENARIO_CASES: &[Case] = &[
         "factor",
         "unknown key 'factor' in [reference.time_scaling]",
     ),
-    ("\"vcbc\"", "\"pid\"", "\"pid\"", "controller.kind is 'pid'"),
+    ("\"vcbc\"", "\"pidd\"", "\"pidd\"", "controller.kind is 'pidd'"),
     ("phi = \"tanh\"", "phi = \"tan\"", "\"tan\"", "controller.phi is 'tan'"),
     ("phi = \"tanh\"", "phi = \"coupled-tanh\"", "[controller.link]", "missing key controller.link.kappa"),
     (
