@@ -41,10 +41,7 @@ impl<C: Scalar, const N: usize> ControlLaw<C, N> for LinkImpedance<C, N> {
         // Value and slope of gravity; G = K⁻¹ (K + ∂g), and ∂g is symmetric.
         let seeded: Vector<Dual<T, N>, N> = Vector::from_fn(|i| Dual::variable(q[i], i));
         let gravity = robot.links.gravity_torque(&seeded);
-        let slope = Matrix::from_fn(|i, j| {
-            let stiffness = if i == j { T::constant(robot.stiffness[i]) } else { T::ZERO };
-            gravity[i].gradient[j] + stiffness
-        });
+        let slope = Matrix(gravity.map(|g| g.gradient).0) + Matrix::diagonal(&robot.stiffness.lift());
         let pull = self.motor.stiffness.diag_mul(&(q - q_ld.map(|q| q.coefficient(0))));
         let pull = robot.stiffness.diag_mul(&slope.ldl().solve(&pull));
         let shaped = gravity.map(|g| g.value) - pull - self.motor.damping.diag_mul(&x.v_m);

@@ -3,6 +3,7 @@
 /// Which parts of the motion of a robot a law reads. What it does not read may be anything, not a number included: a test of every law sees to
 /// it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "four signals, each read or not")]
 pub struct Signals {
     /// Link positions.
     pub q_l: bool,

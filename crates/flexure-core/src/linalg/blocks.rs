@@ -1,4 +1,5 @@
 //! Linear systems in blocks.
+#![expect(clippy::needless_range_loop, reason = "rows and columns of one matrix at a time")]
 
 use super::{Matrix, Vector};
 use crate::scalar::Scalar;

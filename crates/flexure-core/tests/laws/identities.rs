@@ -106,7 +106,7 @@ fn agree<const N: usize>(a: &Vector<f64, N>, b: &Vector<f64, N>, scale: f64) {
 }
 
 fn largest<const N: usize>(parts: &[Vector<f64, N>]) -> f64 {
-    parts.iter().flat_map(|part| part.iter()).fold(0.0, |m: f64, x| m.max(x.abs()))
+    parts.iter().flat_map(Vector::iter).fold(0.0, |m: f64, x| m.max(x.abs()))
 }
 
 fn half<T: Over<f64>, const N: usize>(weight: &Vector<f64, N>, x: &Vector<T, N>) -> T {

@@ -4,6 +4,7 @@ mod adaptive;
 mod adaptive_runs;
 mod all;
 #[path = "../suite/common/mod.rs"]
+#[expect(dead_code, reason = "shared with the other suites")]
 mod common;
 mod golden;
 mod identities;

@@ -3,7 +3,7 @@
 use flexure_core::linalg::{Ldl, Matrix, Vector};
 use flexure_core::model::{Links, Parameters};
 use flexure_core::robots::{Body, Pendulum, Tree};
-use flexure_core::scalar::{Over, Scalar};
+use flexure_core::scalar::Over;
 
 use crate::common::{GRAVITY, Numbers, branched, branched_bodies, close, planar, serial};
 use crate::golden::TwoLink;

@@ -15,17 +15,14 @@ struct Poisoned<L, const N: usize> {
 }
 
 /// The parts of a motion, each with whether it is read.
-fn parts<'a, const N: usize>(
-    x: &'a mut Motion<f64, N>,
-    reads: &Signals,
-) -> [(&'a mut Vector<f64, N>, bool); 4] {
+fn parts<const N: usize>(x: &mut Motion<f64, N>, reads: Signals) -> [(&mut Vector<f64, N>, bool); 4] {
     let Motion { q_l, q_m, v_l, v_m } = x;
     [(q_l, reads.q_l), (q_m, reads.q_m), (v_l, reads.v_l), (v_m, reads.v_m)]
 }
 
 impl<L, const N: usize> Poisoned<L, N> {
     /// `of` gives the same numbers where everything that is not read is no number, and none where something that is read is none.
-    fn check(&self, name: &str, reads: &Signals, of: impl Fn(&Motion<f64, N>) -> Vec<f64>) {
+    fn check(&self, name: &str, reads: Signals, of: impl Fn(&Motion<f64, N>) -> Vec<f64>) {
         let exact = of(&self.x);
         assert!(exact.iter().all(|x| x.is_finite()), "{name}");
         let mut unread = self.x;
@@ -50,15 +47,15 @@ impl<L, const N: usize> Poisoned<L, N> {
 
 impl<L: Links<f64, N>, const N: usize> Visitor<N> for Poisoned<L, N> {
     fn fixed(&mut self, name: &str, law: &impl ControlLaw<f64, N>) {
-        self.check(name, &reads_of(law), |x| law.torque(&self.robot, x, &self.q_ld).iter().collect());
+        self.check(name, reads_of(law), |x| law.torque(&self.robot, x, &self.q_ld).iter().collect());
     }
 
     fn dynamic<const K: usize>(&mut self, name: &str, law: &impl DynamicLaw<f64, N, K>) {
         let z = law.start(&self.robot, &self.x, &self.q_ld);
-        self.check(name, &reads_of_dynamic(law), |x| {
+        self.check(name, reads_of_dynamic(law), |x| {
             let torque = law.torque(&self.robot, x, &self.q_ld, &z);
             let rate = law.rate(&self.robot, x, &self.q_ld, &z, &Applied::NOTHING);
-            torque.iter().chain(rate.iter().flat_map(|part| part.iter())).collect()
+            torque.iter().chain(rate.iter().flat_map(Vector::iter)).collect()
         });
     }
 }

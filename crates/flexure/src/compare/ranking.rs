@@ -148,14 +148,14 @@ fn standing(tasks: &[TaskScores], by_seed: &[Vec<f64>], law: usize) -> Standing 
         wins: pairs().filter(|(task, score)| task.is_best(score)).count(),
         median_factor: median(pairs().map(factor).collect()),
         unfinished: scores.iter().filter(|score| !score.finished()).count(),
-        reads: about.map(|about| signals(&about.reads)).unwrap_or_default(),
+        reads: about.map(|about| signals(about.reads)).unwrap_or_default(),
         proved: about.map(|about| about.claim.in_words()),
     }
 }
 
 /// The signals that are read, as traces name them.
-fn signals(reads: &Signals) -> Vec<&'static str> {
-    let Signals { q_l, q_m, v_l, v_m } = *reads;
+fn signals(reads: Signals) -> Vec<&'static str> {
+    let Signals { q_l, q_m, v_l, v_m } = reads;
     let named = [(q_l, "q_l"), (v_l, "dq_l"), (q_m, "q_m"), (v_m, "dq_m")];
     named.into_iter().filter(|(read, _)| *read).map(|(_, name)| name).collect()
 }

@@ -219,26 +219,22 @@ where
         let list = |v: &Vector<f64, N>| self.list(v);
         let e_l = list(&(x.q_l - reference.map(|jet| jet.coefficient(0))));
         let energy = robot.total_energy(&x);
-        Ok(match &self.simulation.controller().law {
-            HeldLaw::Registered(AnyLaw::Vcbc(law)) => {
-                let command = laws::command(law, robot, &x, &reference);
-                let sigma = robot.state(&Motion { v_l: command.s_l, v_m: command.s_m, ..x });
-                let errors = Errors {
-                    u_l: list(&command.u_l),
-                    q_md: list(&command.q_md),
-                    e_m: list(&command.e_m),
-                    s_l: list(&command.s_l),
-                    s_m: list(&command.s_m),
-                    sigma_l: list(&sigma.p_l),
-                    sigma_m: list(&sigma.p_m),
-                };
-                Commanded { u_m: list(&command.u_m), e_l, energy, errors: Some(errors) }
-            }
-            _ => {
-                let u_m = list(&self.asked(t, &x, &reference));
-                Commanded { u_m, e_l, energy, errors: None }
-            }
-        })
+        let HeldLaw::Registered(AnyLaw::Vcbc(law)) = &self.simulation.controller().law else {
+            let u_m = list(&self.asked(t, &x, &reference));
+            return Ok(Commanded { u_m, e_l, energy, errors: None });
+        };
+        let command = laws::command(law, robot, &x, &reference);
+        let sigma = robot.state(&Motion { v_l: command.s_l, v_m: command.s_m, ..x });
+        let errors = Errors {
+            u_l: list(&command.u_l),
+            q_md: list(&command.q_md),
+            e_m: list(&command.e_m),
+            s_l: list(&command.s_l),
+            s_m: list(&command.s_m),
+            sigma_l: list(&sigma.p_l),
+            sigma_m: list(&sigma.p_m),
+        };
+        Ok(Commanded { u_m: list(&command.u_m), e_l, energy, errors: Some(errors) })
     }
 
     fn reference(&self, t: f64, series: &mut [[f64; 5]]) -> Result<(), Mismatch> {
