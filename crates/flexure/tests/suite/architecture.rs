@@ -179,10 +179,8 @@ fn sizes_are_chosen_in_few_places() {
         .collect();
     assert!(users.len() <= 10, "{users:?}");
     assert!(
-        users
-            .iter()
-            .all(|file| ["robot", "feasible", "simulate", "identify", "sampled", "prove"]
-                .contains(&room(file))),
+        users.iter().all(|file| ["robot", "feasible", "simulate", "identify", "sampled", "prove", "laws"]
+            .contains(&room(file))),
         "{users:?}"
     );
 }

@@ -74,6 +74,8 @@ fn measured(scenario: &Scenario, time: f64, cycle: u32) -> f64 {
             }
             // The law is stiff, the springs are stiff: torques move by much more than positions.
             let h = if unit.starts_with("N m") { 1e-2 } else { 1e-4 };
+            // A boundary layer is thin.
+            let h = if scenario.controller.kind() == "sliding-mode" { 1e-3 * h } else { h };
             let [far, near] = [2.0 * h, h].map(|h| (after(i, h), after(i, -h)));
             let slope = |(up, down): &(Vec<f64>, Vec<f64>), j: usize, h: f64| (up[j] - down[j]) / (2.0 * h);
             (0..moving.len()).map(|j| (4.0 * slope(&near, j, h) - slope(&far, j, 2.0 * h)) / 3.0).collect()
