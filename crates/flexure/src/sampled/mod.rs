@@ -144,8 +144,16 @@ impl<'a> Outlook<'a> {
     }
 }
 
+/// Whether a law adapts parameters of the links. The linearised loop solves for all of a memory together, and their step does not: it would be another loop's.
+fn adapts(law: &Controller) -> bool {
+    law.memory().iter().any(|(name, _)| name.starts_with("phi"))
+}
+
 /// Why the sampled loop of `scenario` is not looked at, if it is not and its law acts at instants.
 pub fn not_looked_at(scenario: &Scenario) -> Option<String> {
+    if scenario.hold == Hold::ZeroOrder && adapts(&scenario.controller) {
+        return Some("sampled loop: not looked at, the law adapts parameters of the links".to_owned());
+    }
     let waiting = Devices::of(scenario).waiting.saturating_mul(scenario.robot.joint_count());
     (scenario.hold == Hold::ZeroOrder && waiting > TOO_MANY).then(|| {
         format!("sampled loop: not looked at, {waiting} torques of all joints are on their way at a time, more than {TOO_MANY}")
@@ -193,7 +201,7 @@ impl<'a> Probe<'a> {
     fn new(scenario: &'a Scenario) -> Result<Option<Self>, Problems> {
         let devices = Devices::of(scenario);
         let waiting = devices.waiting.saturating_mul(scenario.robot.joint_count());
-        if scenario.hold == Hold::Continuous || waiting > TOO_MANY {
+        if scenario.hold == Hold::Continuous || waiting > TOO_MANY || adapts(&scenario.controller) {
             return Ok(None);
         }
         let places = if waiting > MANY { FEW_PLACES } else { PLACES };

@@ -9,7 +9,7 @@ use crate::report::draw::text;
 
 const WIDTH: f64 = 1200.0;
 /// Left end of the map: names of laws stand before it [px].
-const LEFT: f64 = 200.0;
+const LEFT: f64 = 300.0;
 const ROW: f64 = 30.0;
 /// Widest cell [px].
 const WIDEST: f64 = 130.0;
