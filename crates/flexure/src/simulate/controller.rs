@@ -89,6 +89,9 @@ impl<L: Links<f64, N>, const N: usize> Feedback<L, N> for AnyLaw<f64, N> {
     ) -> Vector<f64, N> {
         match z {
             Some(z) => laws::torque(self, robot, x, q_ld, z),
+            None if self.memory().is_empty() => {
+                laws::torque(self, robot, x, q_ld, const { &[Vector::ZERO; PARTS] })
+            }
             None => laws::torque(self, robot, x, q_ld, &laws::start(self, robot, x, q_ld)),
         }
     }
