@@ -1,6 +1,7 @@
 //! `[controller]`: the law and its gains.
 
 use crate::files::field::{Field, Joints};
+use crate::laws::registry::Doubt;
 use crate::laws::starting::Starting;
 use crate::laws::{Controller, MAKERS};
 use crate::robot::Robot;
@@ -40,6 +41,9 @@ pub(crate) fn read(field: &Field<'_>, joints: &Joints, robot: Option<&Robot>) ->
     if let Some(message) = robot.and_then(|robot| controller.objection(robot)) {
         field.error("gains", message, "leave the gains out to start from those made for the robot");
         return None;
+    }
+    if let Some(Doubt { message, help }) = robot.and_then(|robot| controller.doubt(robot)) {
+        field.warn("gains", message, help);
     }
     Some(controller)
 }

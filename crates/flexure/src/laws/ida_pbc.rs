@@ -7,7 +7,7 @@ use flexure_core::scalar::Scalar;
 use crate::files::quantity::Quantity;
 use crate::laws::Drive;
 use crate::laws::gain::{Gain, MOTOR, SHAPED_INERTIA};
-use crate::laws::registry::{Claim, LawKind};
+use crate::laws::registry::{Claim, Doubt, LawKind};
 use crate::robot::Robot;
 use crate::units;
 
@@ -32,17 +32,18 @@ impl LawKind for IdaPbc {
         ),
     ];
 
-    fn objection(gains: &Self::Gains, robot: &Robot) -> Option<String> {
+    fn doubt(gains: &Self::Gains, robot: &Robot) -> Option<Doubt> {
         let [inertia, _, damping, cross] = gains;
         let joint = (0..cross.len()).find(|&i| {
             (cross[i] * inertia[i] / robot.motor_inertia[i]).powi(2) > robot.link_damping[i] * damping[i]
         })?;
-        Some(format!(
+        let message = format!(
             "cross of joint {} is {} N m s/rad, too much for its dampers: (cross · inertia / motor_inertia)² must not exceed link_damping · damping, or \
-             motion feeds energy into the loop",
+             motion may feed energy into the loop",
             joint + 1,
             cross[joint]
-        ))
+        );
+        Some(Doubt { message, help: "lower cross, or raise damping: what is proved of the law holds then" })
     }
 
     type Core<C: Scalar, const N: usize> = control::IdaPbc<C, N>;

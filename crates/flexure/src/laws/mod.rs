@@ -56,7 +56,7 @@ use crate::robot::Robot;
 use gain::{GainSet, ReadGains};
 use std::marker::PhantomData;
 
-use registry::{LawKind, Maker, all, constants, first, laws, reads};
+use registry::{Doubt, LawKind, Maker, all, constants, first, laws, reads};
 
 pub use drive::Drive;
 pub use gain::Gain;

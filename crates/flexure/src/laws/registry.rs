@@ -38,6 +38,11 @@ pub trait LawKind {
         None
     }
 
+    /// Why what is proved of the law is not proved with these gains for `robot`, if it is not.
+    fn doubt(_gains: &Self::Gains, _robot: &Robot) -> Option<Doubt> {
+        None
+    }
+
     /// The law itself: a [`ControlLaw`](flexure_core::control::ControlLaw), or a [`DynamicLaw`] with as many parts as `MEMORY` has.
     type Core<C: Scalar, const N: usize>: Clone + Debug;
 
@@ -72,6 +77,12 @@ impl Claim {
             Self::Nothing => "nothing",
         }
     }
+}
+
+/// Why a proof does not hold with some gains, and what to change.
+pub struct Doubt {
+    pub message: String,
+    pub help: &'static str,
 }
 
 /// What is known of a kind of law.
@@ -293,6 +304,13 @@ macro_rules! laws {
             pub(crate) fn objection(&self, robot: &Robot) -> Option<String> {
                 match self {
                     $(Self::$kind(gains) => <$file::$kind as LawKind>::objection(gains, robot),)+
+                }
+            }
+
+            /// Why what is proved of the law is not proved with these gains for `robot`, if it is not.
+            pub(crate) fn doubt(&self, robot: &Robot) -> Option<Doubt> {
+                match self {
+                    $(Self::$kind(gains) => <$file::$kind as LawKind>::doubt(gains, robot),)+
                 }
             }
 

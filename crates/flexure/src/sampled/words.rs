@@ -3,7 +3,7 @@
 use crate::files::number::short;
 use crate::files::{Problem, quantity::shortest};
 use crate::sampled::advice::{Advice, Move};
-use crate::sampled::{Place, Sampled};
+use crate::sampled::{Place, ROUNDING, Sampled};
 use crate::scenario::Scenario;
 
 /// What is to be said of a loop that [passes](Sampled::passes).
@@ -21,6 +21,9 @@ impl Sampled {
         let digits = if (self.spectral_radius - 1.0).abs() < 0.01 { 7 } else { 4 };
         let radius = short(self.spectral_radius, digits);
         match (self.stable, &self.joint) {
+            (true, _) if self.is_neutral() => {
+                format!("spectral radius {radius} {at}: no small error grows, and some do not shrink")
+            }
             (true, _) => format!(
                 "spectral radius {radius} {at}; small errors shrink by {} 1/s{}",
                 short(self.rate, 4),
@@ -43,7 +46,12 @@ impl Sampled {
 
     /// Whether errors shrink on the whole way although they would grow if the robot stood at one place of it.
     pub(crate) fn passes(&self) -> bool {
-        self.stable && self.spectral_radius >= 1.0
+        self.stable && self.spectral_radius > 1.0 + ROUNDING
+    }
+
+    /// Whether small errors stay as they are that nothing in the loop sees, as those of a conserved quantity.
+    fn is_neutral(&self) -> bool {
+        self.stable && (self.spectral_radius - 1.0).abs() <= ROUNDING
     }
 
     /// What makes it stable, where it is not.

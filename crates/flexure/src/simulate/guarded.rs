@@ -11,7 +11,7 @@ use flexure_core::scalar::Jet;
 
 use crate::imperfections::stages::{Measured, Tick};
 use crate::laws::LawMemory;
-use crate::simulate::controller::Feedback;
+use crate::simulate::feedback::Feedback;
 
 /// A guard with what it needs around it.
 #[derive(Clone, Debug)]

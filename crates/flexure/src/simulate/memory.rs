@@ -9,7 +9,8 @@ use flexure_core::scalar::Jet;
 
 use crate::imperfections::stages::{Pieces, Tick};
 use crate::simulate::collocation::Past;
-use crate::simulate::controller::{Action, Compensation, Controller, Feedback, Said};
+use crate::simulate::controller::{Action, Compensation, Controller, Said};
+use crate::simulate::feedback::Feedback;
 use crate::simulate::gauss::{Integrator, Order};
 use crate::simulate::guarded::Guarded;
 use crate::simulate::ledger::Ledger;

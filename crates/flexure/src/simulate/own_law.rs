@@ -11,7 +11,7 @@ use flexure_core::scalar::Jet;
 use crate::laws::{self, AnyLaw, Law, LawMemory, PARTS, VcbcGains};
 use crate::robot::slices::{read, write, write_motion};
 use crate::robot::{MAX_JOINTS, vector};
-use crate::simulate::controller::Feedback;
+use crate::simulate::feedback::Feedback;
 
 /// What a law is as a function on slices: of the time in s, the motion that it sees (4n numbers in rad and rad/s) and Taylor
 /// coefficients of the reference (n arrays, the position first), into motor torques (n numbers [N m]).

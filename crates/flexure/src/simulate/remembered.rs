@@ -7,7 +7,7 @@ use flexure_core::model::{Fjr, Links, Motion};
 use flexure_core::scalar::Jet;
 
 use crate::laws::{LawMemory, PARTS};
-use crate::simulate::controller::Feedback;
+use crate::simulate::feedback::Feedback;
 use crate::simulate::memory::series;
 
 /// What a law with memory knows of the instants before.

@@ -7,7 +7,8 @@ use flexure_core::reference::Reference;
 
 use crate::imperfections::stages::{Pieces, Tick};
 use crate::plant::{Plant, Push};
-use crate::simulate::controller::{Action, Controller, Feedback};
+use crate::simulate::controller::{Action, Controller};
+use crate::simulate::feedback::Feedback;
 use crate::simulate::gauss::StepFailure;
 use crate::simulate::ledger::Ledger;
 use crate::simulate::stepper::Stepper;

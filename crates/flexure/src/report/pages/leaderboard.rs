@@ -91,7 +91,7 @@ fn ranking(board: &Leaderboard) -> Markup {
         } }
         p.note {
             "Measures: what the law reads of the motion; all is positions and velocities of links and motors (q_l, dq_l, q_m, dq_m). \
-             Proved: what holds of the law in continuous time for the robot of its model, by an error equation or a storage function that the project's tests take along \
+             Proved: what holds of the law in continuous time for the robot of its model, where its gains meet the law's own conditions, which a search does not ask for, by an error equation or a storage function that the project's tests take along \
              the closed loop; everything else in this table was simulated, and nothing is proved of these tasks. "
             "Mean rank: over the tasks, 1 for the smallest penalised error, the median over the seeds. Errors that overlap over the \
              seeds with those of the best of a group, or are within 1 % of them, tie and share the mean of their ranks, and so do \
