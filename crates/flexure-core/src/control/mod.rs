@@ -34,9 +34,9 @@ pub use cascade::Cascade;
 pub use composite_ph::CompositePh;
 pub use dynamic::{
     Adaptation, AdaptiveCommandFilteredBackstepping, AdaptiveVcbc, Applied, CommandFilteredBackstepping,
-    ControlByInterconnection, DisturbanceRejecting, DynamicLaw, LinkPositionFeedback, LoadedLaw, LoriaOrtega,
-    MotorObserverPd, MotorPositionPd, MotorPositionPdCapped, Pid, PositionFeedback, Running, SeaCascade,
-    Seen, observer_gains,
+    ControlByInterconnection, DisturbanceRejecting, DynamicFeedbackLinearization, DynamicLaw,
+    LinkPositionFeedback, LoadedLaw, LoriaOrtega, MotorObserverPd, MotorPositionPd, MotorPositionPdCapped,
+    Pid, Planned, PositionFeedback, Running, SeaCascade, Seen, observer_gains,
 };
 pub use esp::Esp;
 pub use feedback_linearization::FeedbackLinearization;

@@ -5,10 +5,10 @@ use std::fs;
 
 use flexure_core::control::{
     Adaptation, AdaptiveCommandFilteredBackstepping, AdaptiveVcbc, Applied, CommandFilteredBackstepping,
-    CompositePh, ControlByInterconnection, ControlLaw, DisturbanceRejecting, DynamicLaw, IdaPbc,
-    ImmersionInvariance, InnerLoop, LinkImpedance, LinkPositionFeedback, LoriaOrtega, Lqr, MotorObserverPd,
-    MotorPd, MotorPositionPd, MotorPositionPdCapped, Pid, PositionFeedback, QuadraticCost, SeaCascade,
-    SlidingMode, in_series, observer_gains,
+    CompositePh, ControlByInterconnection, ControlLaw, DisturbanceRejecting, DynamicFeedbackLinearization,
+    DynamicLaw, IdaPbc, ImmersionInvariance, InnerLoop, LinkImpedance, LinkPositionFeedback, LoriaOrtega,
+    Lqr, MotorObserverPd, MotorPd, MotorPositionPd, MotorPositionPdCapped, Pid, PositionFeedback,
+    QuadraticCost, SeaCascade, SlidingMode, in_series, observer_gains,
 };
 use flexure_core::linalg::{Ldl, Matrix, Vector};
 use flexure_core::model::{Fjr, Links, Motion, Parameters};
@@ -114,6 +114,7 @@ struct Robot {
     motor_inertia: [f64; 2],
     link_damping: [f64; 2],
     motor_damping: [f64; 2],
+    rotor_coupling_s12: Option<f64>,
 }
 
 #[derive(Deserialize)]
@@ -148,7 +149,7 @@ impl Case {
     }
 
     fn arm(&self) -> Arm {
-        let Robot { links, stiffness, motor_inertia, link_damping, motor_damping } = &self.robot;
+        let Robot { links, stiffness, motor_inertia, link_damping, motor_damping, .. } = &self.robot;
         let [motor_inertia, stiffness, link_damping, motor_damping] =
             [motor_inertia, stiffness, link_damping, motor_damping].map(|x| Vector(*x));
         Fjr { links: *links, motor_inertia, stiffness, link_damping, motor_damping }
@@ -421,4 +422,15 @@ fn adaptive_laws() {
         link_metric: case.gain("link_metric"),
         adaptation: adaptation(case),
     });
+}
+
+#[test]
+fn dynamic_feedback_linearization() {
+    for case in cases("dynamic-feedback-linearization") {
+        let coupling = case.robot.rotor_coupling_s12.expect("coupled rotors");
+        let law = DynamicFeedbackLinearization { rate: case.gain("rate"), coupling };
+        let z: [_; 2] = std::array::from_fn(|k| Vector([case.memory[2 * k], case.memory[2 * k + 1]]));
+        let planned = law.planned(&case.arm(), &case.motion(), &case.q_ld(), &z);
+        case.agrees("dynamic-feedback-linearization", &planned.torque, &planned.rate);
+    }
 }

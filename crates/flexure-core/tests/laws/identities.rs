@@ -2,17 +2,17 @@
 //! Taylor series of the closed loop, error equations by dual numbers.
 
 use flexure_core::control::{
-    Applied, ControlByInterconnection, ControlLaw, DisturbanceRejecting, DynamicLaw, IdaPbc,
-    ImmersionInvariance, InnerLoop, LinkImpedance, LinkPositionFeedback, LoriaOrtega, MotorObserverPd,
-    MotorPd, MotorPositionPd, MotorPositionPdCapped, PositionFeedback, SlidingMode, in_series,
-    observer_gains,
+    Applied, ControlByInterconnection, ControlLaw, DisturbanceRejecting, DynamicFeedbackLinearization,
+    DynamicLaw, IdaPbc, ImmersionInvariance, InnerLoop, LinkImpedance, LinkPositionFeedback, LoriaOrtega,
+    MotorObserverPd, MotorPd, MotorPositionPd, MotorPositionPdCapped, PositionFeedback, SlidingMode,
+    in_series, observer_gains,
 };
-use flexure_core::linalg::Vector;
+use flexure_core::linalg::{Matrix, Vector};
 use flexure_core::model::{Fjr, Links, MassFactor, Motion};
 use flexure_core::scalar::{Dual, Jet, Over, Scalar as _};
 
 use crate::common::laws::{Course, motor, resting};
-use crate::common::{Numbers, branched, flexible, moving_motion, planar, rate, serial};
+use crate::common::{Numbers, branched, flexible, moving_motion, planar, rate, serial, shifting};
 
 /// Of the largest term: a few hundred operations, each to 10⁻¹⁶, on what cancels.
 const ROUNDING: f64 = 1e-12;
@@ -536,5 +536,38 @@ pub mod checks {
         });
         let scale = largest(&[d4e, sigma]);
         agree(&moves, &-held, 1e3 * scale);
+    }
+}
+
+/// With rotors coupled, what is planned is what happens: each derivative of the links is the rate of the one before, whatever the memory.
+#[test]
+fn dynamic_feedback_linearization() {
+    let r = &mut Numbers(17);
+    for _ in 0..10 {
+        let (robot, q_ld) = (flexible(planar(), r), r.series::<8, 2>(1.0));
+        let coupling = 0.01;
+        let law = DynamicFeedbackLinearization { rate: Vector([4.0, 5.0]), coupling };
+        let x = r.motion(1.0);
+        let xi = [r.vector(1.0), r.vector(1.0)];
+        let planned = law.planned(&robot, &x, &q_ld.map(|q| q.truncate()), &xi);
+        // The complete model: θ̈_2 moves the first link, q̈_1 the second rotor.
+        let left =
+            robot.link_torque(&x) - robot.links.inverse_dynamics(&x.q_l, &x.v_l, &x.v_l, &Vector::ZERO);
+        let right =
+            planned.torque - robot.spring_torque(&x.q_l, &x.q_m) - robot.motor_damping.diag_mul(&x.v_m);
+        let mass = robot.links.mass_matrix(&x.q_l);
+        let [b_1, b_2] = robot.motor_inertia.0;
+        let reduced =
+            Matrix([[mass[(0, 0)] - coupling * coupling / b_2, mass[(0, 1)]], [mass[(1, 0)], mass[(1, 1)]]]);
+        let a_l = reduced.ldl().solve(&Vector([left[0] - coupling / b_2 * right[1], left[1]]));
+        let a_m = Vector([right[0] / b_1, (right[1] - coupling * a_l[0]) / b_2]);
+        let moving = moving_motion(&x, &Motion { q_l: x.v_l, q_m: x.v_m, v_l: a_l, v_m: a_m });
+        let xi = core::array::from_fn(|k| {
+            Vector::from_fn(|i| Dual { value: xi[k][i], gradient: [planned.rate[k][i]] })
+        });
+        let moved = law.planned(&robot, &moving, &shifting(&q_ld), &xi);
+        for pair in moved.links.windows(2) {
+            agree(&rate(&pair[0]), &pair[1].map(|q| q.value), largest(&planned.links));
+        }
     }
 }
