@@ -2,7 +2,7 @@
 
 use flexure_core::control::{
     Applied, ControlLaw, DynamicLaw, IdaPbc, MotorObserverPd, MotorPd, MotorPositionPd,
-    MotorPositionPdCapped, Pid, Running, TorqueFeedback,
+    MotorPositionPdCapped, Pid, Running, SeaCascade, TorqueFeedback,
 };
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Links, Motion};
@@ -114,4 +114,37 @@ fn integrals_give_way_to_limits() {
     };
     let [blind, knowing] = [false, true].map(overshoot);
     assert!(knowing < 0.6 * blind, "{knowing} of {blind}");
+}
+
+/// Of torque withheld each integral of each joint makes less, at its own motor, and as much more of torque beyond.
+fn gives_way<const K: usize>(law: &impl DynamicLaw<f64, 2, K>, integrals: [Vector<f64, 2>; K]) {
+    let r = &mut Numbers(5);
+    let (robot, x, q_ld) = (flexible(planar(), r), r.motion(1.0), r.series(1.0));
+    let z = [(); K].map(|()| r.vector(1.0));
+    let rate = |given: f64| {
+        let applied = Applied { asked: Vector::ZERO, given: Vector([given, 0.0]) };
+        law.rate(&robot, &x, &q_ld, &z, &applied)
+    };
+    let [short, full, beyond] = [-1.0, 0.0, 1.0].map(rate);
+    for (k, integral) in integrals.into_iter().enumerate() {
+        let [less, more] = [short, beyond].map(|rate| integral.diag_mul(&(rate[k] - full[k])));
+        assert!(less[0] < -1e-3, "the rate of integral {k} changes its torque by {}", less[0]);
+        assert!((less[0] + more[0]).abs() < 1e-12 && less[1].abs() < 1e-12, "{less:?}, {more:?}");
+    }
+}
+
+#[test]
+fn every_integral_gives_way() {
+    let r = &mut Numbers(6);
+    let pid = Pid { motor: motor(r), integral: r.between(1.0, 5.0) };
+    gives_way(&pid, [-pid.integral]);
+    let cascade = SeaCascade {
+        link: motor(r),
+        torque: r.between(0.5, 3.0),
+        torque_integral: r.between(1.0, 4.0),
+        velocity: r.between(3.0, 12.0),
+        velocity_integral: r.between(5.0, 20.0),
+    };
+    let of_torque = cascade.velocity.diag_mul(&cascade.torque_integral);
+    gives_way(&cascade, [of_torque, cascade.velocity_integral]);
 }

@@ -245,7 +245,7 @@ where
             (_, Some(status)) if !status.phase.is_law_s() || status.phase == Phase::Rejoined => {
                 self.state.remembered = None;
             }
-            (Some(remembered), _) => remembered.asked = u_m,
+            (Some(remembered), _) => remembered.ask(u_m),
             (None, _) => {}
         }
         let command = (!self.computer.misses(tick)).then_some(u_m);
@@ -271,8 +271,8 @@ where
     fn remember(&mut self, t: f64, x: &Motion<f64, N>, q_ld: &Vector<Jet<f64, 5>, N>) {
         if !self.law.memory().is_empty() {
             let State { applied, remembered, .. } = &self.state;
-            let next = Remembered::at(&self.law, &self.robot, remembered.as_ref(), t, (x, q_ld), *applied);
-            self.state.remembered = Some(next);
+            self.state.remembered =
+                Remembered::at(&self.law, &self.robot, remembered.as_ref(), t, (x, q_ld), *applied);
         }
     }
 

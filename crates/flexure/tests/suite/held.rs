@@ -1,7 +1,8 @@
 //! Robots and loops with their joint count hidden: what `Arm` and `Loop` promise.
 
 use flexure::core::scalar::{Interval, Scalar};
-use flexure::files::{ROBOTS, SCENARIOS};
+use flexure::files::{Entry, ROBOTS, SCENARIOS};
+use flexure::laws::{CONTROLLERS, Controller};
 use flexure::progress::unwatched;
 use flexure::robot::{Arm, Mismatch, load_robot};
 use flexure::scenario::{Scenario, load_scenario};
@@ -41,6 +42,26 @@ fn every_scenario_goes_on_from_its_state() {
         let mut other = scenario.open().expect("supported");
         other.reset(scenario.seed + 1);
         rows(&mut *other, 7);
+        other.restore(&saved).expect("of the same scenario");
+        assert_eq!(rows(&mut *other, 60), expected, "{name}, opened anew");
+    }
+}
+
+/// The same of laws with memory, with the imperfections that a loop can have.
+#[test]
+fn every_memory_goes_on_from_its_state() {
+    let scenario = scenario("two-link-everything");
+    let law = |entry: &Entry| Controller::default_for(entry.name, &scenario.robot).expect("registered");
+    for controller in CONTROLLERS.iter().map(law).filter(|law| !law.memory().is_empty()) {
+        let name = controller.kind();
+        let scenario = Scenario { controller, ..scenario.clone() };
+        let mut held = scenario.open().expect("supported");
+        rows(&mut *held, 60);
+        let saved = held.state();
+        let expected = rows(&mut *held, 60);
+        held.restore(&saved).expect("its own");
+        assert_eq!(rows(&mut *held, 60), expected, "{name}");
+        let mut other = scenario.open().expect("supported");
         other.restore(&saved).expect("of the same scenario");
         assert_eq!(rows(&mut *other, 60), expected, "{name}, opened anew");
     }

@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use flexure::Problems;
 use flexure::files::{Change, Reading, SCENARIOS};
+use flexure::laws::Controller;
 use flexure::scenario::{Scenario, load_scenario_with};
 use flexure::simulate::{Criteria, Run, SIDE_BY_SIDE, measure, measure_together};
 
@@ -146,4 +147,20 @@ fn what_does_not_go_in_step_goes_alone() {
     let alone = measure(&continuous).expect("a run");
     assert_eq!(bits(runs[1].as_ref().expect("a run")), bits(&alone));
     assert!(runs[0].is_ok());
+}
+
+/// Each loop asks its law with memory itself: it comes to the bits of a loop alone, whatever is beside it.
+#[test]
+fn laws_with_memory_are_asked_one_by_one() {
+    let with = |kind: &str| {
+        let mut one = scenario("task-payload", &[]);
+        one.controller = Controller::default_for(kind, &one.robot).expect("registered");
+        one
+    };
+    let all = ["pid", "position-feedback", "adaptive-vcbc", "vcbc"].map(with);
+    let twice: Vec<_> = all.iter().chain(&all).collect();
+    for (run, one) in together(&twice).iter().zip(&twice).filter(|(_, one)| one.controller.kind() != "vcbc") {
+        let alone = together(&[one]).remove(0).expect("it runs");
+        assert_eq!(bits(run.as_ref().expect("it runs")), bits(&alone), "{}", one.controller.kind());
+    }
 }
