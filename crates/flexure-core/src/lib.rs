@@ -17,6 +17,7 @@
     )
 )]
 
+mod array;
 pub mod contraction;
 pub mod control;
 pub mod estimate;

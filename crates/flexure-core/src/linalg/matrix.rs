@@ -3,6 +3,7 @@
 use core::ops::{Add, Index, IndexMut, Mul, Neg, Sub};
 
 use super::{Ldl, Vector};
+use crate::array::filled;
 use crate::scalar::{Over, Scalar};
 
 /// A matrix of `R` rows and `C` columns, stored by rows.
@@ -13,13 +14,13 @@ impl<S: Copy, const R: usize, const C: usize> Matrix<S, R, C> {
     /// The matrix whose entry `(i, j)` is `f(i, j)`.
     #[inline]
     pub fn from_fn(mut f: impl FnMut(usize, usize) -> S) -> Self {
-        Self(core::array::from_fn(|i| core::array::from_fn(|j| f(i, j))))
+        Self(filled(|i| filled(|j| f(i, j))))
     }
 
     /// Every entry through `f`.
     #[inline]
-    pub fn map<T>(&self, mut f: impl FnMut(S) -> T) -> Matrix<T, R, C> {
-        Matrix(self.0.map(|row| row.map(&mut f)))
+    pub fn map<T: Copy>(&self, mut f: impl FnMut(S) -> T) -> Matrix<T, R, C> {
+        Matrix(filled(|i| filled(|j| f(self.0[i][j]))))
     }
 
     /// The transpose.

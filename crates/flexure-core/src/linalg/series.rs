@@ -1,6 +1,7 @@
 //! Vectors of Taylor series from and to plain derivatives.
 
 use super::Vector;
+use crate::array::filled;
 use crate::scalar::{Jet, Scalar};
 
 impl<S: Scalar, const K: usize, const N: usize> Vector<Jet<S, K>, N> {
@@ -13,6 +14,6 @@ impl<S: Scalar, const K: usize, const N: usize> Vector<Jet<S, K>, N> {
     /// The derivatives `[x, ẋ, ẍ, …]` of the series.
     #[inline]
     pub fn derivatives(&self) -> [Vector<S, N>; K] {
-        core::array::from_fn(|k| self.map(|x| x.derivative(k)))
+        filled(|k| self.map(|x| x.derivative(k)))
     }
 }

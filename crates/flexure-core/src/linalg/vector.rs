@@ -2,6 +2,7 @@
 
 use core::ops::{Add, AddAssign, Index, IndexMut, Neg, Sub, SubAssign};
 
+use crate::array::filled;
 use crate::scalar::{Over, Scalar};
 
 /// A column vector of `N` numbers.
@@ -14,13 +15,13 @@ impl<S: Copy, const N: usize> Vector<S, N> {
     /// The vector whose entry `i` is `f(i)`.
     #[inline]
     pub fn from_fn(f: impl FnMut(usize) -> S) -> Self {
-        Self(core::array::from_fn(f))
+        Self(filled(f))
     }
 
     /// Every entry through `f`.
     #[inline]
-    pub fn map<T>(&self, f: impl FnMut(S) -> T) -> Vector<T, N> {
-        Vector(self.0.map(f))
+    pub fn map<T: Copy>(&self, mut f: impl FnMut(S) -> T) -> Vector<T, N> {
+        Vector(filled(|i| f(self.0[i])))
     }
 
     /// The entries.

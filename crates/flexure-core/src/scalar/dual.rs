@@ -6,6 +6,7 @@
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::{Float, Over, Piecewise, Scalar, assign_ops, leaf};
+use crate::array::filled;
 
 /// A value and its `M` partial derivatives: running code on it gives the exact Jacobian.
 ///
@@ -36,13 +37,13 @@ impl<S: Scalar, const M: usize> Dual<S, M> {
     /// Variable number `index` at `value`: its gradient is the unit vector `index`.
     #[inline]
     pub fn variable(value: S, index: usize) -> Self {
-        Self { value, gradient: core::array::from_fn(|j| if j == index { S::ONE } else { S::ZERO }) }
+        Self { value, gradient: filled(|j| if j == index { S::ONE } else { S::ZERO }) }
     }
 
     /// `f(self)` from `f` and `f'` at the value.
     #[inline]
     fn chain(self, f: S, slope: S) -> Self {
-        Self { value: f, gradient: self.gradient.map(|g| g * slope) }
+        Self { value: f, gradient: filled(|j| self.gradient[j] * slope) }
     }
 
     #[inline]
@@ -75,7 +76,7 @@ impl<S: Scalar, const M: usize> Neg for Dual<S, M> {
     type Output = Self;
     #[inline]
     fn neg(self) -> Self {
-        Self { value: -self.value, gradient: self.gradient.map(|g| -g) }
+        Self { value: -self.value, gradient: filled(|j| -self.gradient[j]) }
     }
 }
 
@@ -106,7 +107,7 @@ impl<C: Copy, S: Over<C>, const M: usize> Over<C> for Dual<S, M> {
     }
     #[inline]
     fn scale(self, c: C) -> Self {
-        Self { value: self.value.scale(c), gradient: self.gradient.map(|g| g.scale(c)) }
+        Self { value: self.value.scale(c), gradient: filled(|j| self.gradient[j].scale(c)) }
     }
 }
 

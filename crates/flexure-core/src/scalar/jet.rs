@@ -6,6 +6,7 @@
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::{Over, Piecewise, Scalar, assign_ops};
+use crate::array::filled;
 
 /// A truncated Taylor series: `K` coefficients, orders 0 to K − 1.
 ///
@@ -61,7 +62,7 @@ impl<S: Scalar, const K: usize> Jet<S, K> {
     /// A jet whose coefficient `k` is `f(k)`.
     #[inline]
     pub fn from_fn(f: impl FnMut(usize) -> S) -> Self {
-        Self { coefficients: core::array::from_fn(f) }
+        Self { coefficients: filled(f) }
     }
 
     /// Taylor coefficient `k`, zero beyond the truncation order.

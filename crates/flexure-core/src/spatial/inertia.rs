@@ -64,7 +64,7 @@ impl<C: Scalar> RigidInertia<C> {
         s.zz += p.z * u.z + e.z * w.z;
     }
 
-    pub(crate) fn map<D>(&self, f: impl Fn(C) -> D) -> RigidInertia<D> {
+    pub(crate) fn map<D: Copy>(&self, f: impl Fn(C) -> D) -> RigidInertia<D> {
         RigidInertia {
             mass: f(self.mass),
             first_moment: self.first_moment.map(&f),

@@ -15,7 +15,7 @@ pub struct AdaptiveCommandFilteredBackstepping;
 
 impl LawKind for AdaptiveCommandFilteredBackstepping {
     const NAME: &'static str = "adaptive-command-filtered-backstepping";
-    const SUMMARY: &'static str = "the same, adapting the parameters of the links";
+    const SUMMARY: &'static str = "backstepping by filters, adapting the parameters of the links";
     const CLAIM: Claim = Claim::Errors;
     const MEMORY: &'static [(&'static str, &'static str)] = &MEMORY;
 

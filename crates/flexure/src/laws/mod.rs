@@ -29,6 +29,8 @@ mod lqr;
 mod motor_observer_pd;
 mod motor_position_pd;
 mod motor_position_pd_capped;
+mod mpc;
+mod optimal;
 mod passivity;
 mod pd;
 mod pd_online_gravity;
@@ -89,7 +91,8 @@ laws! {
         link_impedance::LinkImpedance,
         composite_ph::CompositePh,
         sliding_mode::SlidingMode,
-        lqr::Lqr;
+        lqr::Lqr,
+        mpc::Mpc;
     dynamic:
         position_feedback::PositionFeedback,
         link_position_feedback::LinkPositionFeedback,

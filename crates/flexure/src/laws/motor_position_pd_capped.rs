@@ -15,7 +15,8 @@ pub struct MotorPositionPdCapped;
 
 impl LawKind for MotorPositionPdCapped {
     const NAME: &'static str = "motor-position-pd-capped";
-    const SUMMARY: &'static str = "the same with feedback that saturates smoothly";
+    const SUMMARY: &'static str =
+        "regulation from motor encoders alone with feedback that saturates smoothly";
     const CLAIM: Claim = Claim::Regulation;
     const MEMORY: &'static [(&'static str, &'static str)] = &[("z", "rad")];
 

@@ -243,14 +243,14 @@ macro_rules! laws {
         pub fn any_law<C: Scalar, const N: usize>(
             controller: &Controller,
             robot: &Robot,
-            number: impl Fn(f64) -> C,
+            number: &dyn Fn(f64) -> C,
         ) -> AnyLaw<C, N> {
             match controller {
                 $(Controller::$kind(gains) => {
-                    AnyLaw::$kind(Box::new(<$file::$kind as LawKind>::core(gains, robot, constants(&number))))
+                    AnyLaw::$kind(Box::new(<$file::$kind as LawKind>::core(gains, robot, constants(number))))
                 })+
                 $(Controller::$dynamic(gains) => AnyLaw::$dynamic(Box::new(
-                    <$dynamic_file::$dynamic as LawKind>::core(gains, robot, constants(&number)),
+                    <$dynamic_file::$dynamic as LawKind>::core(gains, robot, constants(number)),
                 )),)+
             }
         }
@@ -370,7 +370,7 @@ pub(super) const fn reads<F: DynamicLaw<f64, 1, K>, const K: usize>(_: PhantomDa
 
 /// Constants of a gain in vectors of `N` joints: its numbers through `number`, and 1 for joints that only fill the vector.
 pub(super) fn constants<C: Scalar, const N: usize>(
-    number: &impl Fn(f64) -> C,
+    number: &dyn Fn(f64) -> C,
 ) -> impl Fn(&Vec<f64>) -> Vector<C, N> {
     move |values| padded(values, 1.0).map(number)
 }

@@ -33,7 +33,7 @@ impl<C: Scalar, const N: usize> Segment<C, N> {
         q_d
     }
 
-    pub(crate) fn map<D>(&self, f: impl Fn(C) -> D) -> Segment<D, N> {
+    pub(crate) fn map<D: Copy>(&self, f: impl Fn(C) -> D) -> Segment<D, N> {
         Segment {
             start: f(self.start),
             rate: f(self.rate),

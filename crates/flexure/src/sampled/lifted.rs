@@ -192,7 +192,7 @@ where
 
     fn torque(&self, law: &Controller, t: f64, motion: &[f64]) -> Vec<f64> {
         let x = read_motion(motion, self.joints()).expect(SIZES);
-        let law = any_law(law, &self.scenario.robot, |x| x);
+        let law = any_law(law, &self.scenario.robot, &|x| x);
         let q_ld = self.reference.at(t);
         let u_m = laws::torque(&law, &self.robot, &x, &q_ld, &laws::start(&law, &self.robot, &x, &q_ld));
         u_m.iter().take(self.joints()).collect()
@@ -215,7 +215,7 @@ where
 
     fn law(&self, law: &Controller, t: f64, motion: &[f64]) -> Dense<f64> {
         let (n, q_ld) = (self.joints(), self.q_ld(t));
-        let law = any_law::<f64, N>(law, &self.scenario.robot, |x| x);
+        let law = any_law::<f64, N>(law, &self.scenario.robot, &|x| x);
         let z = law.start(&self.robot, &self.motion(motion, usize::MAX), &q_ld);
         let columns: Vec<_> = (0..4 * n)
             .map(|moving| {
@@ -231,7 +231,7 @@ where
         if parts == 0 {
             return None;
         }
-        let law = any_law::<f64, N>(law, &self.scenario.robot, |x| x);
+        let law = any_law::<f64, N>(law, &self.scenario.robot, &|x| x);
         let times = [(t - period).max(0.0), t];
         let [before, now] =
             [0, 1].map(|i| Remembering::new(self, &law, parts, (times[i], moments[i]), settled));

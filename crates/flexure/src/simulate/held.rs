@@ -112,7 +112,7 @@ impl<L: FromFile<f64, N> + Clone, const N: usize> Held<L, N> {
     fn new(scenario: &Scenario, own: Option<Own>) -> Result<Self, Problems> {
         let [model, simulated] = pair(&scenario.robot, &assembly::simulated(scenario))?;
         let law = match own {
-            None => HeldLaw::Registered(any_law(&scenario.controller, &scenario.robot, |x| x)),
+            None => HeldLaw::Registered(any_law(&scenario.controller, &scenario.robot, &|x| x)),
             Some(Own::Law(law)) => HeldLaw::Own(law),
             Some(Own::Shaping(gains, shaping)) => HeldLaw::Shaped(Box::new(shaping.law(&gains))),
         };

@@ -16,7 +16,7 @@ use crate::simulate::assembly::{initial, plant};
 pub fn preload(scenario: &Scenario) -> Result<Option<Problem>, Problems> {
     let robot = &scenario.robot;
     let [gravity, missing, deflection, acceleration] =
-        sized!(robot, L, N => springs(scenario, &pair::<L<f64>, N>(robot, robot)?[0]));
+        sized!(roomy robot, L, N => springs(scenario, &pair::<L<f64>, N>(robot, robot)?[0]));
     let initial = &scenario.initial;
     let at_rest = initial.dq_l.iter().chain(&initial.dq_m).all(|&v| v == 0.0);
     let largest = |v: &[f64]| v.iter().fold(0.0, |m: f64, x| m.max(x.abs()));

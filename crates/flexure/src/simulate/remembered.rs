@@ -93,10 +93,9 @@ mod tests {
     #[test]
     fn memories_wait_for_numbers() {
         let robot = load_robot("quanser-2dof").expect("built in");
-        let arm: Fjr<_, PlanarTwoLink<f64>, 2> =
-            fjr(&robot, &robot.links, |x| x, &|x| x).expect(OF_THE_KIND);
+        let arm: Fjr<_, PlanarTwoLink<f64>, 2> = fjr(&robot, &robot.links, |x| x, &|x| x).expect(OF_THE_KIND);
         let controller = Controller::default_for("disturbance-rejecting", &robot).expect("registered");
-        let law = any_law(&controller, &robot, |x| x);
+        let law = any_law(&controller, &robot, &|x| x);
         let at = |before: Option<&Remembered<2>>, t: f64, q: f64, given: f64| {
             let (x, q_ld) = (Motion::at_rest(Vector([q; 2])), Vector([Jet::ZERO; 2]));
             Remembered::at(&law, &arm, before, t, (&x, &q_ld), Vector([given; 2]))

@@ -268,7 +268,7 @@ fn every_law_runs_on_every_number() {
     let (x, q_ld) = place();
     for kind in names() {
         let controller = Controller::default_for(kind, &data).expect("registered");
-        let law = any_law::<f64, 3>(&controller, &data, |x| x);
+        let law = any_law::<f64, 3>(&controller, &data, &|x| x);
         let z = law.start(&robot, &x, &q_ld);
         let u = law.torque(&robot, &x, &q_ld, &z);
         let dual_motion = x.map(|x| Dual::<f64, 1> { value: x, gradient: [x.sin()] });
@@ -277,7 +277,7 @@ fn every_law_runs_on_every_number() {
         let jet_motion = x.map(|x| Jet::<f64, 2>::new([x, x.sin()]));
         let jet_z = z.map(|part| part.map(Jet::value));
         let jet = law.torque(&robot, &jet_motion, &on(&q_ld, Jet::value), &jet_z);
-        let law = any_law::<Interval, 3>(&controller, &data, Interval::point);
+        let law = any_law::<Interval, 3>(&controller, &data, &Interval::point);
         let interval_z = z.map(|part| part.map(Interval::point));
         let bounds = law.torque(&enclosed, &x.map(Interval::point), &on(&q_ld, Interval::point), &interval_z);
         for i in 0..3 {
@@ -388,7 +388,7 @@ fn joints_that_are_not_there_change_no_law() {
     {
         let controller = Entrant::named(&name).expect("known").controller(&data).expect("three joints");
         let (law, larger) =
-            (any_law::<f64, 3>(&controller, &data, |x| x), any_law::<f64, 5>(&controller, &data, |x| x));
+            (any_law::<f64, 3>(&controller, &data, &|x| x), any_law::<f64, 5>(&controller, &data, &|x| x));
         let u = law.torque(&robot, &x, &q_ld, &law.start(&robot, &x, &q_ld));
         let more = larger.torque(&padded, &far, &q_far, &larger.start(&padded, &far, &q_far));
         assert_eq!(head(&more).0.map(f64::to_bits), u.0.map(f64::to_bits), "{name}");

@@ -5,6 +5,7 @@
 )]
 
 use super::{Applied, DynamicLaw};
+use crate::array::filled;
 use crate::linalg::{Matrix, Vector, eliminate, eliminate_each};
 use crate::model::{Fjr, Links, Motion};
 use crate::scalar::{Dual, Float, Jet, Over, Scalar};
@@ -37,7 +38,7 @@ where
     let next = added(z, &first, period);
     let missing = |next: &[Vector<T, N>; K]| -> [Vector<T, N>; K] {
         let last = at(now, next);
-        core::array::from_fn(|k| z[k] - next[k] + (first[k] + last[k]).scaled(half))
+        filled(|k| z[k] - next[k] + (first[k] + last[k]).scaled(half))
     };
     let slope = Slope { law, robot, now, z: &next, applied };
     if F::JOINTWISE {
@@ -73,7 +74,7 @@ fn added<T: Scalar, const N: usize, const K: usize>(
     b: &[Vector<T, N>; K],
     s: T,
 ) -> [Vector<T, N>; K] {
-    core::array::from_fn(|k| a[k] + b[k].scaled(s))
+    filled(|k| a[k] + b[k].scaled(s))
 }
 
 /// Where ż is differentiated.
@@ -99,7 +100,7 @@ where
         let x = self.now.x.map(Dual::constant);
         let q_ld = self.now.q_ld.map(|q| Jet::from_fn(|k| Dual::constant(q.coefficient(k))));
         let applied = Applied { asked: lift(&self.applied.asked), given: lift(&self.applied.given) };
-        let z = core::array::from_fn(|k| {
+        let z = filled(|k| {
             Vector::from_fn(|i| {
                 let z = self.z[k][i];
                 direction(k, i).map_or(Dual::constant(z), |direction| Dual::variable(z, direction))

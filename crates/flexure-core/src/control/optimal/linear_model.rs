@@ -1,5 +1,6 @@
 //! The robot, linearised.
 
+use crate::array::filled;
 use crate::linalg::{BlockMatrix, Matrix, Vector};
 use crate::model::{Fjr, Links, Motion};
 use crate::scalar::{Dual, Float};
@@ -26,7 +27,7 @@ impl<S: Float, const N: usize> LinearModel<S, N> {
     pub fn at_rest<L: Links<S, N>>(robot: &Fjr<S, L, N>, posture: &Vector<S, N>) -> Self {
         let (zero, motors) = (Vector::ZERO, robot.motors_at_rest(posture));
         // A column of blocks for each of q, θ, v, w, u and τ.
-        let columns: [[Matrix<S, N, N>; 4]; 6] = core::array::from_fn(|column| {
+        let columns: [[Matrix<S, N, N>; 4]; 6] = filled(|column| {
             let seeded = |part: usize, x: &Vector<S, N>| {
                 let number = if part == column { Dual::<S, N>::variable } else { |x, _| Dual::constant(x) };
                 Vector::from_fn(|i| number(x[i], i))

@@ -3,6 +3,7 @@
 use super::{
     LinearModel, NoRegulator, QuadraticCost, Regulator, deviation, feedback, regulator::torque_cost,
 };
+use crate::array::filled;
 use crate::control::ControlLaw;
 use crate::linalg::{BlockMatrix, Matrix, Vector};
 use crate::model::{Fjr, Links, Motion};
@@ -30,13 +31,13 @@ const SWEEPS: usize = 30;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mpc<C, const N: usize, const H: usize> {
     /// Gains of the torques of step k without limits, F (A − B F)ᵏ.
-    plan: [[Matrix<C, N, N>; 4]; H],
+    pub plan: [[Matrix<C, N, N>; 4]; H],
     /// What a torque does to r after k steps, √(R + Bᵀ P B) (1, F B, F A B, …), a row for each motor.
-    leaving: [Matrix<C, N, N>; H],
-    /// How far a torque goes per slope: the reciprocal of what Σ |r|² grows by with the square of the first.
-    reach: Vector<C, N>,
-    /// The most torque of each motor [N m].
-    limit: Vector<C, N>,
+    pub leaving: [Matrix<C, N, N>; H],
+    /// How far the torque of each motor goes per slope: the reciprocal of what Σ |r|² grows by with the square of the first.
+    pub reach: Vector<C, N>,
+    /// The most torque of each motor [N m]; infinity for none.
+    pub limit: Vector<C, N>,
 }
 
 impl<C: Float, const N: usize, const H: usize> Mpc<C, N, H> {
@@ -59,12 +60,12 @@ impl<C: Float, const N: usize, const H: usize> Mpc<C, N, H> {
         closed -= &BlockMatrix::outer(&B, &F);
         let back = closed.transpose();
         let (mut ahead, mut moved) = (F.map(|block| block.transpose()), B);
-        let plan = core::array::from_fn(|_| {
+        let plan = filled(|_| {
             let gain = ahead.map(|block| block.transpose());
             ahead = &back * &ahead;
             gain
         });
-        let leaving = core::array::from_fn(|k| {
+        let leaving = filled(|k| {
             let mut felt = Matrix::identity();
             if k > 0 {
                 felt = F.iter().zip(moved).fold(Matrix::ZERO, |sum, (f, x)| sum + *f * x);

@@ -47,7 +47,7 @@ pub struct Body<C = f64> {
 
 impl<C: Copy> Body<C> {
     /// The same body with every number through `f`.
-    pub fn map<D>(&self, f: impl Fn(C) -> D) -> Body<D> {
+    pub fn map<D: Copy>(&self, f: impl Fn(C) -> D) -> Body<D> {
         Body {
             parent: self.parent,
             kind: self.kind,

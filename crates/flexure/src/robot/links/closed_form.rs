@@ -20,7 +20,7 @@ pub trait ClosedForm<C> {
     type With<D>: ClosedForm<D>;
 
     /// The same links with every number through `f`.
-    fn map<D>(&self, f: impl Fn(C) -> D) -> Self::With<D>
+    fn map<D: Copy>(&self, f: impl Fn(C) -> D) -> Self::With<D>
     where
         C: Copy;
 
@@ -150,7 +150,7 @@ macro_rules! closed_forms {
 
         impl<C: Copy> Links<C> {
             /// The same links with every number through `f`.
-            pub(crate) fn map<D>(&self, f: impl Fn(C) -> D) -> Links<D> {
+            pub(crate) fn map<D: Copy>(&self, f: impl Fn(C) -> D) -> Links<D> {
                 match self {
                     $(Self::$kind(data) => Links::$kind(data.map(f)),)+
                     Self::Tree(bodies) => Links::Tree(bodies.iter().map(|body| body.map(&f)).collect()),

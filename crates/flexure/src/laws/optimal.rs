@@ -1,0 +1,69 @@
+//! What optimal laws share: the weights of errors and torques, and designs whose joint count is hidden.
+
+use flexure_core::control::QuadraticCost;
+use flexure_core::linalg::{Matrix, Vector};
+use flexure_core::scalar::Scalar;
+
+use crate::files::quantity::Quantity;
+use crate::laws::gain::Gain;
+use crate::robot::padded;
+use crate::units;
+
+/// The error that costs 1 a second.
+const ERROR: f64 = 0.05;
+
+/// Weights of the errors of positions and velocities, and of torques.
+pub(super) const WEIGHTS: [Gain; 5] = [
+    Gain::new("link_position", Quantity::positive("weight of link position errors", units::NONE), |_| {
+        ERROR.powi(-2)
+    }),
+    Gain::new("motor_position", Quantity::positive("weight of motor position errors", units::NONE), |_| {
+        0.1 * ERROR.powi(-2)
+    }),
+    Gain::new("link_velocity", Quantity::positive("weight of link velocity errors", units::NONE), |drive| {
+        (ERROR * drive.bandwidth()).powi(-2)
+    }),
+    Gain::new(
+        "motor_velocity",
+        Quantity::positive("weight of motor velocity errors", units::NONE),
+        |drive| 0.1 * (ERROR * drive.bandwidth()).powi(-2),
+    ),
+    Gain::new(
+        "torque",
+        Quantity::positive("weight of torques beside those of the reference", units::NONE),
+        |drive| (ERROR * drive.motor_stiffness()).powi(-2),
+    ),
+];
+
+/// Why weights have no law.
+pub(super) const NO_DESIGN: &str =
+    "no feedback is optimal for these weights: they leave a motion unseen, or lie too far apart";
+
+/// What the weights say, with joints that only fill the vectors.
+pub(super) fn cost<const N: usize>(weights: [&Vec<f64>; 5]) -> QuadraticCost<f64, N> {
+    let [q, theta, v, w, torque] = weights.map(|weight| padded(weight, 1.0));
+    QuadraticCost { state: [q, theta, v, w], torque }
+}
+
+/// A matrix by rows, of the joints that a robot has.
+pub(super) type Rows = Vec<Vec<f64>>;
+
+/// The rows of the first `n` joints.
+pub(super) fn rows<const N: usize>(matrix: &Matrix<f64, N, N>, n: usize) -> Rows {
+    (0..n).map(|i| matrix.row(i).iter().take(n).collect()).collect()
+}
+
+/// No numbers, for `n` joints: of weights without a law no torque is one, and the loop says so at its first instant.
+pub(super) fn nothing(n: usize) -> Rows {
+    vec![vec![f64::NAN; n]; n]
+}
+
+/// The matrix with these rows, each through `vector`, and zeros for joints that only fill it.
+pub(super) fn matrix<C: Scalar, const N: usize>(
+    rows: &Rows,
+    vector: &impl Fn(&Vec<f64>) -> Vector<C, N>,
+) -> Matrix<C, N, N> {
+    let none = vec![0.0; rows.len()];
+    let mut rows = rows.iter();
+    Matrix([(); N].map(|()| vector(rows.next().unwrap_or(&none)).0))
+}
