@@ -29,7 +29,7 @@ impl LawKind for Mpc {
     const GAINS: [Gain; 6] = {
         let [q, theta, v, w, torque] = WEIGHTS;
         let step = Quantity::positive("time for which each of ten planned torques is held", units::TIME);
-        [q, theta, v, w, torque, Gain::new("step", step, |_| 0.01)]
+        [q, theta, v, w, torque, Gain::new("step", step, |_| 0.002)]
     };
 
     fn objection(gains: &Self::Gains, robot: &Robot) -> Option<String> {
