@@ -1,4 +1,5 @@
 //! Arrays of results.
+#![expect(clippy::indexing_slicing, reason = "loops over a const dimension; the no-panic check covers them")]
 
 /// The array whose entry `i` is `f(i)`, at least one.
 ///
@@ -12,4 +13,10 @@ pub(crate) fn filled<T: Copy, const N: usize>(mut f: impl FnMut(usize) -> T) -> 
         all[i] = f(i);
     }
     all
+}
+
+/// Every entry through `f`, likewise.
+#[inline]
+pub(crate) fn mapped<S: Copy, T: Copy, const N: usize>(all: &[S; N], mut f: impl FnMut(S) -> T) -> [T; N] {
+    filled(|i| f(all[i]))
 }

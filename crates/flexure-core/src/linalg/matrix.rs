@@ -3,7 +3,7 @@
 use core::ops::{Add, Index, IndexMut, Mul, Neg, Sub};
 
 use super::{Ldl, Vector};
-use crate::array::filled;
+use crate::array::{filled, mapped};
 use crate::scalar::{Over, Scalar};
 
 /// A matrix of `R` rows and `C` columns, stored by rows.
@@ -20,7 +20,7 @@ impl<S: Copy, const R: usize, const C: usize> Matrix<S, R, C> {
     /// Every entry through `f`.
     #[inline]
     pub fn map<T: Copy>(&self, mut f: impl FnMut(S) -> T) -> Matrix<T, R, C> {
-        Matrix(filled(|i| filled(|j| f(self.0[i][j]))))
+        Matrix(mapped(&self.0, |row| mapped(&row, &mut f)))
     }
 
     /// The transpose.

@@ -2,7 +2,7 @@
 
 use core::ops::{Add, AddAssign, Index, IndexMut, Neg, Sub, SubAssign};
 
-use crate::array::filled;
+use crate::array::{filled, mapped};
 use crate::scalar::{Over, Scalar};
 
 /// A column vector of `N` numbers.
@@ -20,8 +20,8 @@ impl<S: Copy, const N: usize> Vector<S, N> {
 
     /// Every entry through `f`.
     #[inline]
-    pub fn map<T: Copy>(&self, mut f: impl FnMut(S) -> T) -> Vector<T, N> {
-        Vector(filled(|i| f(self.0[i])))
+    pub fn map<T: Copy>(&self, f: impl FnMut(S) -> T) -> Vector<T, N> {
+        Vector(mapped(&self.0, f))
     }
 
     /// The entries.

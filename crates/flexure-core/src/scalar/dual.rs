@@ -6,7 +6,7 @@
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::{Float, Over, Piecewise, Scalar, assign_ops, leaf};
-use crate::array::filled;
+use crate::array::{filled, mapped};
 
 /// A value and its `M` partial derivatives: running code on it gives the exact Jacobian.
 ///
@@ -43,7 +43,7 @@ impl<S: Scalar, const M: usize> Dual<S, M> {
     /// `f(self)` from `f` and `f'` at the value.
     #[inline]
     fn chain(self, f: S, slope: S) -> Self {
-        Self { value: f, gradient: filled(|j| self.gradient[j] * slope) }
+        Self { value: f, gradient: mapped(&self.gradient, |g| g * slope) }
     }
 
     #[inline]
@@ -76,7 +76,7 @@ impl<S: Scalar, const M: usize> Neg for Dual<S, M> {
     type Output = Self;
     #[inline]
     fn neg(self) -> Self {
-        Self { value: -self.value, gradient: filled(|j| -self.gradient[j]) }
+        Self { value: -self.value, gradient: mapped(&self.gradient, |g| -g) }
     }
 }
 
@@ -107,7 +107,7 @@ impl<C: Copy, S: Over<C>, const M: usize> Over<C> for Dual<S, M> {
     }
     #[inline]
     fn scale(self, c: C) -> Self {
-        Self { value: self.value.scale(c), gradient: filled(|j| self.gradient[j].scale(c)) }
+        Self { value: self.value.scale(c), gradient: mapped(&self.gradient, |g| g.scale(c)) }
     }
 }
 

@@ -35,6 +35,7 @@ impl LawKind for Mpc {
     fn objection(gains: &Self::Gains, robot: &Robot) -> Option<String> {
         let [.., steps] = gains;
         let first = steps.first()?;
+        #[expect(clippy::float_cmp, reason = "one number, or another")]
         if let Some(other) = steps.iter().find(|step| *step != first) {
             return Some(format!(
                 "step is {first} s for one joint and {other} s for another: all torques are planned together"

@@ -83,6 +83,7 @@ fn is_number<const N: usize>(part: &Vector<f64, N>) -> bool {
 #[cfg(test)]
 mod tests {
     use flexure_core::robots::PlanarTwoLink;
+    use flexure_core::scalar::Scalar as _;
 
     use super::*;
     use crate::laws::{Controller, any_law};
