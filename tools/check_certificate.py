@@ -100,7 +100,7 @@ def read_file(data):
     raw = json.loads(text, object_pairs_hook=lambda pairs: dict(pairs) if len(dict(pairs)) == len(pairs) else pairs, parse_int=whole)
     json.dumps(raw, ensure_ascii=False).encode("utf-8")  # half of a surrogate pair is no text
     WRONG.clear()
-    version = read(raw["version"], range(1, 3))
+    version = read(raw["version"], range(1, 4))
     def claim(sign, digits, up):  # from version 2 on rounded to the side that claims more
         return partial(number, sign=sign, rounded=(digits, up) if version > 1 else None)
     coupled, kind = raw["controller"]["phi"] == "coupled-tanh", raw["robot"]["links"]["kind"]
@@ -118,8 +118,9 @@ def read_file(data):
     rates, margins = ({"contraction": kind, "convergence": kind} for kind in (rate, margin))
     witness = {"side": side, "error": [number] * n, "row": range(n), "column": range(n), "difference": claim("> 0", 1, True)}
     about = {"subject": ({"robot": digest, "scenario": digest},)} if version > 1 else {}
+    about |= {"stretched": ({"velocity_error": from_zero * 2, "exponent": [(positive,)] * 2 * n, "rate": claim("> 0", 9, True)},)} if version > 2 else {}
     file = read(raw, about | {
-        "format": {"flexure-certificate"}, "version": range(1, 3), "name": str, "made_by": str, "assumptions": [str, ...],
+        "format": {"flexure-certificate"}, "version": range(1, 4), "name": str, "made_by": str, "assumptions": [str, ...],
         "robot": {"name": str, "joints": int, "stiffness": above, "motor_inertia": above, "link_damping": from_zero,
                   "motor_damping": from_zero, "links": {"kind": str} | links},
         "controller": {"phi": {"tanh", "linear", "coupled-tanh"}, "link": gains, "motor": gains},
@@ -356,6 +357,35 @@ def check_tube(tube, file, blocks, metric):
     need(region is None or level.high <= region.low, "tube: the level is more than the region's")
     need(all(p * e.claimed**2 >= 2 * level.reached for p, e in zip(metric, tube["error"])), "tube: an error is too small")
 
+def stretched_rest(side, i, b, drift, beta):  # own rate less beta while it drifts outwards, and (P - metric)^2 / P, at the largest error
+    error = iv.mpf(side.bounds[i].b)
+    flat, tanh, square, growth = slope(error), 1 - 2 / (iv.exp(2 * error) + 1), ONE, ZERO
+    need(b is None or b > flat or b <= flat, "stretched: an exponent is too close to sech^2 of the largest error")
+    if b is not None and b > flat:
+        square = iv.exp(b * iv.log(tanh**2 / flat * b / (1 - b))) * (1 - b) / tanh**2
+        growth = (b - flat) / tanh
+    rate = side.shaping[i] * (flat + growth * tanh) - growth * drift - beta
+    need(rate > 0, "stretched: a position error alone contracts more slowly")
+    return rate, side.metric[i] * (square - 1) ** 2 / square
+def check_stretched(claim, file, blocks, sides, damping):
+    (link, motor), n, beta, links = sides.values(), file["robot"]["joints"], claim["rate"].claimed, file["robot"]["links"]
+    need(link.phi == "tanh" and None not in link.bounds + motor.bounds, "stretched: for tanh, and errors that have bounds")
+    need(all(b is None or b < 1 for b in claim["exponent"]), "stretched: an exponent is not < 1")
+    left = []
+    for i in range(n):
+        speed, b = claim["velocity_error"][i::n], claim["exponent"][i::n]
+        coupling = file["robot"]["stiffness"][i] / motor.metric[i]
+        rate, mismatch = stretched_rest(link, i, b[0], speed[0], beta)
+        fast, other = stretched_rest(motor, i, b[1], speed[1] + coupling * speed[0], beta)
+        spare = damping["motor"][i] - beta * file["robot"]["motor_inertia"][i]
+        need(spare > 0 and fast - other / (4 * spare) > 0, "stretched: a motor does not reach the rate")
+        left.append(damping["link"][i] - mismatch / (4 * rate) - coupling**2 * other / (4 * (fast - other / (4 * spare))))
+    if links["kind"] == "tree":
+        masses = [diagonal([d / blocks["sigma_l"]["contraction"] for d in damping["link"]])]
+    else:
+        masses = mass_matrices(links)[0].values()
+    need(all(smallest_pivot(momentum_matrix(left, mass, None, beta)) > 0 for mass in masses), "stretched: the damping does not bear it")
+
 def check(data):  # the rates that are proved, and what the loop's files hash to
     file = read_file(data)
     check_closed_loop(file["closed_loop"])
@@ -373,6 +403,8 @@ def check(data):  # the rates that are proved, and what the loop's files hash to
     check_structure(file, sides)
     if file["tube"]:
         check_tube(file["tube"], file, blocks, metric)
+    if file.get("stretched"):
+        check_stretched(file["stretched"], file, blocks, sides, damping)
     return [float(file[rate + "_rate"].low) for rate in RATES], file.get("subject") or {}
 
 def main(paths):

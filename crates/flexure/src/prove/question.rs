@@ -46,6 +46,8 @@ pub struct Question {
     pub rate: Option<f64>,
     /// Largest unknown torque on each motor [N m].
     pub disturbance: Option<Vec<f64>>,
+    /// Largest velocity errors [rad/s], links then motors, if a rate in a stretched metric is asked for.
+    pub velocity_error: Option<Vec<f64>>,
     /// Whether the direct engine shall prove the rate once more, and how hard it may try.
     pub direct: Option<Direct>,
 }
@@ -133,6 +135,9 @@ pub fn problem(
         .chain(beyond_the_model(scenario))
         .collect();
     let errors = |errors: &[f64]| errors.iter().map(|&e| Number::decimal(e)).collect::<Vec<_>>();
+    if question.velocity_error.is_some() && phi != CertifiedPhi::Tanh {
+        return Err(unstretched(scenario, phi).into());
+    }
     let metric: Vec<_> =
         controller.link.metric.iter().chain(&controller.motor.metric).map(Number::bounds).collect();
     let region = match &question.region {
@@ -157,6 +162,7 @@ pub fn problem(
         controller,
         region,
         disturbance,
+        velocity_error: question.velocity_error.as_deref().map(errors),
     })
 }
 
@@ -165,6 +171,15 @@ fn uncertified(scenario: &Scenario, phi: laws::Phi) -> Problem {
     let message = format!("controller.phi is '{}', of which no certificate speaks", phi.name());
     let help =
         format!("those are of phi = {}; `flexure run` simulates any", CertifiedPhi::names().join(", "));
+    scenario.places.problem("controller.phi", "unsupported", message, help)
+}
+
+/// What to say where a stretched metric is asked for of a shaping function that is not flat anywhere.
+fn unstretched(scenario: &Scenario, phi: CertifiedPhi) -> Problem {
+    let name = phi.certified().name();
+    let message = format!("a rate in a stretched metric is asked for, and controller.phi is '{name}'");
+    let help = "a metric is stretched where tanh is flat; without --velocity-error, linear and coupled-tanh have a contraction rate \
+                whatever the errors are";
     scenario.places.problem("controller.phi", "unsupported", message, help)
 }
 

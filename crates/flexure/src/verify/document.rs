@@ -28,6 +28,7 @@ pub(super) struct Certificate {
     pub measures: Vec<Measure>,
     pub structure: Vec<Property>,
     pub tube: Option<Tube>,
+    pub stretched: Option<Stretched>,
 }
 
 /// Version of the format.
@@ -35,6 +36,7 @@ pub(super) struct Certificate {
 pub(super) enum Version {
     One,
     Two,
+    Three,
 }
 
 impl Version {
@@ -162,7 +164,14 @@ pub(super) struct Tube {
     pub error: Vec<Number>,
 }
 
-const KEYS: [&str; 17] = [
+pub(super) struct Stretched {
+    pub velocity_error: Vec<Number>,
+    /// b, links then motors; none where nothing is stretched.
+    pub exponent: Vec<Option<Number>>,
+    pub rate: Number,
+}
+
+const KEYS: [&str; 18] = [
     "format",
     "version",
     "name",
@@ -180,6 +189,7 @@ const KEYS: [&str; 17] = [
     "structure",
     "tube",
     "subject",
+    "stretched",
 ];
 
 /// Bytes that a certificate may have.
@@ -204,17 +214,25 @@ fn certificate(root: &Field<'_>) -> Result<Certificate, Rejected> {
         return Err(root.bad("has no \"format\": \"flexure-certificate\""));
     }
     let version = self::version(root)?;
-    let ([_, _, name, made_by, assumptions, robot, controller, region, closed_loop, rest @ ..], subject) =
-        match version {
-            Version::One => {
-                let [keys @ .., _] = KEYS;
-                (root.object(keys)?, None)
-            }
-            Version::Two => {
-                let [fields @ .., subject] = root.object(KEYS)?;
-                (fields, subject.unless_null())
-            }
-        };
+    let (
+        [_, _, name, made_by, assumptions, robot, controller, region, closed_loop, rest @ ..],
+        subject,
+        stretched,
+    ) = match version {
+        Version::One => {
+            let [keys @ .., _, _] = KEYS;
+            (root.object(keys)?, None, None)
+        }
+        Version::Two => {
+            let [keys @ .., _] = KEYS;
+            let [fields @ .., subject] = root.object(keys)?;
+            (fields, subject.unless_null(), None)
+        }
+        Version::Three => {
+            let [fields @ .., subject, stretched] = root.object(KEYS)?;
+            (fields, subject.unless_null(), stretched.unless_null())
+        }
+    };
     let [blocks, contraction_rate, convergence_rate, mass_matrix, measures, structure, tube] = rest;
     let robot = robot::read(&robot)?;
     let n = robot.joints;
@@ -242,6 +260,7 @@ fn certificate(root: &Field<'_>) -> Result<Certificate, Rejected> {
         measures: each(&measures, |entry| measure(entry, version))?,
         structure: each(&structure, |entry| property(entry, n, version))?,
         tube: tube.unless_null().map(|tube| self::tube(&tube, n, version)).transpose()?,
+        stretched: stretched.map(|claim| self::stretched(&claim, n, version)).transpose()?,
         robot,
     })
 }
@@ -252,7 +271,8 @@ fn version(root: &Field<'_>) -> Result<Version, Rejected> {
     match version.index()? {
         1 => Ok(Version::One),
         2 => Ok(Version::Two),
-        _ => Err(version.bad("must be 1 or 2")),
+        3 => Ok(Version::Three),
+        _ => Err(version.bad("must be 1, 2 or 3")),
     }
 }
 
@@ -356,5 +376,15 @@ fn tube(field: &Field<'_>, n: usize, version: Version) -> Result<Tube, Rejected>
         reached: version.up(&level)?,
         level: version.down(&level)?,
         error: error.list_of(2 * n)?.iter().map(|error| version.down(error)).collect::<Result<_, _>>()?,
+    })
+}
+
+fn stretched(field: &Field<'_>, n: usize, version: Version) -> Result<Stretched, Rejected> {
+    let [velocity_error, exponent, rate] = field.object(["velocity_error", "exponent", "rate"])?;
+    let number = |field: Field<'_>| field.unless_null().map(|field| field.number()).transpose();
+    Ok(Stretched {
+        velocity_error: velocity_error.numbers(2 * n)?,
+        exponent: exponent.list_of(2 * n)?.into_iter().map(number).collect::<Result<_, _>>()?,
+        rate: version.up(&rate)?,
     })
 }

@@ -21,6 +21,7 @@ mod reach;
 mod region;
 mod robot;
 mod shaping;
+mod stretched;
 mod structure;
 mod subject;
 mod tube;
@@ -58,6 +59,7 @@ pub fn verify(text: &str) -> Result<CheckReport, Rejected> {
         measures::check,
         structure::check,
         tube::check,
+        stretched::check,
     ];
     let mut claims = Vec::new();
     for check in checks {

@@ -61,6 +61,7 @@ fn problem(phi: CertifiedPhi, region: RequestedRegion) -> Proposition {
         },
         region,
         disturbance: None,
+        velocity_error: None,
     }
 }
 

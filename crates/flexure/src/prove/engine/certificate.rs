@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::prove::engine::number::Number;
 
 /// Version of the format.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 /// A proof in numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -47,6 +47,8 @@ pub struct Certificate {
     pub structure: Vec<StructureClaim>,
     /// Error tube under a disturbance of the motors.
     pub tube: Option<Tube>,
+    /// A contraction rate in a metric that grows with the error.
+    pub stretched: Option<StretchedClaim>,
 }
 
 impl Certificate {
@@ -374,6 +376,19 @@ pub struct Tube {
     pub level: Number,
     /// What |q̃_i| ≤ there, links then motors, in rad.
     pub error: Vec<Number>,
+}
+
+/// A contraction rate of any two solutions while both have position errors in the region and velocity errors up to a bound, in a metric
+/// that counts position errors for more where tanh is flat.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(rename = "Stretched", deny_unknown_fields))]
+pub struct StretchedClaim {
+    /// Largest |s_i| = |(M⁻¹ σ)_i|, links then motors [rad/s].
+    pub velocity_error: Vec<Number>,
+    /// b of the stretch of each position error, links then motors: 0 < b < 1; none where nothing is stretched.
+    pub exponent: Vec<Option<Number>>,
+    /// The rate [1/s].
+    pub rate: Number,
 }
 
 /// Enclosures of a list of numbers.

@@ -181,6 +181,16 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
             list(&tube.error)
         ));
     }
+    if let (Some(stretched), Some(region)) = (&summary.stretched, &summary.region) {
+        let errors = region.error.as_deref().unwrap_or_default();
+        let speed = summary.unit(units::SPEED);
+        lines.push(format!(
+            "stretched    {} 1/s between any two solutions, while both have |q̃_i| ≤ {} {rad} and |s_i| ≤ {} {speed}",
+            significant(stretched.rate, 6),
+            list(errors),
+            list(&stretched.velocity_error)
+        ));
+    }
     if let Some(within) = &summary.within {
         lines.extend(tolerated(within, &rad));
     }

@@ -1,0 +1,96 @@
+//! A metric that counts position errors for more where tanh is flat.
+
+use crate::control::Shaping;
+use crate::linalg::{Matrix, Vector};
+use crate::model::Links;
+use crate::scalar::{Over, Piecewise, Scalar};
+
+use super::{ErrorLoop, MatrixField};
+
+/// r(x) ≥ 1, even in the error x, by which lengths of position errors are stretched: with P = Π r² in place of Π, φ = Λ tanh alone
+/// contracts at max(b, sech² x) Λ instead of sech² x Λ, however large x is.
+///
+/// r = 1 up to x* with sech² x* = b, and beyond it f(|x|)/f(x*) with f = sinh^b / tanh. So r'/r = (b − sech² x)/tanh x there and 0 before: it
+/// does not jump, and grows to b.
+///
+/// ```
+/// use flexure_core::contraction::Stretch;
+/// use flexure_core::scalar::Dual;
+/// let (b, x) = (0.25_f64, 2.0_f64);
+/// let r = Stretch::tanh(b).at(Dual::<f64, 1>::variable(x, 0));
+/// let growth = r.gradient[0] / r.value;
+/// assert!((growth - (b - x.cosh().powi(-2)) / x.tanh()).abs() < 1e-14);
+/// assert_eq!(Stretch::tanh(b).at(0.1), 1.0);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Stretch<C>(Option<Beyond<C>>);
+
+/// Where and how r grows.
+#[derive(Clone, Copy, Debug)]
+struct Beyond<C> {
+    /// b.
+    exponent: C,
+    /// x* in rad.
+    knee: C,
+    /// ln f(x*).
+    start: C,
+}
+
+impl<C: Scalar> Stretch<C> {
+    /// r = 1 everywhere.
+    pub const NONE: Self = Self(None);
+
+    /// r for the share `b` of the slope at no error, 0 < b < 1.
+    #[inline]
+    pub fn tanh(b: C) -> Self {
+        let knee = ((C::ONE + (C::ONE - b).sqrt()) / b.sqrt()).ln();
+        Self(Some(Beyond { exponent: b, knee, start: rise(b, knee) }))
+    }
+
+    /// r at the error `x` in rad.
+    #[inline]
+    pub fn at<T: Over<C> + Piecewise>(&self, x: T) -> T {
+        match self.0 {
+            None => T::ONE,
+            Some(Beyond { exponent, knee, start }) => {
+                (rise(T::constant(exponent), x.abs().max(T::constant(knee))) - T::constant(start)).exp()
+            }
+        }
+    }
+}
+
+/// ln f at y > 0: b ln sinh y − ln tanh y.
+#[inline]
+fn rise<T: Scalar>(exponent: T, y: T) -> T {
+    let tanh = y.tanh().ln();
+    exponent * (tanh + y.ln_cosh()) - tanh
+}
+
+/// An [`ErrorLoop`] measured by diag(Π_l r_l², Π_m r_m², M_l⁻¹, M_m⁻¹): a [`MatrixField`]. Lines between two errors that are straight in
+/// the coordinates ∫ √Π r dx are shortest, so that of any box around 0 no shortest line leaves it.
+#[derive(Clone, Copy, Debug)]
+pub struct StretchedLoop<'a, C, L, Pl, Pm, const N: usize> {
+    /// The loop, and its own metric.
+    pub error_loop: ErrorLoop<'a, C, L, Pl, Pm, N>,
+    /// r_l, joint by joint.
+    pub link: [Stretch<C>; N],
+    /// r_m, joint by joint.
+    pub motor: [Stretch<C>; N],
+}
+
+impl<C, L, Pl, Pm, const N: usize, const D: usize> MatrixField<C, D> for StretchedLoop<'_, C, L, Pl, Pm, N>
+where
+    C: Scalar,
+    L: Links<C, N>,
+    Pl: Shaping<C, N>,
+    Pm: Shaping<C, N>,
+{
+    #[inline]
+    fn at<T: Over<C> + Piecewise>(&self, x: &Vector<T, D>, t: T) -> Matrix<T, D, D> {
+        let mut metric = self.error_loop.at(x, t);
+        for (i, stretch) in self.link.iter().chain(&self.motor).enumerate() {
+            metric.0[i][i] = metric.0[i][i] * stretch.at(x[i]).square();
+        }
+        metric
+    }
+}

@@ -1,0 +1,246 @@
+//! The contraction rate in a metric that counts position errors for more where tanh is flat, [`Stretch`]: of any two solutions while both
+//! have position errors in the region and velocity errors up to a bound.
+//!
+//! With P = Π r² in place of Π the coupling does not cancel any more: what is left of it couples, joint by joint, δq̃_l with δs_l, and δq̃_m
+//! with δs_l and δs_m. Eliminating positions and motor momenta leaves a load on the damping of the links, so that one inequality of the
+//! links' momentum block remains, B − diag(load) − β M ≻ 0. All that the load is made of grows with the error: the largest errors decide.
+
+use flexure_core::contraction::{Stretch, Stretched, StretchedSide};
+use flexure_core::control::{Metric, Tanh};
+use flexure_core::linalg::Vector;
+use flexure_core::scalar::{Interval, Over, Piecewise, Scalar};
+
+use crate::linalg::Symmetric;
+use crate::prove::engine::certificate::{DecimalGains, DecimalLaw, DecimalRobot, StretchedClaim, bounds};
+use crate::prove::engine::momentum;
+use crate::prove::engine::number::Number;
+use crate::prove::engine::rate::{Inequality, greatest};
+use crate::prove::engine::reserve::Reserve;
+
+/// What is asked: a loop with φ = Λ tanh, and the errors that both solutions have at most.
+#[derive(Clone, Copy, Debug)]
+pub struct StretchedQuestion<'a> {
+    /// The robot.
+    pub robot: &'a DecimalRobot,
+    /// The law.
+    pub controller: &'a DecimalLaw,
+    /// Largest |q̃_i| in rad, links then motors.
+    pub error: &'a [Option<Number>],
+    /// Largest |s_i| [rad/s], links then motors.
+    pub velocity_error: &'a [Number],
+    /// Rate that is proved of the links' momentum block [1/s].
+    pub block_rate: Interval,
+}
+
+/// The position error of one joint on one side.
+#[derive(Clone, Copy, Debug)]
+struct Side<T> {
+    metric: T,
+    shaping: T,
+    /// Largest error in rad.
+    error: T,
+    /// Fastest drift [rad/s].
+    drift: T,
+}
+
+impl Side<Interval> {
+    fn midpoint(&self) -> Side<f64> {
+        let Self { metric, shaping, error, drift } = self;
+        let [metric, shaping, error, drift] = [metric, shaping, error, drift].map(|x| x.midpoint());
+        Side { metric, shaping, error, drift }
+    }
+}
+
+impl<T: Over<T> + Piecewise> Side<T> {
+    /// What is left of its inequality at the largest error.
+    fn at(&self, stretch: Stretch<T>) -> Stretched<T> {
+        let shaping = Tanh { gain: Vector([self.shaping]) };
+        let metric = Metric::Constant(Vector([self.metric]));
+        StretchedSide { metric, shaping: &shaping, stretch, drift: self.drift }.at(self.error)
+    }
+}
+
+/// One joint.
+#[derive(Clone, Copy, Debug)]
+struct Joint<T> {
+    link: Side<T>,
+    motor: Side<T>,
+    /// K/Π_m: what the link's velocity error moves the motor's position error by.
+    coupling: T,
+    /// D_m + K_md [N m s/rad].
+    damping: T,
+    /// M_m [kg m²].
+    inertia: T,
+}
+
+impl Joint<Interval> {
+    fn midpoint(&self) -> Joint<f64> {
+        let Self { link, motor, coupling, damping, inertia } = self;
+        let [coupling, damping, inertia] = [coupling, damping, inertia].map(|x| x.midpoint());
+        Joint { link: link.midpoint(), motor: motor.midpoint(), coupling, damping, inertia }
+    }
+}
+
+/// A number that may be known to be positive.
+trait Sign: Over<Self> + Piecewise {
+    fn is_positive(self) -> bool;
+}
+
+impl Sign for f64 {
+    fn is_positive(self) -> bool {
+        self > 0.0
+    }
+}
+
+impl Sign for Interval {
+    fn is_positive(self) -> bool {
+        self.lo() > 0.0
+    }
+}
+
+/// x / 4y where y is positive.
+fn quarter<T: Sign>(x: T, y: T) -> Option<T> {
+    y.is_positive().then(|| x / (T::from_f64(4.0) * y))
+}
+
+impl<T: Sign> Joint<T> {
+    /// What the link's position error takes from the damping of the link at the rate `beta` [N m s/rad]; none where it does not contract.
+    fn link_load(&self, stretch: Stretch<T>, beta: T) -> Option<T> {
+        let Stretched { rate, mismatch } = self.link.at(stretch);
+        quarter(mismatch, rate - beta)
+    }
+
+    /// What the motor's errors take.
+    fn motor_load(&self, stretch: Stretch<T>, beta: T) -> Option<T> {
+        let Stretched { rate, mismatch } = self.motor.at(stretch);
+        let taken = quarter(mismatch, self.damping - beta * self.inertia)?;
+        quarter(self.coupling.square() * mismatch, rate - beta - taken)
+    }
+}
+
+/// The joints of the question, enclosed.
+fn joints(question: &StretchedQuestion<'_>) -> Result<Vec<Joint<Interval>>, String> {
+    let StretchedQuestion { robot, controller, error, velocity_error, .. } = question;
+    let n = robot.joints;
+    let error: Vec<Interval> = error.iter().flatten().map(Number::bounds).collect();
+    if error.len() != 2 * n || velocity_error.len() != 2 * n {
+        return Err("a stretched metric needs a largest error on both sides of every joint".to_owned());
+    }
+    let speed = bounds(velocity_error);
+    let [link, motor] = [&controller.link, &controller.motor];
+    let side = |gains: &DecimalGains, i: usize, at: usize, drift| Side {
+        metric: gains.metric[i].bounds(),
+        shaping: gains.shaping[i].bounds(),
+        error: error[at],
+        drift,
+    };
+    let joint = |i: usize| {
+        let coupling = robot.stiffness[i].bounds() / motor.metric[i].bounds();
+        Joint {
+            link: side(link, i, i, speed[i]),
+            motor: side(motor, i, n + i, speed[n + i] + coupling * speed[i]),
+            coupling,
+            damping: robot.motor_damping[i].bounds() + motor.damping[i].bounds(),
+            inertia: robot.motor_inertia[i].bounds(),
+        }
+    };
+    Ok((0..n).map(joint).collect())
+}
+
+/// b of one joint, link and motor; none where nothing is stretched.
+type Exponents = [Option<f64>; 2];
+
+/// r for an exponent of three digits, which are enclosed.
+fn stretch<T: Scalar>(exponent: Option<f64>, number: impl Fn(f64) -> T) -> Stretch<T> {
+    exponent.map_or(Stretch::NONE, |b| Stretch::tanh(number(b)))
+}
+
+/// Largest exponent that is tried: the metric grows as e^(2 b |x|).
+const LARGEST_EXPONENT: f64 = 0.99;
+
+/// Exponents of three digits that are tried at once, and how often closer ones are.
+const TRIED: u8 = 48;
+const ROUNDS: usize = 4;
+
+/// The exponent of the least load, with the load, where sech² of the largest error is `flat`: no smaller one stretches anything.
+fn least(flat: f64, load: impl Fn(Stretch<f64>) -> Option<f64>) -> Option<(Option<f64>, f64)> {
+    let of = |b: Option<f64>| load(stretch(b, |b| b)).map(|load| (b, load));
+    let rounded = |b: f64| format!("{b:.2e}").parse().ok().filter(|b| *b > flat && *b <= LARGEST_EXPONENT);
+    let (mut best, mut middle, mut width) =
+        (of(None), 0.5 * (flat + LARGEST_EXPONENT), LARGEST_EXPONENT - flat);
+    for _ in 0..ROUNDS {
+        let places = (0..=TRIED).map(|k| middle + width * (f64::from(k) / f64::from(TRIED) - 0.5));
+        let found = places.filter_map(rounded).filter_map(|b| of(Some(b)));
+        best = found.chain(best).min_by(|a, b| a.1.total_cmp(&b.1));
+        let Some((Some(b), _)) = best else { return best };
+        (middle, width) = (b, width * 4.0 / f64::from(TRIED));
+    }
+    best
+}
+
+/// The links' momentum block under loads.
+struct Links {
+    damping: Vec<Interval>,
+    masses: Vec<Symmetric<Interval>>,
+}
+
+impl Links {
+    /// Whether B − diag(`loads`) − β M is positive definite for all q.
+    fn bear(&self, loads: &[Interval], beta: Interval) -> bool {
+        let left: Vec<Interval> = self.damping.iter().zip(loads).map(|(&d, &load)| d - load).collect();
+        let inequality = |weight: &Symmetric<Interval>| Inequality {
+            form: Symmetric::diagonal(&left),
+            weight: weight.clone(),
+        };
+        self.masses.iter().all(|weight| inequality(weight).margin(beta) > 0.0)
+    }
+}
+
+/// By how much the search in floats may miss the largest rate, relatively.
+const SEARCH: f64 = 1e-5;
+
+/// The largest rate for the best exponents, less what `reserve` leaves unclaimed.
+///
+/// # Errors
+/// The reason in words, if no positive rate could be shown.
+pub fn claim(question: &StretchedQuestion<'_>, reserve: Reserve) -> Result<StretchedClaim, String> {
+    let joints = joints(question)?;
+    let StretchedQuestion { robot, controller, velocity_error, block_rate, .. } = question;
+    let damping = momentum::damping(&robot.link_damping, &controller.link.damping);
+    let masses = momentum::upper_masses(&robot.links, &damping, *block_rate);
+    let links = Links { damping, masses };
+    let floats: Vec<Joint<f64>> = joints.iter().map(Joint::midpoint).collect();
+    let best = |beta: f64| -> Option<Vec<Exponents>> {
+        let flat = |side: &Side<f64>| side.error.cosh().powi(-2);
+        let of = |joint: &Joint<f64>| {
+            let (link, link_load) = least(flat(&joint.link), |r| joint.link_load(r, beta))?;
+            let (motor, motor_load) = least(flat(&joint.motor), |r| joint.motor_load(r, beta))?;
+            Some(([link, motor], Interval::point(link_load + motor_load)))
+        };
+        let (exponents, loads): (Vec<_>, Vec<_>) = floats.iter().map(of).collect::<Option<_>>()?;
+        links.bear(&loads, Interval::point(beta)).then_some(exponents)
+    };
+    let nothing = || "no positive rate in a stretched metric could be shown".to_owned();
+    let exponents = greatest(|beta| best(beta).is_some(), SEARCH).and_then(best).ok_or_else(nothing)?;
+
+    let enclosed = |b: f64| Number::decimal(b).bounds();
+    let holds = |beta: Interval| {
+        let of = |(joint, [link, motor]): (&Joint<Interval>, &Exponents)| {
+            let link = joint.link_load(stretch(*link, enclosed), beta)?;
+            Some(link + joint.motor_load(stretch(*motor, enclosed), beta)?)
+        };
+        let loads: Option<Vec<_>> = joints.iter().zip(&exponents).map(of).collect();
+        loads.is_some_and(|loads| links.bear(&loads, beta))
+    };
+    let largest = greatest(|beta| holds(Interval::point(beta)), reserve.relative()).ok_or_else(nothing)?;
+    let rate = Number::below(largest * (1.0 - reserve.relative()));
+    if !holds(rate.bounds()) {
+        return Err(nothing());
+    }
+    let side = |k: usize| exponents.iter().map(move |of| of[k].map(Number::decimal));
+    Ok(StretchedClaim {
+        velocity_error: velocity_error.to_vec(),
+        exponent: side(0).chain(side(1)).collect(),
+        rate,
+    })
+}
