@@ -88,8 +88,11 @@ where
     #[inline]
     fn at<T: Over<C> + Piecewise>(&self, x: &Vector<T, D>, t: T) -> Matrix<T, D, D> {
         let mut metric = self.error_loop.at(x, t);
-        for (i, stretch) in self.link.iter().chain(&self.motor).enumerate() {
-            metric.0[i][i] = metric.0[i][i] * stretch.at(x[i]).square();
+        let stretches = self.link.iter().chain(&self.motor).zip(x.iter());
+        for ((i, row), (stretch, error)) in metric.0.iter_mut().enumerate().zip(stretches) {
+            if let Some(entry) = row.get_mut(i) {
+                *entry *= stretch.at(error).square();
+            }
         }
         metric
     }

@@ -267,7 +267,7 @@ impl ProofSummary {
             kinds: scenario.robot.kinds(),
             verdict: Standing::of(scenario, proof, sampled.as_ref()).words(),
             left_out: scenario.beyond_ideal(),
-            contraction_rate: certificate.map(|c| c.contraction_rate.approximate()),
+            contraction_rate: certificate.and_then(|c| Some(c.contraction_rate.as_ref()?.approximate())),
             convergence_rate: certificate.map(|c| c.convergence_rate.approximate()),
             paper_rate: proof.paper_rate,
             blocks: certificate.map(BlockSummary::contraction),

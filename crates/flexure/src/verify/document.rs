@@ -20,7 +20,8 @@ pub(super) struct Certificate {
     pub region: Region,
     pub closed_loop: ClosedLoop,
     pub blocks: Vec<Block>,
-    pub contraction_rate: Number,
+    /// None where Π_l depends on the error.
+    pub contraction_rate: Option<Number>,
     pub convergence_rate: Number,
     pub mass_margins: Vec<Number>,
     /// What bounds the mass matrix of a tree; none in version 1, and for other links.
@@ -109,6 +110,8 @@ pub(super) struct Gains {
     pub damping: Vec<Number>,
     /// κ of `coupled-tanh`; empty for other laws.
     pub kappa: Vec<Number>,
+    /// Growth of Π with the squared error; empty where it is constant.
+    pub hardening: Vec<Number>,
 }
 
 pub(super) struct Region {
@@ -249,11 +252,14 @@ fn certificate(root: &Field<'_>) -> Result<Certificate, Rejected> {
         subject: subject.map(|subject| subject::read(&subject)).transpose()?,
         name: name.text()?.to_owned(),
         assumptions: each(&assumptions, |text| Ok(text.text()?.to_owned()))?,
-        controller: self::controller(&controller, n)?,
+        controller: self::controller(&controller, n, version)?,
         region: self::region(&region, n, version)?,
         closed_loop: self::closed_loop(&closed_loop)?,
         blocks: each(&blocks, |entry| block(entry, version))?,
-        contraction_rate: contraction_rate.number()?,
+        contraction_rate: match version {
+            Version::One | Version::Two => Some(contraction_rate.number()?),
+            Version::Three => contraction_rate.unless_null().map(|rate| rate.number()).transpose()?,
+        },
         convergence_rate: convergence_rate.number()?,
         mass_margins: each(&mass_margins, Version::margin)?,
         forms,
@@ -283,7 +289,7 @@ fn each<'a, T>(
     list.list()?.iter().map(read).collect()
 }
 
-fn controller(field: &Field<'_>, n: usize) -> Result<Controller, Rejected> {
+fn controller(field: &Field<'_>, n: usize, version: Version) -> Result<Controller, Rejected> {
     let [phi, link, motor] = field.object(["phi", "link", "motor"])?;
     let phi =
         phi.one_of(&[("tanh", Phi::Tanh), ("linear", Phi::Linear), ("coupled-tanh", Phi::CoupledTanh)])?;
@@ -291,11 +297,22 @@ fn controller(field: &Field<'_>, n: usize) -> Result<Controller, Rejected> {
     if phi == Phi::CoupledTanh && n > 16 {
         return Err(field.bad("'coupled-tanh' is for 16 joints at most"));
     }
-    Ok(Controller { phi, link: gains(&link, phi, n)?, motor: gains(&motor, phi, n)? })
+    let (link, motor) = (gains(&link, phi, n, version)?, gains(&motor, phi, n, version)?);
+    if !motor.hardening.is_empty() || !link.hardening.is_empty() && phi == Phi::CoupledTanh {
+        return Err(field.bad("hardening is for the link, where phi is tanh or linear"));
+    }
+    Ok(Controller { phi, link, motor })
 }
 
-fn gains(field: &Field<'_>, phi: Phi, n: usize) -> Result<Gains, Rejected> {
-    let [metric, shaping, damping, kappa] = field.object(["metric", "shaping", "damping", "kappa"])?;
+fn gains(field: &Field<'_>, phi: Phi, n: usize, version: Version) -> Result<Gains, Rejected> {
+    const KEYS: [&str; 5] = ["metric", "shaping", "damping", "kappa", "hardening"];
+    let ([metric, shaping, damping, kappa], hardening) = if version == Version::Three {
+        let [four @ .., hardening] = field.object(KEYS)?;
+        (four, hardening.unless_null())
+    } else {
+        let [four @ .., _] = KEYS;
+        (field.object(four)?, None)
+    };
     let kappa = match (phi, kappa.unless_null()) {
         (Phi::CoupledTanh, Some(kappa)) => kappa.numbers(n)?,
         (Phi::CoupledTanh, None) => return Err(field.bad("'coupled-tanh' needs kappa")),
@@ -307,6 +324,7 @@ fn gains(field: &Field<'_>, phi: Phi, n: usize) -> Result<Gains, Rejected> {
         shaping: shaping.numbers(n)?,
         damping: damping.numbers(n)?,
         kappa,
+        hardening: hardening.map_or(Ok(Vec::new()), |hardening| hardening.numbers(n))?,
     })
 }
 

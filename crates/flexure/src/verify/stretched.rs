@@ -14,7 +14,11 @@ use crate::verify::verdict::{Claim, Rejected, ensure};
 
 pub(super) fn check(certificate: &Certificate) -> Result<Vec<Claim>, Rejected> {
     let Some(claim) = &certificate.stretched else { return Ok(Vec::new()) };
-    ensure(certificate.controller.phi == Phi::Tanh, "stretched", || "is for phi = tanh".to_owned())?;
+    let phi = certificate.controller.phi;
+    ensure(phi != Phi::CoupledTanh, "stretched", || "is for phi = tanh or linear".to_owned())?;
+    ensure(phi == Phi::Tanh || claim.exponent.iter().all(Option::is_none), "stretched.exponent", || {
+        "an exponent is for phi = tanh".to_owned()
+    })?;
     nonnegative("stretched.velocity_error", &claim.velocity_error)?;
     positive("stretched.exponent", claim.exponent.iter().flatten())?;
     let too_large = claim.exponent.iter().flatten().find(|b| b.value.hi() >= 1.0);
@@ -56,12 +60,29 @@ fn rest(
     let law = Law::of(certificate, side);
     let at = if side == Side::Link { i } else { law.n + i };
     let name = format!("stretched.exponent[{at}]");
+    let hardening = certificate.controller.gains(side).hardening.get(i).map_or(Interval::ZERO, |h| h.value);
+    let [metric, gain] = [law.metric[i].value, law.entry(i, i, Interval::ONE, Interval::ONE)];
+    // What Π (1 + g x²) loses of the rate that Π has, where φ is at least chord times x.
+    let lost = |chord: Interval| {
+        let root = (chord.square() + hardening / metric * drift.square()).sqrt();
+        if hardening == Interval::ZERO { Interval::ZERO } else { (root - chord) / Interval::from_f64(2.0) }
+    };
+    let enough = |rate: Interval| {
+        ensure(rate.lo() > 0.0, name.as_str(), || {
+            let less = -rate.lo();
+            format!("the position error alone contracts more slowly than {} 1/s: {less:e} less", claim.rate)
+        })
+    };
+    if law.phi == Phi::Linear {
+        let rate = gain - lost(gain) - claim.rate.claimed;
+        enough(rate)?;
+        return Ok(Rest { rate, mismatch: Interval::ZERO });
+    }
     let Some(error) = &law.error[i] else {
         return Err(Rejected::claim(name, "errors of its joint have no bound"));
     };
     let largest = Interval::point(error.value.hi());
     let (flat, tanh) = (slope(largest), largest.tanh());
-    let [metric, gain] = [law.metric[i].value, law.entry(i, i, Interval::ONE, Interval::ONE)];
     // r² and r'/r.
     let (square, growth) = match claim.exponent[at].as_ref().map(|b| b.value) {
         Some(b) if b.lo() > flat.hi() => {
@@ -75,14 +96,10 @@ fn rest(
         }
         _ => (Interval::ONE, Interval::ZERO),
     };
-    let rate = gain * (flat + growth * tanh) - growth * drift - claim.rate.claimed;
-    ensure(rate.lo() > 0.0, name, || {
-        format!(
-            "the position error alone contracts more slowly than {} 1/s: {:e} less",
-            claim.rate,
-            -rate.lo()
-        )
-    })?;
+    let rate =
+        gain * (flat + growth * tanh) - growth * drift - lost(gain * tanh / largest) - claim.rate.claimed;
+    enough(rate)?;
+    let metric = metric + hardening * largest.square();
     Ok(Rest { rate, mismatch: metric * (square - Interval::ONE).square() / square })
 }
 

@@ -47,7 +47,7 @@ fn the_stretch_is_smooth_and_keeps_the_share_of_the_rate() {
         let across = Stretch::tanh(Interval::point(b)).at(Interval::new(-x, 0.9 * knee).unwrap());
         assert!(across.contains(1.0) && across.contains(stretch.at(x)));
     }
-    assert_eq!(growth(&Stretch::NONE, 3.0), [0.0, 1.0]);
+    assert_eq!(Vector(growth(&Stretch::NONE, 3.0)), Vector([0.0, 1.0]));
 }
 
 /// A shaping function that is one of each joint.

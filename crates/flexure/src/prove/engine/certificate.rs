@@ -35,15 +35,15 @@ pub struct Certificate {
     pub closed_loop: ClosedLoopWords,
     /// The rates of the four blocks.
     pub blocks: Vec<Block>,
-    /// Decay rate of the distance between any two virtual solutions [1/s].
-    pub contraction_rate: Number,
+    /// Decay rate of the distance between any two virtual solutions [1/s]; none where Π_l depends on the error.
+    pub contraction_rate: Option<Number>,
     /// Decay rate of the distance to the reference [1/s].
     pub convergence_rate: Number,
     /// Why the mass matrix is positive definite at every configuration.
     pub mass_matrix: MassMatrix,
     /// Matrix measures of the slopes of φ.
     pub measures: Vec<Measure>,
-    /// Which structures the closed loop keeps.
+    /// Which structures the closed loop keeps; nothing is said of them where Π_l depends on the error.
     pub structure: Vec<StructureClaim>,
     /// Error tube under a disturbance of the motors.
     pub tube: Option<Tube>,
@@ -199,6 +199,8 @@ pub struct DecimalGains {
     pub damping: Vec<Number>,
     /// κ of `coupled-tanh` [1/s].
     pub kappa: Option<Vec<Number>>,
+    /// Growth of Π_l with the squared error [N m/rad³]; none where Π is constant.
+    pub hardening: Option<Vec<Number>>,
 }
 
 /// Errors for which the claims hold, and a level set of W inside.

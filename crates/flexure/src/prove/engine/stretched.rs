@@ -4,20 +4,24 @@
 //! With P = Π r² in place of Π the coupling does not cancel any more: what is left of it couples, joint by joint, δq̃_l with δs_l, and δq̃_m
 //! with δs_l and δs_m. Eliminating positions and motor momenta leaves a load on the damping of the links, so that one inequality of the
 //! links' momentum block remains, B − diag(load) − β M ≻ 0. All that the load is made of grows with the error: the largest errors decide.
+//!
+//! The same with the metric of a law whose Π_l itself grows with the error, linear φ included: there Π̇_l takes from the rate.
 
 use flexure_core::contraction::{Stretch, Stretched, StretchedSide};
-use flexure_core::control::{Metric, Tanh};
+use flexure_core::control::{Linear, Metric, Tanh};
 use flexure_core::linalg::Vector;
 use flexure_core::scalar::{Interval, Over, Piecewise, Scalar};
 
 use crate::linalg::Symmetric;
-use crate::prove::engine::certificate::{DecimalGains, DecimalLaw, DecimalRobot, StretchedClaim, bounds};
+use crate::prove::engine::certificate::{
+    CertifiedPhi, DecimalGains, DecimalLaw, DecimalRobot, StretchedClaim, bounds,
+};
 use crate::prove::engine::momentum;
 use crate::prove::engine::number::Number;
 use crate::prove::engine::rate::{Inequality, greatest};
 use crate::prove::engine::reserve::Reserve;
 
-/// What is asked: a loop with φ = Λ tanh, and the errors that both solutions have at most.
+/// What is asked: a loop with φ = Λ tanh, or Λ q̃, and the errors that both solutions have at most.
 #[derive(Clone, Copy, Debug)]
 pub struct StretchedQuestion<'a> {
     /// The robot.
@@ -37,26 +41,50 @@ pub struct StretchedQuestion<'a> {
 struct Side<T> {
     metric: T,
     shaping: T,
-    /// Largest error in rad.
-    error: T,
+    /// Growth of Π with the squared error.
+    hardening: Option<T>,
+    /// Largest error in rad, where φ is tanh; none where it is linear.
+    error: Option<T>,
     /// Fastest drift [rad/s].
     drift: T,
 }
 
 impl Side<Interval> {
     fn midpoint(&self) -> Side<f64> {
-        let Self { metric, shaping, error, drift } = self;
-        let [metric, shaping, error, drift] = [metric, shaping, error, drift].map(|x| x.midpoint());
-        Side { metric, shaping, error, drift }
+        let Self { metric, shaping, hardening, error, drift } = self;
+        let [metric, shaping, drift] = [metric, shaping, drift].map(|x| x.midpoint());
+        let [hardening, error] = [hardening, error].map(|x| x.map(Interval::midpoint));
+        Side { metric, shaping, hardening, error, drift }
     }
 }
 
+/// What a metric Π (1 + g x²) loses at most, at the error x ≥ 0, of the rate that Π has, where φ ≥ `chord` x: half its relative
+/// growth, g x/(1 + g x²), times chord x − drift is least where its derivative vanishes, and is there ½ (c − √(c² + g drift²)).
+fn hardening_loss<T: Scalar>(chord: T, drift: T, growth: T) -> T {
+    T::from_f64(0.5) * ((chord.square() + growth * drift.square()).sqrt() - chord)
+}
+
 impl<T: Over<T> + Piecewise> Side<T> {
-    /// What is left of its inequality at the largest error.
+    /// What is left of its inequality wherever errors are no larger.
     fn at(&self, stretch: Stretch<T>) -> Stretched<T> {
-        let shaping = Tanh { gain: Vector([self.shaping]) };
-        let metric = Metric::Constant(Vector([self.metric]));
-        StretchedSide { metric, shaping: &shaping, stretch, drift: self.drift }.at(self.error)
+        let Self { metric, shaping, hardening, error, drift } = *self;
+        let gain = Vector([shaping]);
+        let largest = error.unwrap_or(T::ZERO);
+        let metric = hardening.map_or(metric, |h| metric + h * largest.square());
+        let metric = Metric::Constant(Vector([metric]));
+        let (mut at, chord) = match error {
+            Some(error) => {
+                let side = StretchedSide { metric, shaping: &Tanh { gain }, stretch, drift };
+                (side.at(error), shaping * error.tanh() / error)
+            }
+            None => {
+                (StretchedSide { metric, shaping: &Linear { gain }, stretch, drift }.at(largest), shaping)
+            }
+        };
+        if let Some(h) = hardening {
+            at.rate -= hardening_loss(chord, drift, h / self.metric);
+        }
+        at
     }
 }
 
@@ -122,8 +150,8 @@ impl<T: Sign> Joint<T> {
 fn joints(question: &StretchedQuestion<'_>) -> Result<Vec<Joint<Interval>>, String> {
     let StretchedQuestion { robot, controller, error, velocity_error, .. } = question;
     let n = robot.joints;
-    let error: Vec<Interval> = error.iter().flatten().map(Number::bounds).collect();
-    if error.len() != 2 * n || velocity_error.len() != 2 * n {
+    let flattens = controller.phi == CertifiedPhi::Tanh;
+    if velocity_error.len() != 2 * n || flattens && error.iter().any(Option::is_none) {
         return Err("a stretched metric needs a largest error on both sides of every joint".to_owned());
     }
     let speed = bounds(velocity_error);
@@ -131,7 +159,8 @@ fn joints(question: &StretchedQuestion<'_>) -> Result<Vec<Joint<Interval>>, Stri
     let side = |gains: &DecimalGains, i: usize, at: usize, drift| Side {
         metric: gains.metric[i].bounds(),
         shaping: gains.shaping[i].bounds(),
-        error: error[at],
+        hardening: gains.hardening.as_ref().map(|h| h[i].bounds()),
+        error: error[at].as_ref().filter(|_| flattens).map(Number::bounds),
         drift,
     };
     let joint = |i: usize| {
@@ -211,7 +240,8 @@ pub fn claim(question: &StretchedQuestion<'_>, reserve: Reserve) -> Result<Stret
     let links = Links { damping, masses };
     let floats: Vec<Joint<f64>> = joints.iter().map(Joint::midpoint).collect();
     let best = |beta: f64| -> Option<Vec<Exponents>> {
-        let flat = |side: &Side<f64>| side.error.cosh().powi(-2);
+        // A slope that does not flatten needs no stretch.
+        let flat = |side: &Side<f64>| side.error.map_or(1.0, |error| error.cosh().powi(-2));
         let of = |joint: &Joint<f64>| {
             let (link, link_load) = least(flat(&joint.link), |r| joint.link_load(r, beta))?;
             let (motor, motor_load) = least(flat(&joint.motor), |r| joint.motor_load(r, beta))?;

@@ -125,10 +125,16 @@ fn attempt(problem: &Proposition, reserve: Reserve) -> Result<Certificate, Failu
         }
     };
     let sided = |side, gains, position| SideOf { side, gains, position };
-    let structure = structure::claims(
-        controller.phi,
-        &[sided(LoopSide::Link, &controller.link, links), sided(LoopSide::Motor, &controller.motor, motors)],
-    )?;
+    let constant = controller.link.hardening.is_none();
+    let structure = if constant {
+        let sides = [
+            sided(LoopSide::Link, &controller.link, links),
+            sided(LoopSide::Motor, &controller.motor, motors),
+        ];
+        structure::claims(controller.phi, &sides)?
+    } else {
+        Vec::new()
+    };
     Ok(Certificate {
         format: "flexure-certificate".to_owned(),
         version: VERSION,
@@ -143,7 +149,7 @@ fn attempt(problem: &Proposition, reserve: Reserve) -> Result<Certificate, Failu
             rows: ROWS.map(|row| row.map(str::to_owned)),
             dissipation: DISSIPATION.map(str::to_owned),
         },
-        contraction_rate: smallest(|block| &block.contraction, &blocks),
+        contraction_rate: constant.then(|| smallest(|block| &block.contraction, &blocks)),
         convergence_rate: smallest(|block| &block.convergence, &blocks),
         mass_matrix: mass_matrix(robot, link_block.forms, reserve)?,
         measures: measures(&[links, motors], &blocks, reserve),

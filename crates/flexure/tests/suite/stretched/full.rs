@@ -2,7 +2,7 @@
 
 use flexure::linalg::{Symmetric, weakest};
 use flexure::prove::engine::Certificate;
-use flexure::prove::engine::certificate::DecimalGains;
+use flexure::prove::engine::certificate::{CertifiedPhi, DecimalGains};
 use flexure::prove::engine::number::Number;
 
 pub fn floats(numbers: &[Number]) -> Vec<f64> {
@@ -49,8 +49,9 @@ impl Loop {
             ],
             metric: both(|gains| &gains.metric),
             shaping: both(|gains| &gains.shaping),
-            hardening: vec![0.0; 2 * n],
-            flattens: true,
+            hardening: [law.link.hardening.as_ref().map_or(vec![0.0; n], |h| floats(h)), vec![0.0; n]]
+                .concat(),
+            flattens: law.phi == CertifiedPhi::Tanh,
         }
     }
 

@@ -1,6 +1,7 @@
 //! Contraction rates in a metric that grows where tanh is flat: what is certified, that no sample is slower, and that nothing more holds.
 
 mod full;
+mod hardening;
 mod mutants;
 mod random;
 
@@ -28,7 +29,7 @@ pub fn certified(scenario: &Scenario, error: f64, speed: f64) -> Certificate {
 /// The rate in the stretched metric, and the one in the constant metric [1/s].
 fn rates(certificate: &Certificate) -> [f64; 2] {
     let stretched = certificate.stretched.as_ref().unwrap();
-    [stretched.rate.approximate(), certificate.contraction_rate.approximate()]
+    [stretched.rate.approximate(), certificate.contraction_rate.as_ref().map_or(0.0, Number::approximate)]
 }
 
 /// The mass matrix of the paper's arm at a cosine of its elbow.
