@@ -364,7 +364,7 @@ def check_tube(tube, file, blocks, metric):
     need(region is None or level.high <= region.low, "tube: the level is more than the region's")
     need(all(p * e.claimed**2 >= 2 * level.reached for p, e in zip(metric, tube["error"])), "tube: an error is too small")
 
-def stretched_rest(side, i, b, drift, beta):  # own rate less beta while it drifts outwards, and (P - metric)^2 / P, at the largest error
+def stretched_rest(side, i, b, drift, beta):  # own rate less beta while it drifts outwards, and (P - metric)^2 / P, for errors in the region
     def lost(chord):  # of the rate that the metric has without its growth, where phi is at least the chord times the error
         return (root(chord**2 + side.hardening[i] / side.metric[i] * drift**2) - chord) / 2 if side.hardening[i] != 0 else ZERO
     if side.phi == "linear":
@@ -380,7 +380,8 @@ def stretched_rest(side, i, b, drift, beta):  # own rate less beta while it drif
         growth = (b - flat) / tanh
     rate = side.shaping[i] * (flat + growth * tanh) - growth * drift - lost(side.shaping[i] * tanh / error) - beta
     need(rate > 0, "stretched: a position error alone contracts more slowly")
-    return rate, (side.metric[i] + side.hardening[i] * error**2) * (square - 1) ** 2 / square
+    ratio = root(square)  # of the largest r and the least; P is the metric times r^2 / (largest times least)
+    return rate, (side.metric[i] + side.hardening[i] * error**2) * (ratio - 1) ** 2 / ratio
 def check_stretched(claim, file, blocks, sides, damping):
     (link, motor), n, beta, links = sides.values(), file["robot"]["joints"], claim["rate"].claimed, file["robot"]["links"]
     need(link.phi != "coupled-tanh", "stretched: is for tanh or linear")

@@ -7,20 +7,22 @@ use crate::scalar::{Over, Piecewise, Scalar};
 
 use super::{ErrorLoop, MatrixField};
 
-/// r(x) ≥ 1, even in the error x, by which lengths of position errors are stretched: with P = Π r² in place of Π, φ = Λ tanh alone
+/// r(x) > 0, even in the error x, by which lengths of position errors are stretched: with P = Π r² in place of Π, φ = Λ tanh alone
 /// contracts at max(b, sech² x) Λ instead of sech² x Λ, however large x is.
 ///
-/// r = 1 up to x* with sech² x* = b, and beyond it f(|x|)/f(x*) with f = sinh^b / tanh. So r'/r = (b − sech² x)/tanh x there and 0 before: it
-/// does not jump, and grows to b.
+/// r is constant up to x* with sech² x* = b, and beyond it grows as f = sinh^b / tanh. So r'/r = (b − sech² x)/tanh x there and 0 before: it
+/// does not jump, and grows to b. Over the errors that are looked at r runs from 1/√ρ to √ρ: then P is never farther from Π, the metric in
+/// which the coupling with momenta cancels, than at the ends, 0 and the largest error.
 ///
 /// ```
 /// use flexure_core::contraction::Stretch;
 /// use flexure_core::scalar::Dual;
 /// let (b, x) = (0.25_f64, 2.0_f64);
-/// let r = Stretch::tanh(b).at(Dual::<f64, 1>::variable(x, 0));
+/// let stretch = Stretch::tanh(b, x);
+/// let r = stretch.at(Dual::<f64, 1>::variable(x, 0));
 /// let growth = r.gradient[0] / r.value;
 /// assert!((growth - (b - x.cosh().powi(-2)) / x.tanh()).abs() < 1e-14);
-/// assert_eq!(Stretch::tanh(b).at(0.1), 1.0);
+/// assert!((stretch.at(0.1) * r.value - 1.0).abs() < 1e-14);
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Stretch<C>(Option<Beyond<C>>);
@@ -32,19 +34,23 @@ struct Beyond<C> {
     exponent: C,
     /// x* in rad.
     knee: C,
-    /// ln f(x*).
-    start: C,
+    /// ln f where r = 1.
+    level: C,
 }
 
 impl<C: Scalar> Stretch<C> {
     /// r = 1 everywhere.
     pub const NONE: Self = Self(None);
 
-    /// r for the share `b` of the slope at no error, 0 < b < 1.
+    /// r for the share `b` of the slope at no error, 0 < b < 1, and errors of up to `largest` > 0 in rad.
     #[inline]
-    pub fn tanh(b: C) -> Self {
+    pub fn tanh(b: C, largest: C) -> Self
+    where
+        C: Piecewise,
+    {
         let knee = ((C::ONE + (C::ONE - b).sqrt()) / b.sqrt()).ln();
-        Self(Some(Beyond { exponent: b, knee, start: rise(b, knee) }))
+        let level = (rise(b, knee) + rise(b, largest.max(knee))) * C::from_f64(0.5);
+        Self(Some(Beyond { exponent: b, knee, level }))
     }
 
     /// r at the error `x` in rad.
@@ -52,8 +58,8 @@ impl<C: Scalar> Stretch<C> {
     pub fn at<T: Over<C> + Piecewise>(&self, x: T) -> T {
         match self.0 {
             None => T::ONE,
-            Some(Beyond { exponent, knee, start }) => {
-                (rise(T::constant(exponent), x.abs().max(T::constant(knee))) - T::constant(start)).exp()
+            Some(Beyond { exponent, knee, level }) => {
+                (rise(T::constant(exponent), x.abs().max(T::constant(knee))) - T::constant(level)).exp()
             }
         }
     }

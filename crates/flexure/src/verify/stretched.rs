@@ -46,7 +46,7 @@ pub(super) fn check(certificate: &Certificate) -> Result<Vec<Claim>, Rejected> {
 struct Rest {
     /// Its own rate less β, while it drifts outwards as fast as it can.
     rate: Interval,
-    /// (P − Π)²/P.
+    /// (P − Π)²/P, at most.
     mismatch: Interval,
 }
 
@@ -83,7 +83,7 @@ fn rest(
     };
     let largest = Interval::point(error.value.hi());
     let (flat, tanh) = (slope(largest), largest.tanh());
-    // r² and r'/r.
+    // r over its least value, squared, and r'/r.
     let (square, growth) = match claim.exponent[at].as_ref().map(|b| b.value) {
         Some(b) if b.lo() > flat.hi() => {
             let rest = Interval::ONE - b;
@@ -100,7 +100,9 @@ fn rest(
         gain * (flat + growth * tanh) - growth * drift - lost(gain * tanh / largest) - claim.rate.claimed;
     enough(rate)?;
     let metric = metric + hardening * largest.square();
-    Ok(Rest { rate, mismatch: metric * (square - Interval::ONE).square() / square })
+    // P is Π r² over the largest r: as far from Π at no error as at the largest.
+    let ratio = square.sqrt();
+    Ok(Rest { rate, mismatch: metric * (ratio - Interval::ONE).square() / ratio })
 }
 
 /// What joint `i` takes from the damping of its link.

@@ -20,13 +20,16 @@ fn growth(stretch: &Stretch<f64>, x: f64) -> [f64; 2] {
 #[test]
 fn the_stretch_is_smooth_and_keeps_the_share_of_the_rate() {
     for b in [0.01, 0.1, 0.3, 0.6, 0.9, 0.99] {
-        let stretch = Stretch::tanh(b);
         let knee = f64::sqrt(1.0 - b).atanh();
+        let largest = knee + 1.5;
+        let stretch = Stretch::tanh(b, largest);
+        let f = |x: f64| x.sinh().powf(b) / x.tanh();
+        let least = (f(knee) / f(largest)).sqrt();
         for step in [1e-9, -1e-9] {
             let [slope, value] = growth(&stretch, knee + step);
-            assert!((value - 1.0).abs() < 1e-12 && slope.abs() < 1e-8, "{b}: {slope} {value}");
+            assert!((value - least).abs() < 1e-12 && slope.abs() < 1e-8, "{b}: {slope} {value}");
         }
-        let mut before = [0.0, 1.0];
+        let mut before = [0.0, least * (1.0 - 1e-13)];
         for k in 0..400 {
             let x = 0.02 * f64::from(k);
             let [slope, value] = growth(&stretch, x);
@@ -39,13 +42,20 @@ fn the_stretch_is_smooth_and_keeps_the_share_of_the_rate() {
             before = [slope, value];
         }
         // The closed form.
-        let (x, f) = (knee + 1.5, |x: f64| x.sinh().powf(b) / x.tanh());
-        assert!((stretch.at(x) / (f(x) / f(knee)) - 1.0).abs() < 1e-13, "{b}");
-        let enclosed = Stretch::tanh(Interval::point(b)).at(Interval::point(x));
-        assert!(enclosed.contains(stretch.at(x)) && enclosed.width() < 1e-12 * enclosed.hi());
+        assert!((stretch.at(largest) * least - 1.0).abs() < 1e-13, "{b}");
+        assert!(
+            (stretch.at(largest + 1.0) / stretch.at(largest) / (f(largest + 1.0) / f(largest)) - 1.0).abs()
+                < 1e-13
+        );
+        let [point, at] = [b, largest].map(Interval::point);
+        let enclosed = Stretch::tanh(point, at);
+        let there = enclosed.at(at);
+        assert!(there.contains(stretch.at(largest)) && there.width() < 1e-12 * there.hi());
         // Over both sides of the knee, too.
-        let across = Stretch::tanh(Interval::point(b)).at(Interval::new(-x, 0.9 * knee).unwrap());
-        assert!(across.contains(1.0) && across.contains(stretch.at(x)));
+        let across = enclosed.at(Interval::new(-largest, 0.9 * knee).unwrap());
+        assert!(across.contains(stretch.at(0.0)) && across.contains(stretch.at(largest)));
+        // Where nothing flattens as far as b, nothing is stretched.
+        assert!((Stretch::tanh(b, 0.9 * knee).at(0.5 * knee) - 1.0).abs() < 1e-14);
     }
     assert_eq!(Vector(growth(&Stretch::NONE, 3.0)), Vector([0.0, 1.0]));
 }
@@ -82,7 +92,7 @@ fn blocks_are_those_of_the_jacobian<L, P, const N: usize, const D: usize, const 
 {
     let motion = r.motion(1.5);
     let stretches = |r: &mut Numbers| {
-        r.between::<N>(0.05, 0.9).map(|b| if stretched { Stretch::tanh(b) } else { Stretch::NONE }).0
+        r.between::<N>(0.05, 0.9).map(|b| if stretched { Stretch::tanh(b, 1.5) } else { Stretch::NONE }).0
     };
     let (link, motor) = (stretches(r), stretches(r));
     let error_loop = ErrorLoop { robot, law, motion };

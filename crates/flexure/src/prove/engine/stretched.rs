@@ -3,7 +3,8 @@
 //!
 //! With P = Π r² in place of Π the coupling does not cancel any more: what is left of it couples, joint by joint, δq̃_l with δs_l, and δq̃_m
 //! with δs_l and δs_m. Eliminating positions and motor momenta leaves a load on the damping of the links, so that one inequality of the
-//! links' momentum block remains, B − diag(load) − β M ≻ 0. All that the load is made of grows with the error: the largest errors decide.
+//! links' momentum block remains, B − diag(load) − β M ≻ 0. The largest errors decide: growth costs most there, and the
+//! metric is nowhere farther from Π.
 //!
 //! The same with the metric of a law whose Π_l itself grows with the error, linear φ included: there Π̇_l takes from the rate.
 
@@ -66,10 +67,11 @@ fn hardening_loss<T: Scalar>(chord: T, drift: T, growth: T) -> T {
 
 impl<T: Over<T> + Piecewise> Side<T> {
     /// What is left of its inequality wherever errors are no larger.
-    fn at(&self, stretch: Stretch<T>) -> Stretched<T> {
+    fn at(&self, exponent: Option<T>) -> Stretched<T> {
         let Self { metric, shaping, hardening, error, drift } = *self;
         let gain = Vector([shaping]);
         let largest = error.unwrap_or(T::ZERO);
+        let stretch = exponent.map_or(Stretch::NONE, |b| Stretch::tanh(b, largest));
         let metric = hardening.map_or(metric, |h| metric + h * largest.square());
         let metric = Metric::Constant(Vector([metric]));
         let (mut at, chord) = match error {
@@ -133,14 +135,14 @@ fn quarter<T: Sign>(x: T, y: T) -> Option<T> {
 
 impl<T: Sign> Joint<T> {
     /// What the link's position error takes from the damping of the link at the rate `beta` [N m s/rad]; none where it does not contract.
-    fn link_load(&self, stretch: Stretch<T>, beta: T) -> Option<T> {
-        let Stretched { rate, mismatch } = self.link.at(stretch);
+    fn link_load(&self, exponent: Option<T>, beta: T) -> Option<T> {
+        let Stretched { rate, mismatch } = self.link.at(exponent);
         quarter(mismatch, rate - beta)
     }
 
     /// What the motor's errors take.
-    fn motor_load(&self, stretch: Stretch<T>, beta: T) -> Option<T> {
-        let Stretched { rate, mismatch } = self.motor.at(stretch);
+    fn motor_load(&self, exponent: Option<T>, beta: T) -> Option<T> {
+        let Stretched { rate, mismatch } = self.motor.at(exponent);
         let taken = quarter(mismatch, self.damping - beta * self.inertia)?;
         quarter(self.coupling.square() * mismatch, rate - beta - taken)
     }
@@ -179,11 +181,6 @@ fn joints(question: &StretchedQuestion<'_>) -> Result<Vec<Joint<Interval>>, Stri
 /// b of one joint, link and motor; none where nothing is stretched.
 type Exponents = [Option<f64>; 2];
 
-/// r for an exponent of three digits, which are enclosed.
-fn stretch<T: Scalar>(exponent: Option<f64>, number: impl Fn(f64) -> T) -> Stretch<T> {
-    exponent.map_or(Stretch::NONE, |b| Stretch::tanh(number(b)))
-}
-
 /// Largest exponent that is tried: the metric grows as e^(2 b |x|).
 const LARGEST_EXPONENT: f64 = 0.99;
 
@@ -192,8 +189,8 @@ const TRIED: u8 = 48;
 const ROUNDS: usize = 4;
 
 /// The exponent of the least load, with the load, where sech² of the largest error is `flat`: no smaller one stretches anything.
-fn least(flat: f64, load: impl Fn(Stretch<f64>) -> Option<f64>) -> Option<(Option<f64>, f64)> {
-    let of = |b: Option<f64>| load(stretch(b, |b| b)).map(|load| (b, load));
+fn least(flat: f64, load: impl Fn(Option<f64>) -> Option<f64>) -> Option<(Option<f64>, f64)> {
+    let of = |b: Option<f64>| load(b).map(|load| (b, load));
     let rounded = |b: f64| format!("{b:.2e}").parse().ok().filter(|b| *b > flat && *b <= LARGEST_EXPONENT);
     let (mut best, mut middle, mut width) =
         (of(None), 0.5 * (flat + LARGEST_EXPONENT), LARGEST_EXPONENT - flat);
@@ -243,8 +240,8 @@ pub fn claim(question: &StretchedQuestion<'_>, reserve: Reserve) -> Result<Stret
         // A slope that does not flatten needs no stretch.
         let flat = |side: &Side<f64>| side.error.map_or(1.0, |error| error.cosh().powi(-2));
         let of = |joint: &Joint<f64>| {
-            let (link, link_load) = least(flat(&joint.link), |r| joint.link_load(r, beta))?;
-            let (motor, motor_load) = least(flat(&joint.motor), |r| joint.motor_load(r, beta))?;
+            let (link, link_load) = least(flat(&joint.link), |b| joint.link_load(b, beta))?;
+            let (motor, motor_load) = least(flat(&joint.motor), |b| joint.motor_load(b, beta))?;
             Some(([link, motor], Interval::point(link_load + motor_load)))
         };
         let (exponents, loads): (Vec<_>, Vec<_>) = floats.iter().map(of).collect::<Option<_>>()?;
@@ -256,8 +253,8 @@ pub fn claim(question: &StretchedQuestion<'_>, reserve: Reserve) -> Result<Stret
     let enclosed = |b: f64| Number::decimal(b).bounds();
     let holds = |beta: Interval| {
         let of = |(joint, [link, motor]): (&Joint<Interval>, &Exponents)| {
-            let link = joint.link_load(stretch(*link, enclosed), beta)?;
-            Some(link + joint.motor_load(stretch(*motor, enclosed), beta)?)
+            let link = joint.link_load(link.map(enclosed), beta)?;
+            Some(link + joint.motor_load(motor.map(enclosed), beta)?)
         };
         let loads: Option<Vec<_>> = joints.iter().zip(&exponents).map(of).collect();
         loads.is_some_and(|loads| links.bear(&loads, beta))

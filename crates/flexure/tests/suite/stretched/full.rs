@@ -1,6 +1,6 @@
 //! The whole inequality of a stretched metric at one state, in plain floats: all joints and both sides at once, nothing eliminated.
 
-use flexure::linalg::{Symmetric, weakest};
+use flexure::linalg::{Dense, Symmetric, exponential, spectral_radius, weakest};
 use flexure::prove::engine::Certificate;
 use flexure::prove::engine::certificate::{CertifiedPhi, DecimalGains};
 use flexure::prove::engine::number::Number;
@@ -23,6 +23,8 @@ pub struct Loop {
     hardening: Vec<f64>,
     /// Whether φ is tanh.
     flattens: bool,
+    /// Largest errors in rad, links then motors.
+    largest: Vec<f64>,
 }
 
 /// A state of two neighbouring solutions: position errors and velocity errors, links then motors.
@@ -52,6 +54,7 @@ impl Loop {
             hardening: [law.link.hardening.as_ref().map_or(vec![0.0; n], |h| floats(h)), vec![0.0; n]]
                 .concat(),
             flattens: law.phi == CertifiedPhi::Tanh,
+            largest: certificate.region.error.iter().flatten().map(Number::approximate).collect(),
         }
     }
 
@@ -75,7 +78,7 @@ impl Loop {
             let coupling = self.stiffness[i] / self.metric[n + i];
             let drift = if k < n { state.speed[k] } else { state.speed[k] - coupling * state.speed[i] };
             let own = self.metric[k] + self.hardening[k] * x * x;
-            let (r, growth) = stretch(exponents[k], x);
+            let (r, growth) = stretch(exponents[k], x, self.largest[k]);
             let metric = own * r * r;
             let relative = growth + self.hardening[k] * x / own;
             add(k, k, metric * (slope - relative * (drift - phi)));
@@ -106,15 +109,47 @@ impl Loop {
             |matrix: &[f64]| Symmetric::from_fn(4 * n, |i, j| matrix[4 * n * i + j] / (unit[i] * unit[j]));
         weakest(&scaled(&form), &scaled(&weight)).map_or(f64::NAN, |(least, _)| least)
     }
+
+    /// The largest real part of the eigenvalues of the loop that stands on its reference with links of this mass matrix [1/s]: from the growth of
+    /// its exponential.
+    pub fn abscissa(&self, mass: &[f64]) -> f64 {
+        let n = self.n;
+        let [damping_l, damping_m] = &self.damping;
+        let forces = Dense::from_fn(n, 4 * n, |i, j| match j / n {
+            _ if j % n != i => 0.0,
+            0 => -self.metric[i],
+            1 => self.stiffness[i],
+            2 => -damping_l[i],
+            _ => 0.0,
+        });
+        let accelerations = Dense::from_fn(n, n, |i, j| mass[i * n + j]).solved(forces);
+        let jacobian = Dense::from_fn(4 * n, 4 * n, |row, column| {
+            let (i, block) = (row % n, column / n);
+            match (row / n, block) {
+                (2, _) => accelerations[(i, column)],
+                _ if column % n != i => 0.0,
+                (0, 0) | (1, 1) => -self.shaping[row],
+                (0, 2) | (1, 3) => 1.0,
+                (1, 2) => -self.stiffness[i] / self.metric[n + i],
+                (3, 1) => -self.metric[n + i] / self.inertia[i],
+                (3, 3) => -damping_m[i] / self.inertia[i],
+                _ => 0.0,
+            }
+        });
+        let seconds = 0.02;
+        spectral_radius(&exponential(&jacobian.scaled(seconds))).ln() / seconds
+    }
 }
 
-/// r and r'/r at `x`.
-fn stretch(exponent: Option<f64>, x: f64) -> (f64, f64) {
+/// r and r'/r at `x`, of errors up to `largest`, where r is one over what it is at 0.
+fn stretch(exponent: Option<f64>, x: f64, largest: f64) -> (f64, f64) {
     let Some(b) = exponent else { return (1.0, 0.0) };
-    let (far, knee) = (x.abs(), (1.0 - b).sqrt().atanh());
-    if far <= knee {
-        return (1.0, 0.0);
-    }
+    let knee = (1.0 - b).sqrt().atanh();
     let f = |y: f64| y.sinh().powf(b) / y.tanh();
-    (f(far) / f(knee), x.signum() * (b / far.tanh() - 2.0 / (2.0 * far).sinh()))
+    let middle = (f(knee) * f(largest.max(knee))).sqrt();
+    let far = x.abs();
+    if far <= knee {
+        return (f(knee) / middle, 0.0);
+    }
+    (f(far) / middle, x.signum() * (b / far.tanh() - 2.0 / (2.0 * far).sinh()))
 }

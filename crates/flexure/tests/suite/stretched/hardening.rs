@@ -78,7 +78,7 @@ fn both_checkers_read_it_and_refuse_what_is_not_claimed() {
             problem(&scenario, &Question::default(), None)
                 .unwrap_err()
                 .to_string()
-                .contains("--velocity-error")
+                .contains("metric_hardening")
         );
         let certificate = certified(&scenario, 2.0, 1.0);
         let rate = certificate.stretched.as_ref().map(|claim| Number::approximate(&claim.rate));
