@@ -20,17 +20,18 @@ const ROUNDING: f64 = 1e-7;
 struct Figures {
     shares: Vec<f64>,
     gains: Vec<f64>,
+    undecided: usize,
     texts: Vec<String>,
 }
 
 impl Figures {
     fn print(&mut self) {
-        let Self { shares, gains, .. } = self;
+        let Self { shares, gains, undecided, .. } = self;
         shares.sort_by(f64::total_cmp);
         gains.sort_by(f64::total_cmp);
         let last = shares.len() - 1;
         println!(
-            "{} robots; certified over sampled: least {:.4}, median {:.4}, largest {:.9}; over constant: median {:.2}, largest {:.1}",
+            "{} robots, {undecided} undecided; certified over sampled: least {:.4}, median {:.4}, largest {:.9}; over constant: median {:.2}, largest {:.1}",
             last + 1,
             shares[0],
             shares[last / 2],
@@ -75,7 +76,15 @@ fn examine(
             ..Question::default()
         };
         let verdict = certify(&problem(&scenario, &question, None).unwrap());
-        let Verdict::Proved(certificate) = verdict else { panic!("robot {number}, {style:?}: {verdict:?}") };
+        let certificate = match verdict {
+            Verdict::Proved(certificate) => certificate,
+            // Where a metric hardens by much and errors are fast there need be no rate; else the constant metric has one.
+            Verdict::Undecided(_) if hardens => {
+                figures.undecided += 1;
+                continue;
+            }
+            other => panic!("robot {number}, {style:?}: {other:?}"),
+        };
         let claim = certificate.stretched.as_ref().unwrap();
         let of = Loop::of(&certificate);
         let exponents: Vec<_> = claim.exponent.iter().map(|b| b.as_ref().map(Number::approximate)).collect();
@@ -127,6 +136,7 @@ fn no_state_is_slower_than_is_certified() {
         let mut figures = Figures::default();
         examine(0..100, kind, 60, &mut figures);
         figures.print();
+        assert!(figures.undecided < 60, "{}", figures.undecided);
         let some: Vec<String> = figures.texts.iter().step_by(10).cloned().collect();
         assert!(python::codes(&some).is_none_or(|codes| codes.iter().all(|&code| code == 0)));
     }
