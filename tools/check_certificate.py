@@ -100,7 +100,7 @@ def read_file(data):
     raw = json.loads(text, object_pairs_hook=lambda pairs: dict(pairs) if len(dict(pairs)) == len(pairs) else pairs, parse_int=whole)
     json.dumps(raw, ensure_ascii=False).encode("utf-8")  # half of a surrogate pair is no text
     WRONG.clear()
-    version = read(raw["version"], range(1, 3))
+    version = read(raw["version"], range(1, 4))
     def claim(sign, digits, up):  # from version 2 on rounded to the side that claims more
         return partial(number, sign=sign, rounded=(digits, up) if version > 1 else None)
     coupled, kind = raw["controller"]["phi"] == "coupled-tanh", raw["robot"]["links"]["kind"]
@@ -114,16 +114,19 @@ def read_file(data):
               for body in raw["robot"]["links"].get("bodies", [])]
     forms = {} if version == 1 else {"forms": shapes if kind == "tree" else type(None)}
     gains = {"metric": above, "shaping": above, "damping": above, "kappa": above if coupled else type(None)}
+    motor = gains | ({"hardening": type(None)} if version > 2 else {})
+    gains = gains | ({"hardening": type(None) if coupled else (from_zero,)} if version > 2 else {})
     rate, margin = claim("> 0", 13, True), partial(number, sign="> 0" if version > 1 else ">= 0", rounded=(1, True))
     rates, margins = ({"contraction": kind, "convergence": kind} for kind in (rate, margin))
     witness = {"side": side, "error": [number] * n, "row": range(n), "column": range(n), "difference": claim("> 0", 1, True)}
     about = {"subject": ({"robot": digest, "scenario": digest},)} if version > 1 else {}
+    about |= {"stretched": ({"velocity_error": from_zero * 2, "exponent": [(positive,)] * 2 * n, "rate": claim("> 0", 9, True)},)} if version > 2 else {}
     file = read(raw, about | {
-        "format": {"flexure-certificate"}, "version": range(1, 3), "name": str, "made_by": str, "assumptions": [str, ...],
+        "format": {"flexure-certificate"}, "version": range(1, 4), "name": str, "made_by": str, "assumptions": [str, ...],
         "robot": {"name": str, "joints": int, "stiffness": above, "motor_inertia": above, "link_damping": from_zero,
                   "motor_damping": from_zero, "links": {"kind": str} | links},
-        "controller": {"phi": {"tanh", "linear", "coupled-tanh"}, "link": gains, "motor": gains},
-        "region": {"error": [(positive,)] * 2 * n, "level": (claim("> 0", 9, True),)}, "contraction_rate": positive,
+        "controller": {"phi": {"tanh", "linear", "coupled-tanh"}, "link": gains, "motor": motor},
+        "region": {"error": [(positive,)] * 2 * n, "level": (claim("> 0", 9, True),)}, "contraction_rate": (positive,) if version > 2 else positive,
         "closed_loop": {"rows": [[str] * 4] * 4, "dissipation": [str] * 4}, "convergence_rate": positive,
         "blocks": [{"block": str, "cases": [{"case": str} | margins, ...]} | rates, ...],
         "mass_matrix": {"margins": [partial(number, sign="> 0", rounded=(1, True)), ...]} | forms,
@@ -166,7 +169,8 @@ RATES = {"contraction": slope, "convergence": lambda x: (1 - 2 / (iv.exp(2 * x) 
 class Side:  # the law of one side: its slope has the entries factor[i][j] * a_j, on the diagonal with a_j for tanh only
     def __init__(self, file, name):
         n, self.phi, law = file["robot"]["joints"], file["controller"]["phi"], file["controller"][name]
-        self.joints, self.metric, self.shaping, self.damping, kappa = range(n), *law.values()
+        self.joints, self.metric, self.shaping, self.damping, kappa = range(n), *[law[key] for key in ("metric", "shaping", "damping", "kappa")]
+        self.hardening = law.get("hardening") or [ZERO] * n
         self.bounds = file["region"]["error"][slice(n) if name == "link" else slice(n, None)]
         self.low = {rate: [ZERO if r is None else max(f(r.b).a, ZERO) for r in self.bounds] for rate, f in RATES.items()}
         self.factor = diagonal([1 + k for k in kappa] if kappa else self.shaping)
@@ -324,7 +328,9 @@ def check_blocks(file, blocks, sides, momenta):
         check_block(phi, {case: partial(side.matrix, case) for case in side.cases})
         check_block(sigma, momenta[name])
         need(sigma["contraction"].exact == sigma["convergence"].exact, f"{sigma['block']}: the rates differ")
-    for block, rate in product(blocks.values(), RATES):
+    hardens = file["controller"]["link"].get("hardening") is not None
+    need((file["contraction_rate"] is None) == hardens, "contraction_rate: null where, and only where, the metric hardens")
+    for block, rate in product(blocks.values(), [*RATES][hardens:]):
         need(file[rate + "_rate"].high <= block[rate].low, f"{rate}_rate: more than that of {block['block']}")
 def check_measures(file, blocks, sides):
     own = {f"{name}/{norm}": bound for name, side in sides.items() for norm, bound in side.measures().items()}
@@ -333,6 +339,8 @@ def check_measures(file, blocks, sides):
         need(own[name] <= bound.claimed if name in own else -rate.low <= bound.low, f"measures: {name} is more than claimed")
 
 def check_structure(file, sides):
+    if file["contraction_rate"] is None:
+        return need(file["structure"] == [], "structure: nothing is claimed where the metric depends on the error")
     phi = file["controller"]["phi"]
     equal = all(p.exact == q.exact for side in sides.values() for p, q in zip(side.metric, side.shaping))
     truth = {"variational-ph": phi != "coupled-tanh" or file["robot"]["joints"] == 1, "ph-like": phi == "linear" and equal,
@@ -356,6 +364,43 @@ def check_tube(tube, file, blocks, metric):
     need(region is None or level.high <= region.low, "tube: the level is more than the region's")
     need(all(p * e.claimed**2 >= 2 * level.reached for p, e in zip(metric, tube["error"])), "tube: an error is too small")
 
+def stretched_rest(side, i, b, drift, beta):  # own rate less beta while it drifts outwards, and (P - metric)^2 / P, for errors in the region
+    def lost(chord):  # of the rate that the metric has without its growth, where phi is at least the chord times the error
+        return (root(chord**2 + side.hardening[i] / side.metric[i] * drift**2) - chord) / 2 if side.hardening[i] != 0 else ZERO
+    if side.phi == "linear":
+        rate = side.shaping[i] - lost(side.shaping[i]) - beta
+        need(b is None and rate > 0, "stretched: a position error alone contracts more slowly, or is stretched")
+        return rate, ZERO
+    need(side.bounds[i] is not None, "stretched: errors have no bound")
+    error = iv.mpf(side.bounds[i].b)
+    flat, tanh, square, growth = slope(error), 1 - 2 / (iv.exp(2 * error) + 1), ONE, ZERO
+    need(b is None or b > flat or b <= flat, "stretched: an exponent is too close to sech^2 of the largest error")
+    if b is not None and b > flat:
+        square = iv.exp(b * iv.log(tanh**2 / flat * b / (1 - b))) * (1 - b) / tanh**2
+        growth = (b - flat) / tanh
+    rate = side.shaping[i] * (flat + growth * tanh) - growth * drift - lost(side.shaping[i] * tanh / error) - beta
+    need(rate > 0, "stretched: a position error alone contracts more slowly")
+    ratio = root(square)  # of the largest r and the least; P is the metric times r^2 / (largest times least)
+    return rate, (side.metric[i] + side.hardening[i] * error**2) * (ratio - 1) ** 2 / ratio
+def check_stretched(claim, file, blocks, sides, damping):
+    (link, motor), n, beta, links = sides.values(), file["robot"]["joints"], claim["rate"].claimed, file["robot"]["links"]
+    need(link.phi != "coupled-tanh", "stretched: is for tanh or linear")
+    need(all(b is None or b < 1 for b in claim["exponent"]), "stretched: an exponent is not < 1")
+    left = []
+    for i in range(n):
+        speed, b = claim["velocity_error"][i::n], claim["exponent"][i::n]
+        coupling = file["robot"]["stiffness"][i] / motor.metric[i]
+        rate, mismatch = stretched_rest(link, i, b[0], speed[0], beta)
+        fast, other = stretched_rest(motor, i, b[1], speed[1] + coupling * speed[0], beta)
+        spare = damping["motor"][i] - beta * file["robot"]["motor_inertia"][i]
+        need(spare > 0 and fast - other / (4 * spare) > 0, "stretched: a motor does not reach the rate")
+        left.append(damping["link"][i] - mismatch / (4 * rate) - coupling**2 * other / (4 * (fast - other / (4 * spare))))
+    if links["kind"] == "tree":
+        masses = [diagonal([d / blocks["sigma_l"]["contraction"] for d in damping["link"]])]
+    else:
+        masses = mass_matrices(links)[0].values()
+    need(all(smallest_pivot(momentum_matrix(left, mass, None, beta)) > 0 for mass in masses), "stretched: the damping does not bear it")
+
 def check(data):  # the rates that are proved, and what the loop's files hash to
     file = read_file(data)
     check_closed_loop(file["closed_loop"])
@@ -373,7 +418,10 @@ def check(data):  # the rates that are proved, and what the loop's files hash to
     check_structure(file, sides)
     if file["tube"]:
         check_tube(file["tube"], file, blocks, metric)
-    return [float(file[rate + "_rate"].low) for rate in RATES], file.get("subject") or {}
+    if file.get("stretched"):
+        check_stretched(file["stretched"], file, blocks, sides, damping)
+    rates = {rate: file[rate + "_rate"] for rate in RATES}
+    return {rate: float(claim.low) for rate, claim in rates.items() if claim}, file.get("subject") or {}
 
 def main(paths):
     worst = 0 if paths else 2
@@ -381,7 +429,7 @@ def main(paths):
         code, start = 0, time.perf_counter()
         try:
             rates, subject = check(open(path, "rb").read())
-            said = "proved: contraction {:.10g} 1/s, convergence {:.10g} 1/s".format(*rates)
+            said = "proved: " + ", ".join(f"{name} {rate:.10g} 1/s" for name, rate in rates.items())
             said += "".join(f", {key} {hash}" for key, hash in subject.items())
         except AssertionError as error:
             code, said = 1, f"does not hold: {error}"

@@ -29,6 +29,10 @@ pub struct Certify {
     /// Largest unknown torque on each motor in N m: certifies the tube that errors settle in.
     #[arg(long, value_name = "D", value_delimiter = ',', allow_negative_numbers = true)]
     pub disturbance: Option<Vec<f64>>,
+    /// Largest velocity errors in rad/s, links then motors: certifies the contraction rate, in a metric that grows with the error, of any two
+    /// solutions while both keep to them and to the region. For phi = tanh.
+    #[arg(long, value_name = "S", value_delimiter = ',', allow_negative_numbers = true)]
+    pub velocity_error: Option<Vec<f64>>,
     /// Prove the rate once more, from the full inequality without any theorem.
     #[arg(long)]
     pub direct: bool,

@@ -76,7 +76,7 @@ fn verified(file: &Path, report: CheckReport, against: Option<Against>, json: bo
             claims,
             about,
             assumptions,
-            contraction_rate: Some(contraction_rate),
+            contraction_rate,
             convergence_rate: Some(convergence_rate),
             against,
             ..Answer::default()
@@ -94,9 +94,11 @@ fn verified(file: &Path, report: CheckReport, against: Option<Against>, json: bo
     for Claim { name, value } in &report.claims {
         print::line(&format!("{name}: {value}"))?;
     }
-    let (contraction, convergence) = (&report.contraction_rate, &report.convergence_rate);
+    let convergence = &report.convergence_rate;
+    let contraction =
+        report.contraction_rate.as_ref().map_or(String::new(), |rate| format!("contraction {rate} 1/s, "));
     print::line(&format!(
-        "verified: {}: contraction {contraction} 1/s, convergence {convergence} 1/s",
+        "verified: {}: {contraction}convergence {convergence} 1/s",
         clipped(&quoted(&report.name))
     ))?;
     if let Some(against) = against.filter(|against| against.same) {

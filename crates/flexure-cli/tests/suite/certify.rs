@@ -129,6 +129,32 @@ fn tubes_lie_inside_the_region() {
     assert_eq!(tube("500").code, Some(3));
 }
 
+/// A rate of any two solutions while velocity errors keep to a bound, in the file, in the lines and in `--json`; and a link metric that
+/// hardens has none but that.
+#[test]
+fn velocity_errors_with_a_bound_give_a_faster_rate() {
+    let folder = Place::new();
+    let hardening = "metric_hardening = [55.0, 30.0]\ndamping = [15.0";
+    folder.scenario("hardening.toml", &[("damping = [15.0", hardening)]);
+    let certify = |scenario: &str, json: &[&str]| {
+        let args = [&["certify", scenario, "--error-box", "3", "--velocity-error", "5"], json].concat();
+        folder.run(&args).done()
+    };
+    let found = certify("two-link-tanh", &["--json"]).json();
+    let rate = found["stretched"]["rate"].as_f64().unwrap();
+    assert!(rate > 19.0 && found["contraction_rate"].as_f64().unwrap() < 0.3, "{rate}");
+    assert_eq!(found["stretched"]["velocity_error"].as_array().unwrap().len(), 4);
+    let said = certify("two-link-tanh", &[]).stdout;
+    let words = "1/s between any two solutions, while both have |q̃_i| ≤ 3 rad and |s_i| ≤ 5 rad/s";
+    assert!(said.contains(words), "{said}");
+    let verified = folder.run(&["verify", "out/two-link-tanh.certificate.json"]).done().stdout;
+    assert!(verified.contains("stretched: 19."), "{verified}");
+
+    let found = certify("hardening.toml", &["--json"]).json();
+    assert!(found["contraction_rate"].is_null() && found["stretched"]["rate"].as_f64().unwrap() > 10.0);
+    folder.run(&["verify", "out/hardening.certificate.json", "--against", "hardening.toml"]).done();
+}
+
 #[test]
 fn bad_options_are_told_apart() {
     let folder = Place::new();
@@ -138,7 +164,7 @@ fn bad_options_are_told_apart() {
     folder.scenario("motor.toml", &[(motor, &hardening(motor))]);
     folder.scenario("phi.toml", &[("\"tanh\"", "\"tahn\"")]);
     folder.scenario("metric.toml", &[("[55.0, 30.0]", "[55.0, -30.0]")]);
-    let cases: [(&[&str], &str); 18] = [
+    let cases: [(&[&str], &str); 21] = [
         (&["two-link-tanh", "--error-box", "0"], "empty"),
         (&["two-link-tanh", "--error-box", "-1"], "empty"),
         (&["two-link-tanh", "--error-box", "nan"], "magnitude"),
@@ -152,7 +178,10 @@ fn bad_options_are_told_apart() {
         (&["two-link-tanh", "--rate", "-1"], "must be > 0"),
         (&["two-link-tanh", "--disturbance", "-1"], "must be >= 0"),
         (&["two-link-tanh", "--disturbance", "1,2,3"], "1 or 2 numbers"),
-        (&["hardening.toml"], "metric_hardening"),
+        (&["two-link-tanh", "--velocity-error", "-1"], "must be >= 0"),
+        (&["two-link-tanh", "--velocity-error", "1,2,3"], "1 or 4 numbers"),
+        (&["two-link-linear", "--velocity-error", "1"], "stretched"),
+        (&["hardening.toml"], "--velocity-error"),
         (&["motor.toml"], "not integrable"),
         (&["phi.toml"], "tahn"),
         (&["metric.toml"], "must be > 0"),

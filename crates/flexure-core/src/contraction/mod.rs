@@ -10,6 +10,7 @@
 //! | which length decays along solutions? | [`Finsler`] |
 //! | is it differentially passive? | [`differential_passivity`]; two in feedback: [`Interconnection`] |
 //! | does a virtual system solve my tracking problem? | [`VirtualSystem`] |
+//! | what does a metric gain that grows with the error? | [`Stretch`], [`StretchedLoop`], [`StretchedSide`] |
 //! | does it hold over a whole region? | the same functions on intervals, over the pieces of a box: [`over_pieces`] |
 //!
 //! The flexible-joint robot is one instance: [`ErrorLoop`] in error coordinates, [`FlexibleJoints`] as a [`VirtualSystem`].
@@ -33,6 +34,8 @@ mod pieces;
 mod port_hamiltonian;
 mod prolonged;
 mod step;
+mod stretch;
+mod stretched_side;
 mod structures;
 mod system;
 mod tangent;
@@ -59,6 +62,8 @@ pub use pieces::over_pieces;
 pub use port_hamiltonian::{EnergyBalance, Hessian, PortHamiltonian, PortSystem};
 pub use prolonged::Prolonged;
 pub use step::runge_kutta;
+pub use stretch::{Stretch, StretchedLoop};
+pub use stretched_side::{Stretched, StretchedSide};
 pub use structures::{
     Refusal, incremental_passivity, keeps_hamiltonian_structure, keeps_variational_structure,
     slope_inequality, symmetric_positive,

@@ -53,7 +53,7 @@ impl Judged {
 
     /// The rate that is proved [1/s].
     pub fn rate(&self) -> Option<f64> {
-        Some(self.proof.as_ref()?.verdict.proved()?.contraction_rate.approximate())
+        Some(self.proof.as_ref()?.verdict.proved()?.contraction_rate.as_ref()?.approximate())
     }
 
     /// Whether every constraint that is asked is kept.

@@ -34,6 +34,11 @@ impl SideGains {
         self.extra.iter().find(|(own, _)| *own == key).map(|(_, values)| values)
     }
 
+    /// Growth of Π_l with the error squared [N m/rad³], if that is not 0.
+    pub fn hardens(&self) -> Option<&[f64]> {
+        self.metric_hardening.as_deref().filter(|hardening| hardening.iter().any(|&h| h != 0.0))
+    }
+
     /// Gives the side the gains that `phi` has beside Λ, each where tuning starts from.
     pub(super) fn start_extra(&mut self, phi: Phi) {
         let start = |start: fn(f64) -> f64| self.shaping.iter().map(|&gain| start(gain)).collect();

@@ -117,10 +117,10 @@ fn suitable(scenario: &Scenario) -> Result<(), Problems> {
 /// What to say of a metric that depends on the error, if it does.
 pub(crate) fn uneven_metric(scenario: &Scenario) -> Option<Problem> {
     let link = &scenario.vcbc().ok()?.link;
-    link.metric_hardening.as_ref().filter(|hardening| hardening.iter().any(|&h| h != 0.0))?;
-    let message = "controller.link.metric_hardening is not 0: proofs take a constant metric";
-    let help =
-        "with a Π_l that depends on the error the rate depends on the speed of the error too; leave it out";
+    link.hardens()?;
+    let message = "controller.link.metric_hardening is not 0: this needs a constant metric";
+    let help = "with a Π_l that depends on the error the rate depends on the speed of the error too: certify with --velocity-error, or \
+                leave it out";
     Some(scenario.places.problem("controller.link.metric_hardening", "metric", message, help))
 }
 

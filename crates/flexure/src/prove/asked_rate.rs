@@ -18,7 +18,12 @@ pub(super) fn at_rate(
     sampled: &Sampled,
     damping: &[f64],
 ) -> Verdict<Certificate, RateWitness> {
-    if rate <= certificate.contraction_rate.bounds().lo() {
+    let Some(proved) = &certificate.contraction_rate else {
+        let at =
+            "with a metric that depends on the error no contraction rate holds at every speed".to_owned();
+        return Verdict::Undecided(Undecided { at, spent: 1 });
+    };
+    if rate <= proved.bounds().lo() {
         return Verdict::Proved(certificate);
     }
     match slower(rate, &certificate, sampled, damping) {
@@ -26,7 +31,7 @@ pub(super) fn at_rate(
         None => Verdict::Undecided(Undecided {
             at: format!(
                 "{rate} 1/s is above the proved rate, {} 1/s, and no sample is slower",
-                certificate.contraction_rate.approximate()
+                proved.approximate()
             ),
             spent: 1,
         }),

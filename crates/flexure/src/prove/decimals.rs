@@ -15,6 +15,7 @@ pub(crate) fn gains(scenario: &Scenario, gains: &laws::SideGains) -> DecimalGain
         shaping: numbers(&gains.shaping),
         damping: numbers(&gains.damping),
         kappa: gains.extra("kappa").map(|kappa| numbers(kappa)),
+        hardening: gains.hardens().map(numbers),
     }
 }
 

@@ -36,6 +36,15 @@ impl Question {
             let message = format!("the disturbance is {negative} N m, must be >= 0");
             return Err(Problem::new("range", message, "the largest absolute value of the torque"));
         }
+        let hint = "one number, or one per joint of the links, then of the motors, in rad/s";
+        let velocity_error = self
+            .velocity_error
+            .map(|speeds| per_joint("the velocity error", speeds, 2 * n, hint))
+            .transpose()?;
+        if let Some(negative) = velocity_error.iter().flatten().find(|&&s| s < 0.0) {
+            let message = format!("the velocity error is {negative} rad/s, must be >= 0");
+            return Err(Problem::new("range", message, "the largest absolute value of the velocity error"));
+        }
         if let Some(rate) = self.rate.filter(|rate| !(rate.is_finite() && *rate > 0.0 && *rate <= LARGEST)) {
             let message = format!("the rate is {rate:e} 1/s, must be > 0 and at most 1e30");
             let hint = "decay rate of the distance of two solutions; leave it out for the largest";
@@ -47,7 +56,7 @@ impl Question {
             let message = format!("the speed is {speed} rad/s, must be >= 0 and at most 1e30");
             return Err(Problem::new("range", message, "the largest speed of the links that is looked at"));
         }
-        Ok(Self { region, disturbance, ..self })
+        Ok(Self { region, disturbance, velocity_error, ..self })
     }
 }
 

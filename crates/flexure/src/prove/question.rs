@@ -35,7 +35,7 @@ use crate::{laws, robot};
 /// let question = Question { region: Region::Errors(vec![0.2, 0.2]), ..Question::default() };
 /// let proof = flexure::Scenario::load("pendulum-tanh")?.certify(&question)?;
 /// let certificate = proof.verdict.proved().expect("proved");
-/// assert!(certificate.contraction_rate.approximate() > 1.0); // 1/s
+/// assert!(certificate.convergence_rate.approximate() > 1.0); // 1/s
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -46,6 +46,8 @@ pub struct Question {
     pub rate: Option<f64>,
     /// Largest unknown torque on each motor [N m].
     pub disturbance: Option<Vec<f64>>,
+    /// Largest velocity errors [rad/s], links then motors, if a rate in a stretched metric is asked for.
+    pub velocity_error: Option<Vec<f64>>,
     /// Whether the direct engine shall prove the rate once more, and how hard it may try.
     pub direct: Option<Direct>,
 }
@@ -121,7 +123,8 @@ pub fn problem(
     start: Option<f64>,
 ) -> Result<structural::Proposition, Problems> {
     let laws::VcbcGains { phi, link, motor } = scenario.vcbc()?;
-    if let Some(problem) = uneven_metric(scenario) {
+    let uneven = uneven_metric(scenario);
+    if let Some(problem) = uneven.clone().filter(|_| question.velocity_error.is_none()) {
         return Err(problem.into());
     }
     let phi = CertifiedPhi::named(phi.name()).ok_or_else(|| uncertified(scenario, *phi))?;
@@ -133,6 +136,13 @@ pub fn problem(
         .chain(beyond_the_model(scenario))
         .collect();
     let errors = |errors: &[f64]| errors.iter().map(|&e| Number::decimal(e)).collect::<Vec<_>>();
+    let stretches = phi == CertifiedPhi::Tanh || phi == CertifiedPhi::Linear && uneven.is_some();
+    if question.velocity_error.is_some() && !stretches {
+        return Err(unstretched(scenario, phi).into());
+    }
+    if uneven.is_some() {
+        assumptions.push(UNEVEN.to_owned());
+    }
     let metric: Vec<_> =
         controller.link.metric.iter().chain(&controller.motor.metric).map(Number::bounds).collect();
     let region = match &question.region {
@@ -157,6 +167,7 @@ pub fn problem(
         controller,
         region,
         disturbance,
+        velocity_error: question.velocity_error.as_deref().map(errors),
     })
 }
 
@@ -165,6 +176,19 @@ fn uncertified(scenario: &Scenario, phi: laws::Phi) -> Problem {
     let message = format!("controller.phi is '{}', of which no certificate speaks", phi.name());
     let help =
         format!("those are of phi = {}; `flexure run` simulates any", CertifiedPhi::names().join(", "));
+    scenario.places.problem("controller.phi", "unsupported", message, help)
+}
+
+/// What is said of a loop whose metric depends on the error.
+const UNEVEN: &str = "Π_l grows with the error: W has the integral of ∫Π_l in place of ½ Π_l q̃_l², two solutions come together as said under \
+                      stretched, and bounds along the reference, robots within tolerances and the direct engine are left out";
+
+/// What to say where a stretched metric is asked for of a shaping function that is not flat anywhere.
+fn unstretched(scenario: &Scenario, phi: CertifiedPhi) -> Problem {
+    let name = phi.certified().name();
+    let message = format!("a rate in a stretched metric is asked for, and controller.phi is '{name}'");
+    let help = "a metric is stretched where tanh is flat; without --velocity-error, linear and coupled-tanh have a contraction rate \
+                whatever the errors are";
     scenario.places.problem("controller.phi", "unsupported", message, help)
 }
 
@@ -303,7 +327,8 @@ pub fn prove_watched(
         (verdict, _) => verdict,
     };
     let _ = watched(RATES);
-    let has_tolerances = !scenario.robot.tolerances.are_none();
+    let uneven = uneven_metric(scenario).is_some();
+    let has_tolerances = !scenario.robot.tolerances.are_none() && !uneven;
     let budget = slabs(scenario.robot.joint_count());
     let watched = &watched;
     let between = |from: f64, to: f64| move |fraction: f64| watched(from + (to - from) * fraction);
@@ -327,7 +352,7 @@ pub fn prove_watched(
         (Some(_), Some(_)) => DIRECT,
     };
     let confirmation = match (verdict.proved(), question.direct) {
-        (Some(certificate), Some(direct)) if !is_broken_off() => {
+        (Some(certificate), Some(direct)) if !is_broken_off() && !uneven => {
             Some(confirm(scenario, certificate, direct, &between(begun, middle))?)
         }
         _ => None,
@@ -369,7 +394,8 @@ pub(crate) fn inside(certificate: &Certificate, level: f64) -> bool {
 /// # Errors
 /// If its level set cannot be found.
 pub fn certified_rate(scenario: &Scenario) -> Result<Option<f64>, Problems> {
-    Ok(certified(scenario)?.map(|(certificate, _)| certificate.contraction_rate.approximate()))
+    let rate = |(certificate, _): (Certificate, _)| Some(certificate.contraction_rate?.approximate());
+    Ok(certified(scenario)?.and_then(rate))
 }
 
 /// What is proved of `scenario` without further options, if anything is, and how errors decay from its start, if that is inside.

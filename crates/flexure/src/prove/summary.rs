@@ -66,6 +66,8 @@ pub struct ProofSummary {
     pub direct: Option<DirectSummary>,
     /// Error tube under a disturbance.
     pub tube: Option<TubeSummary>,
+    /// A contraction rate in a metric that grows with the error; none if it was not asked for.
+    pub stretched: Option<StretchedSummary>,
     /// A state at which what was asked fails, if it was refuted.
     pub witness: Option<WitnessSummary>,
     /// Why nothing was decided, if so.
@@ -173,6 +175,18 @@ pub struct TubeSummary {
     pub error: Vec<f64>,
 }
 
+/// A contraction rate in a stretched metric: of any two solutions, while both have position errors in the region and velocity errors up to
+/// these bounds. Nothing says that they stay there.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StretchedSummary {
+    /// The rate [1/s].
+    pub rate: f64,
+    /// Largest |s_i|, links then motors [rad/s].
+    pub velocity_error: Vec<f64>,
+    /// b of the stretch of each position error, links then motors; none where nothing is stretched.
+    pub exponent: Vec<Option<f64>>,
+}
+
 /// A state and a direction in which a claim fails.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WitnessSummary {
@@ -253,7 +267,7 @@ impl ProofSummary {
             kinds: scenario.robot.kinds(),
             verdict: Standing::of(scenario, proof, sampled.as_ref()).words(),
             left_out: scenario.beyond_ideal(),
-            contraction_rate: certificate.map(|c| c.contraction_rate.approximate()),
+            contraction_rate: certificate.and_then(|c| Some(c.contraction_rate.as_ref()?.approximate())),
             convergence_rate: certificate.map(|c| c.convergence_rate.approximate()),
             paper_rate: proof.paper_rate,
             blocks: certificate.map(BlockSummary::contraction),
@@ -281,6 +295,11 @@ impl ProofSummary {
                 disturbance: floats(&tube.disturbance),
                 level: tube.level.approximate(),
                 error: floats(&tube.error),
+            }),
+            stretched: certificate.and_then(|c| c.stretched.as_ref()).map(|claim| StretchedSummary {
+                rate: claim.rate.approximate(),
+                velocity_error: floats(&claim.velocity_error),
+                exponent: claim.exponent.iter().map(|b| b.as_ref().map(Number::approximate)).collect(),
             }),
             witness,
             undecided,

@@ -87,7 +87,7 @@ impl Experiment {
             && is_about(&scenario, sampled.as_ref())
             && let Some((certificate, proved)) = certified(&scenario)?
         {
-            run.summary.rate_certified = Some(certificate.contraction_rate.approximate());
+            run.summary.rate_certified = certificate.contraction_rate.map(|rate| rate.approximate());
             decay = proved;
         }
         let ended = match (run.divergence, run.broken_off) {

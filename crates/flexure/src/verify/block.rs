@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::verify::document::{Block, Case, Certificate, Version};
+use crate::verify::document::{Block, Case, Certificate, Side, Version};
 use crate::verify::json::clipped;
 use crate::verify::number::Number;
 use crate::verify::robot::positive;
@@ -88,8 +88,14 @@ pub(super) fn check_rates(certificate: &Certificate) -> Result<Vec<Claim>, Rejec
         let margins: Vec<_> = cases.flat_map(|case| [&case.contraction, &case.convergence]).collect();
         positive("blocks.cases", margins)?;
     }
-    let tops = [&certificate.contraction_rate, &certificate.convergence_rate];
-    for ((name, rate), top) in RATES.into_iter().zip(tops) {
+    let hardens = !certificate.controller.gains(Side::Link).hardening.is_empty();
+    ensure(certificate.contraction_rate.is_none() == hardens, "contraction_rate", || {
+        "must be null where, and only where, the metric of the link hardens".to_owned()
+    })?;
+    let tops = [certificate.contraction_rate.as_ref(), Some(&certificate.convergence_rate)];
+    let tops = RATES.into_iter().zip(tops).filter_map(|(rate, top)| Some((rate, top?)));
+    let mut claims = Vec::new();
+    for ((name, rate), top) in tops {
         let claim = format!("{name}_rate");
         ensure(top.is_positive(), claim.as_str(), || format!("the rate {top} is not > 0"))?;
         for block in BLOCKS {
@@ -98,7 +104,7 @@ pub(super) fn check_rates(certificate: &Certificate) -> Result<Vec<Claim>, Rejec
                 format!("{top} 1/s is claimed, block {block} has {beta} 1/s")
             })?;
         }
+        claims.push(Claim::new(claim, format!("{top} 1/s")));
     }
-    let claim = |name: &str, top: &Number| Claim::new(name, format!("{top} 1/s"));
-    Ok(vec![claim("contraction_rate", tops[0]), claim("convergence_rate", tops[1])])
+    Ok(claims)
 }

@@ -20,7 +20,8 @@ pub(super) struct Certificate {
     pub region: Region,
     pub closed_loop: ClosedLoop,
     pub blocks: Vec<Block>,
-    pub contraction_rate: Number,
+    /// None where Π_l depends on the error.
+    pub contraction_rate: Option<Number>,
     pub convergence_rate: Number,
     pub mass_margins: Vec<Number>,
     /// What bounds the mass matrix of a tree; none in version 1, and for other links.
@@ -28,6 +29,7 @@ pub(super) struct Certificate {
     pub measures: Vec<Measure>,
     pub structure: Vec<Property>,
     pub tube: Option<Tube>,
+    pub stretched: Option<Stretched>,
 }
 
 /// Version of the format.
@@ -35,6 +37,7 @@ pub(super) struct Certificate {
 pub(super) enum Version {
     One,
     Two,
+    Three,
 }
 
 impl Version {
@@ -107,6 +110,8 @@ pub(super) struct Gains {
     pub damping: Vec<Number>,
     /// κ of `coupled-tanh`; empty for other laws.
     pub kappa: Vec<Number>,
+    /// Growth of Π with the squared error; empty where it is constant.
+    pub hardening: Vec<Number>,
 }
 
 pub(super) struct Region {
@@ -162,7 +167,14 @@ pub(super) struct Tube {
     pub error: Vec<Number>,
 }
 
-const KEYS: [&str; 17] = [
+pub(super) struct Stretched {
+    pub velocity_error: Vec<Number>,
+    /// b, links then motors; none where nothing is stretched.
+    pub exponent: Vec<Option<Number>>,
+    pub rate: Number,
+}
+
+const KEYS: [&str; 18] = [
     "format",
     "version",
     "name",
@@ -180,6 +192,7 @@ const KEYS: [&str; 17] = [
     "structure",
     "tube",
     "subject",
+    "stretched",
 ];
 
 /// Bytes that a certificate may have.
@@ -204,17 +217,25 @@ fn certificate(root: &Field<'_>) -> Result<Certificate, Rejected> {
         return Err(root.bad("has no \"format\": \"flexure-certificate\""));
     }
     let version = self::version(root)?;
-    let ([_, _, name, made_by, assumptions, robot, controller, region, closed_loop, rest @ ..], subject) =
-        match version {
-            Version::One => {
-                let [keys @ .., _] = KEYS;
-                (root.object(keys)?, None)
-            }
-            Version::Two => {
-                let [fields @ .., subject] = root.object(KEYS)?;
-                (fields, subject.unless_null())
-            }
-        };
+    let (
+        [_, _, name, made_by, assumptions, robot, controller, region, closed_loop, rest @ ..],
+        subject,
+        stretched,
+    ) = match version {
+        Version::One => {
+            let [keys @ .., _, _] = KEYS;
+            (root.object(keys)?, None, None)
+        }
+        Version::Two => {
+            let [keys @ .., _] = KEYS;
+            let [fields @ .., subject] = root.object(keys)?;
+            (fields, subject.unless_null(), None)
+        }
+        Version::Three => {
+            let [fields @ .., subject, stretched] = root.object(KEYS)?;
+            (fields, subject.unless_null(), stretched.unless_null())
+        }
+    };
     let [blocks, contraction_rate, convergence_rate, mass_matrix, measures, structure, tube] = rest;
     let robot = robot::read(&robot)?;
     let n = robot.joints;
@@ -231,17 +252,21 @@ fn certificate(root: &Field<'_>) -> Result<Certificate, Rejected> {
         subject: subject.map(|subject| subject::read(&subject)).transpose()?,
         name: name.text()?.to_owned(),
         assumptions: each(&assumptions, |text| Ok(text.text()?.to_owned()))?,
-        controller: self::controller(&controller, n)?,
+        controller: self::controller(&controller, n, version)?,
         region: self::region(&region, n, version)?,
         closed_loop: self::closed_loop(&closed_loop)?,
         blocks: each(&blocks, |entry| block(entry, version))?,
-        contraction_rate: contraction_rate.number()?,
+        contraction_rate: match version {
+            Version::One | Version::Two => Some(contraction_rate.number()?),
+            Version::Three => contraction_rate.unless_null().map(|rate| rate.number()).transpose()?,
+        },
         convergence_rate: convergence_rate.number()?,
         mass_margins: each(&mass_margins, Version::margin)?,
         forms,
         measures: each(&measures, |entry| measure(entry, version))?,
         structure: each(&structure, |entry| property(entry, n, version))?,
         tube: tube.unless_null().map(|tube| self::tube(&tube, n, version)).transpose()?,
+        stretched: stretched.map(|claim| self::stretched(&claim, n, version)).transpose()?,
         robot,
     })
 }
@@ -252,7 +277,8 @@ fn version(root: &Field<'_>) -> Result<Version, Rejected> {
     match version.index()? {
         1 => Ok(Version::One),
         2 => Ok(Version::Two),
-        _ => Err(version.bad("must be 1 or 2")),
+        3 => Ok(Version::Three),
+        _ => Err(version.bad("must be 1, 2 or 3")),
     }
 }
 
@@ -263,7 +289,7 @@ fn each<'a, T>(
     list.list()?.iter().map(read).collect()
 }
 
-fn controller(field: &Field<'_>, n: usize) -> Result<Controller, Rejected> {
+fn controller(field: &Field<'_>, n: usize, version: Version) -> Result<Controller, Rejected> {
     let [phi, link, motor] = field.object(["phi", "link", "motor"])?;
     let phi =
         phi.one_of(&[("tanh", Phi::Tanh), ("linear", Phi::Linear), ("coupled-tanh", Phi::CoupledTanh)])?;
@@ -271,11 +297,22 @@ fn controller(field: &Field<'_>, n: usize) -> Result<Controller, Rejected> {
     if phi == Phi::CoupledTanh && n > 16 {
         return Err(field.bad("'coupled-tanh' is for 16 joints at most"));
     }
-    Ok(Controller { phi, link: gains(&link, phi, n)?, motor: gains(&motor, phi, n)? })
+    let (link, motor) = (gains(&link, phi, n, version)?, gains(&motor, phi, n, version)?);
+    if !motor.hardening.is_empty() || !link.hardening.is_empty() && phi == Phi::CoupledTanh {
+        return Err(field.bad("hardening is for the link, where phi is tanh or linear"));
+    }
+    Ok(Controller { phi, link, motor })
 }
 
-fn gains(field: &Field<'_>, phi: Phi, n: usize) -> Result<Gains, Rejected> {
-    let [metric, shaping, damping, kappa] = field.object(["metric", "shaping", "damping", "kappa"])?;
+fn gains(field: &Field<'_>, phi: Phi, n: usize, version: Version) -> Result<Gains, Rejected> {
+    const KEYS: [&str; 5] = ["metric", "shaping", "damping", "kappa", "hardening"];
+    let ([metric, shaping, damping, kappa], hardening) = if version == Version::Three {
+        let [four @ .., hardening] = field.object(KEYS)?;
+        (four, hardening.unless_null())
+    } else {
+        let [four @ .., _] = KEYS;
+        (field.object(four)?, None)
+    };
     let kappa = match (phi, kappa.unless_null()) {
         (Phi::CoupledTanh, Some(kappa)) => kappa.numbers(n)?,
         (Phi::CoupledTanh, None) => return Err(field.bad("'coupled-tanh' needs kappa")),
@@ -287,6 +324,7 @@ fn gains(field: &Field<'_>, phi: Phi, n: usize) -> Result<Gains, Rejected> {
         shaping: shaping.numbers(n)?,
         damping: damping.numbers(n)?,
         kappa,
+        hardening: hardening.map_or(Ok(Vec::new()), |hardening| hardening.numbers(n))?,
     })
 }
 
@@ -356,5 +394,15 @@ fn tube(field: &Field<'_>, n: usize, version: Version) -> Result<Tube, Rejected>
         reached: version.up(&level)?,
         level: version.down(&level)?,
         error: error.list_of(2 * n)?.iter().map(|error| version.down(error)).collect::<Result<_, _>>()?,
+    })
+}
+
+fn stretched(field: &Field<'_>, n: usize, version: Version) -> Result<Stretched, Rejected> {
+    let [velocity_error, exponent, rate] = field.object(["velocity_error", "exponent", "rate"])?;
+    let number = |field: Field<'_>| field.unless_null().map(|field| field.number()).transpose();
+    Ok(Stretched {
+        velocity_error: velocity_error.numbers(2 * n)?,
+        exponent: exponent.list_of(2 * n)?.into_iter().map(number).collect::<Result<_, _>>()?,
+        rate: version.up(&rate)?,
     })
 }

@@ -21,6 +21,7 @@ mod reach;
 mod region;
 mod robot;
 mod shaping;
+mod stretched;
 mod structure;
 mod subject;
 mod tube;
@@ -38,7 +39,7 @@ pub use verdict::{CheckReport, Claim, Rejected};
 /// use flexure::verify::{Rejected, verify};
 /// let text = include_str!("../../tests/certificates/two-link-linear.json");
 /// let report = verify(text).unwrap();
-/// assert_eq!(report.convergence_rate, report.contraction_rate);
+/// assert_eq!(Some(report.convergence_rate), report.contraction_rate);
 /// let other = text.replace("\"format\"", "\"Format\"");
 /// assert!(matches!(verify(&other), Err(Rejected::Malformed { .. })));
 /// ```
@@ -58,6 +59,7 @@ pub fn verify(text: &str) -> Result<CheckReport, Rejected> {
         measures::check,
         structure::check,
         tube::check,
+        stretched::check,
     ];
     let mut claims = Vec::new();
     for check in checks {
@@ -68,7 +70,7 @@ pub fn verify(text: &str) -> Result<CheckReport, Rejected> {
         name: certificate.name,
         assumptions: certificate.assumptions,
         claims,
-        contraction_rate: certificate.contraction_rate.to_string(),
+        contraction_rate: certificate.contraction_rate.map(|rate| rate.to_string()),
         convergence_rate: certificate.convergence_rate.to_string(),
     })
 }

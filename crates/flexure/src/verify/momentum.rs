@@ -20,7 +20,7 @@ pub(super) fn check(certificate: &Certificate) -> Result<Vec<Claim>, Rejected> {
 }
 
 /// D + K_d.
-fn damping(damper: &[Number], gain: &[Number]) -> Vec<Interval> {
+pub(super) fn damping(damper: &[Number], gain: &[Number]) -> Vec<Interval> {
     damper.iter().zip(gain).map(|(d, k)| d.value + k.value).collect()
 }
 

@@ -175,6 +175,7 @@ pub(super) fn check(certificate: &Certificate) -> Result<Vec<Claim>, Rejected> {
         positive(&format!("controller.{name}.shaping"), &gains.shaping)?;
         positive(&format!("controller.{name}.damping"), &gains.damping)?;
         positive(&format!("controller.{name}.kappa"), &gains.kappa)?;
+        nonnegative(&format!("controller.{name}.hardening"), &gains.hardening)?;
     }
     Ok(vec![Claim::new("robot, controller", format!("{} joints, signs as they must be", robot.joints))])
 }

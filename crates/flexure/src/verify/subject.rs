@@ -85,6 +85,7 @@ pub(super) fn stated(certificate: &Certificate) -> Vec<Claim> {
             ("shaping", &gains.shaping, "1/s"),
             ("damping", &gains.damping, "N m s/rad"),
             ("kappa", &gains.kappa, "1/s"),
+            ("hardening", &gains.hardening, "N m/rad^3"),
         ];
         let claim = |(key, numbers, unit): (&str, &Vec<Number>, &str)| {
             Claim::new(format!("controller.{name}.{key}"), format!("{} {unit}", listed(numbers)))

@@ -31,8 +31,8 @@ pub struct CheckReport {
     pub assumptions: Vec<String>,
     /// Every claim, in the order of checking.
     pub claims: Vec<Claim>,
-    /// Decay rate of √W between any two motions, in 1/s, as the file writes it.
-    pub contraction_rate: String,
+    /// Decay rate of √W between any two motions, in 1/s, as the file writes it; none where the metric depends on the error.
+    pub contraction_rate: Option<String>,
     /// Decay rate of √W of the error, in 1/s, as the file writes it.
     pub convergence_rate: String,
 }

@@ -50,6 +50,7 @@ mod rough_plant;
 mod sampled;
 mod samples;
 mod sinks;
+mod stretched;
 mod suites;
 mod together;
 mod urdf;

@@ -13,6 +13,8 @@ mod port_hamiltonian;
 mod rigid_arm;
 mod sides;
 mod solutions;
+#[cfg(feature = "interval")]
+mod stretched;
 mod systems;
 
 use flexure_core::contraction::{Dynamics, runge_kutta};

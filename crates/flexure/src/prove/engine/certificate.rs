@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::prove::engine::number::Number;
 
 /// Version of the format.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 /// A proof in numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -35,18 +35,20 @@ pub struct Certificate {
     pub closed_loop: ClosedLoopWords,
     /// The rates of the four blocks.
     pub blocks: Vec<Block>,
-    /// Decay rate of the distance between any two virtual solutions [1/s].
-    pub contraction_rate: Number,
+    /// Decay rate of the distance between any two virtual solutions [1/s]; none where Π_l depends on the error.
+    pub contraction_rate: Option<Number>,
     /// Decay rate of the distance to the reference [1/s].
     pub convergence_rate: Number,
     /// Why the mass matrix is positive definite at every configuration.
     pub mass_matrix: MassMatrix,
     /// Matrix measures of the slopes of φ.
     pub measures: Vec<Measure>,
-    /// Which structures the closed loop keeps.
+    /// Which structures the closed loop keeps; nothing is said of them where Π_l depends on the error.
     pub structure: Vec<StructureClaim>,
     /// Error tube under a disturbance of the motors.
     pub tube: Option<Tube>,
+    /// A contraction rate in a metric that grows with the error.
+    pub stretched: Option<StretchedClaim>,
 }
 
 impl Certificate {
@@ -197,6 +199,8 @@ pub struct DecimalGains {
     pub damping: Vec<Number>,
     /// κ of `coupled-tanh` [1/s].
     pub kappa: Option<Vec<Number>>,
+    /// Growth of Π_l with the squared error [N m/rad³]; none where Π is constant.
+    pub hardening: Option<Vec<Number>>,
 }
 
 /// Errors for which the claims hold, and a level set of W inside.
@@ -374,6 +378,19 @@ pub struct Tube {
     pub level: Number,
     /// What |q̃_i| ≤ there, links then motors, in rad.
     pub error: Vec<Number>,
+}
+
+/// A contraction rate of any two solutions while both have position errors in the region and velocity errors up to a bound, in a metric
+/// that counts position errors for more where tanh is flat.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(rename = "Stretched", deny_unknown_fields))]
+pub struct StretchedClaim {
+    /// Largest |s_i| = |(M⁻¹ σ)_i|, links then motors [rad/s].
+    pub velocity_error: Vec<Number>,
+    /// b of the stretch of each position error, links then motors: 0 < b < 1; none where nothing is stretched.
+    pub exponent: Vec<Option<Number>>,
+    /// The rate [1/s].
+    pub rate: Number,
 }
 
 /// Enclosures of a list of numbers.

@@ -22,6 +22,7 @@ pub mod reserve;
 #[cfg(test)]
 mod schema;
 pub mod shaping;
+pub mod stretched;
 pub mod structural;
 pub mod structure;
 pub mod verdict;

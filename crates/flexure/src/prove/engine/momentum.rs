@@ -63,6 +63,22 @@ pub fn motors(robot: &DecimalRobot, damping: &[Interval]) -> Inequality {
     }
 }
 
+/// Matrices of which some mixture is no less than M(q), whatever q: where diag(d) − β M is positive definite for each, it is so for the
+/// mass matrix. Of a tree one, diag(`damping`)/β_σ with the rate β_σ of its momentum block.
+pub fn upper_masses(
+    links: &DecimalLinks,
+    damping: &[Interval],
+    block_rate: Interval,
+) -> Vec<Symmetric<Interval>> {
+    match links {
+        DecimalLinks::Tree { .. } => {
+            let share: Vec<Interval> = damping.iter().map(|&d| d / block_rate).collect();
+            vec![Symmetric::diagonal(&share)]
+        }
+        closed_form => masses(closed_form),
+    }
+}
+
 /// Lower bounds of pivots that show M(q) to be positive definite for all q, in the order of `docs/certificate.md`.
 pub fn pivots(links: &DecimalLinks) -> Vec<f64> {
     match links {

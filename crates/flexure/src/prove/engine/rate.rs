@@ -34,9 +34,8 @@ pub struct ClaimedRate {
 const SLOWEST: f64 = 1e-30;
 const FASTEST: f64 = 1e30;
 
-/// The largest rate at which all the inequalities hold, less `reserve` of it; none if no positive one can be shown.
-pub fn largest(inequalities: &[Inequality], reserve: f64) -> Option<ClaimedRate> {
-    let holds = |beta: f64| inequalities.iter().all(|one| one.margin(Interval::point(beta)) > 0.0);
+/// A rate that holds, and another not more than `tolerance` of it above that does not; none if no positive one does.
+pub fn greatest(holds: impl Fn(f64) -> bool, tolerance: f64) -> Option<f64> {
     // Between a rate that holds and one that does not: by factors first, then by halves.
     let mut low = if holds(1.0) {
         1.0
@@ -49,10 +48,17 @@ pub fn largest(inequalities: &[Inequality], reserve: f64) -> Option<ClaimedRate>
     while holds(high) && high < FASTEST {
         (low, high) = (high, 2.0 * high);
     }
-    while high - low > 0.1 * reserve * low {
+    while high - low > tolerance * low {
         let middle = 0.5 * (low + high);
         *(if holds(middle) { &mut low } else { &mut high }) = middle;
     }
+    Some(low)
+}
+
+/// The largest rate at which all the inequalities hold, less `reserve` of it; none if no positive one can be shown.
+pub fn largest(inequalities: &[Inequality], reserve: f64) -> Option<ClaimedRate> {
+    let holds = |beta: f64| inequalities.iter().all(|one| one.margin(Interval::point(beta)) > 0.0);
+    let low = greatest(holds, 0.1 * reserve)?;
     claim(low * (1.0 - reserve), inequalities, reserve)
 }
 

@@ -14,6 +14,7 @@ use crate::prove::engine::position::{Ends, Position};
 use crate::prove::engine::rate::{ClaimedRate, Inequality, largest};
 use crate::prove::engine::region::{RequestedRegion, region, tube};
 use crate::prove::engine::reserve::Reserve;
+use crate::prove::engine::stretched::{self, StretchedQuestion};
 use crate::prove::engine::structure::{self, SideOf};
 use crate::prove::engine::verdict::{Undecided, Verdict};
 use crate::prove::engine::witness::{RateWitness, WitnessState, against};
@@ -38,6 +39,8 @@ pub struct Proposition {
     pub region: RequestedRegion,
     /// Largest disturbance torque of each motor [N m], if tubes are asked for.
     pub disturbance: Option<Vec<Number>>,
+    /// Largest velocity errors [rad/s], links then motors, if a rate in a stretched metric is asked for.
+    pub velocity_error: Option<Vec<Number>>,
 }
 
 /// Proves contraction and convergence rates of the closed loop, and what follows from them, leaving `reserve` unclaimed.
@@ -112,11 +115,26 @@ fn attempt(problem: &Proposition, reserve: Reserve) -> Result<Certificate, Failu
             Some(tube(robot, disturbance, rates, &metric, &region)?)
         }
     };
+    let stretched = match &problem.velocity_error {
+        None => None,
+        Some(velocity_error) => {
+            let block_rate = blocks[2].contraction.bounds();
+            let of =
+                StretchedQuestion { robot, controller, error: &region.error, velocity_error, block_rate };
+            Some(stretched::claim(&of, reserve)?)
+        }
+    };
     let sided = |side, gains, position| SideOf { side, gains, position };
-    let structure = structure::claims(
-        controller.phi,
-        &[sided(LoopSide::Link, &controller.link, links), sided(LoopSide::Motor, &controller.motor, motors)],
-    )?;
+    let constant = controller.link.hardening.is_none();
+    let structure = if constant {
+        let sides = [
+            sided(LoopSide::Link, &controller.link, links),
+            sided(LoopSide::Motor, &controller.motor, motors),
+        ];
+        structure::claims(controller.phi, &sides)?
+    } else {
+        Vec::new()
+    };
     Ok(Certificate {
         format: "flexure-certificate".to_owned(),
         version: VERSION,
@@ -131,13 +149,14 @@ fn attempt(problem: &Proposition, reserve: Reserve) -> Result<Certificate, Failu
             rows: ROWS.map(|row| row.map(str::to_owned)),
             dissipation: DISSIPATION.map(str::to_owned),
         },
-        contraction_rate: smallest(|block| &block.contraction, &blocks),
+        contraction_rate: constant.then(|| smallest(|block| &block.contraction, &blocks)),
         convergence_rate: smallest(|block| &block.convergence, &blocks),
         mass_matrix: mass_matrix(robot, link_block.forms, reserve)?,
         measures: measures(&[links, motors], &blocks, reserve),
         structure,
         blocks,
         tube,
+        stretched,
     })
 }
 

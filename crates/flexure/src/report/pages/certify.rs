@@ -78,10 +78,22 @@ fn rates(summary: &ProofSummary) -> String {
     let place = region.and_then(|region| region.error.as_ref()).map_or_else(String::new, |errors| {
         format!(" where position errors are up to {} {}", largest(errors), summary.unit(units::ANGLE))
     });
+    let contraction = summary.contraction_rate.map_or_else(String::new, |rate| {
+        let rate = proved_rate(Some(rate));
+        format!(", and any two solutions of the virtual system come together at {rate} 1/s or faster")
+    });
+    let stretched = summary.stretched.as_ref().map_or_else(String::new, |stretched| {
+        format!(
+            ". While velocity errors of both are up to {} {} as well, two solutions come together at {} 1/s or faster in a metric that \
+             grows with the error",
+            largest(&stretched.velocity_error),
+            summary.unit(units::SPEED),
+            proved_rate(Some(stretched.rate))
+        )
+    });
     format!(
-        "{errors} shrink at {} 1/s or faster, and any two solutions of the virtual system come together at {} 1/s or faster{place}.",
-        proved_rate(summary.convergence_rate),
-        proved_rate(summary.contraction_rate)
+        "{errors} shrink at {} 1/s or faster{contraction}{place}{stretched}.",
+        proved_rate(summary.convergence_rate)
     )
 }
 
@@ -111,7 +123,7 @@ pub(crate) fn certify_page(
         Err(problems) => markup! { p { "There is no picture of this loop: " (problems) "." } },
     };
     let mut sections = Vec::new();
-    if summary.contraction_rate.is_some() {
+    if summary.convergence_rate.is_some() {
         let report = CertificateReport {
             summary: summary.clone(),
             phi: scenario.controller.phi().unwrap_or_default().to_owned(),

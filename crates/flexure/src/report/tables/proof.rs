@@ -181,6 +181,7 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
             list(&tube.error)
         ));
     }
+    lines.extend(stretched(summary));
     if let Some(within) = &summary.within {
         lines.extend(tolerated(within, &rad));
     }
@@ -193,6 +194,19 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
     }
     lines.extend(summary.assumptions.iter().map(|note| format!("assumed      {note}")));
     lines
+}
+
+/// What holds of any two solutions in a metric that grows with the error.
+fn stretched(summary: &ProofSummary) -> Option<String> {
+    let stretched = summary.stretched.as_ref()?;
+    let [rad, speed] = [units::ANGLE, units::SPEED].map(|unit| summary.unit(unit));
+    let errors = summary.region.as_ref().and_then(|region| region.error.as_deref());
+    let errors = errors.map_or(String::new(), |errors| format!("|q̃_i| ≤ {} {rad} and ", list(errors)));
+    Some(format!(
+        "stretched    {} 1/s between any two solutions, while both have {errors}|s_i| ≤ {} {speed}",
+        significant(stretched.rate, 6),
+        list(&stretched.velocity_error)
+    ))
 }
 
 /// What holds of the robots within the tolerances.

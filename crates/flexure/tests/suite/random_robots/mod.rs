@@ -1,7 +1,7 @@
 //! Robots and gains at random: both checkers accept whatever is certified, no sample is slower than what is certified, and what
 //! can be certified is.
 
-mod robots;
+pub mod robots;
 mod samples;
 
 use std::time::Instant;

@@ -63,11 +63,20 @@ fn list(numbers: impl IntoIterator<Item = f64>) -> String {
 
 /// A scenario at random, by number: the same for the same number.
 pub fn scenario(number: u64) -> (Style, Scenario) {
+    of(number, None, false)
+}
+
+/// The same with the shaping function `phi`, and with a link metric that hardens if asked for.
+pub fn scenario_under(number: u64, phi: &str, hardens: bool) -> (Style, Scenario) {
+    of(number, Some(phi), hardens)
+}
+
+fn of(number: u64, phi: Option<&str>, hardens: bool) -> (Style, Scenario) {
     let mut noise = Random(1000 + number);
     let (n, style) = (1 + noise.below(7), STYLES[noise.below(STYLES.len())]);
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("robot.toml"), robot(&mut noise, n, style)).unwrap();
-    let text = law(&mut noise, n);
+    let text = law(&mut noise, n, phi, hardens);
     let scenario = scenario_from_text("scenario.toml", &text, Path::new(folder.path()));
     (style, scenario.unwrap_or_else(|problems| panic!("{number}, {style:?}: {problems}\n{text}")))
 }
@@ -127,8 +136,9 @@ fn robot(noise: &mut Random, n: usize, style: Style) -> String {
     text
 }
 
-fn law(noise: &mut Random, n: usize) -> String {
-    let phi = ["tanh", "linear", "coupled-tanh"][noise.below(3)];
+fn law(noise: &mut Random, n: usize, phi: Option<&str>, hardens: bool) -> String {
+    let drawn = ["tanh", "linear", "coupled-tanh"][noise.below(3)];
+    let phi = phi.unwrap_or(drawn);
     let mut text = format!(
         "robot = 'robot.toml'\nduration = 1.0\ncontrol_period = 0.001\n\
          [initial]\nq_l = 0.0\nq_m = 0.0\n\
@@ -142,6 +152,10 @@ fn law(noise: &mut Random, n: usize) -> String {
         let shaping = if phi == "coupled-tanh" && noise.below(8) > 0 { &metric } else { &shaping };
         writeln!(text, "[controller.{side}]\nmetric = {metric}\nshaping = {shaping}\ndamping = {damping}")
             .unwrap();
+        if hardens && side == "link" {
+            let hardening = list((0..n).map(|_| decades(noise, -2.0, 6.0)));
+            writeln!(text, "metric_hardening = {hardening}").unwrap();
+        }
         if phi == "coupled-tanh" {
             writeln!(text, "kappa = {kappa}").unwrap();
         }

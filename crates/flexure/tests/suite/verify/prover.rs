@@ -11,7 +11,8 @@ use serde_json::Value;
 
 use super::python;
 
-/// A certificate of each scenario: errors up to 0.3 rad, and a disturbance of 0.1 mN m on every motor.
+/// A certificate of each scenario: errors up to 0.3 rad, a disturbance of 0.1 mN m on every motor, and under tanh velocity errors up to
+/// 0.1 rad/s.
 pub fn certificates() -> Vec<(&'static str, Value)> {
     SCENARIOS
         .iter()
@@ -21,6 +22,7 @@ pub fn certificates() -> Vec<(&'static str, Value)> {
             let question = Question {
                 region: Region::Errors(vec![0.3; 2 * n]),
                 disturbance: Some(vec![1e-4; n]),
+                velocity_error: (scenario.controller.phi() == Some("tanh")).then(|| vec![0.1; 2 * n]),
                 ..Question::default()
             };
             let verdict = certify(&problem(&scenario, &question, None).unwrap());
@@ -60,6 +62,9 @@ fn mutants(certificate: &Value) -> Vec<Value> {
         let mut fewer = certificate.clone();
         fewer.pointer_mut(&of("cases")).unwrap().as_array_mut().unwrap().pop();
         mutants.push(fewer);
+    }
+    if !certificate["stretched"].is_null() {
+        mutants.push(scaled(certificate, &["/stretched/rate"], 1.0 + 1e-6));
     }
     for measure in 0..6 {
         mutants.push(scaled(certificate, &[&format!("/measures/{measure}/bound")], 1.0 + 1e-6));
