@@ -55,7 +55,8 @@ impl<L: Links<f64, N>, const N: usize> Visitor<N> for Poisoned<L, N> {
         self.check(name, reads_of_dynamic(law), |x| {
             let torque = law.torque(&self.robot, x, &self.q_ld, &z);
             let rate = law.rate(&self.robot, x, &self.q_ld, &z, &Applied::NOTHING);
-            torque.iter().chain(rate.iter().flat_map(Vector::iter)).collect()
+            let start = law.start(&self.robot, x, &self.q_ld);
+            torque.iter().chain(rate.iter().chain(&start).flat_map(Vector::iter)).collect()
         });
     }
 }

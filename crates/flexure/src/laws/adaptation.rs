@@ -58,6 +58,14 @@ fn parameters(robot: &Robot) -> Result<[Vec<f64>; 10], Problems> {
     }))
 }
 
+/// Why ε is none, if it is not.
+pub(super) fn objection(least: &[f64]) -> Option<String> {
+    let share = least.iter().find(|share| **share >= 1.0)?;
+    Some(format!(
+        "least is {share}, must be < 1: it is a share of the pivots that the robot's own mass matrix has"
+    ))
+}
+
 /// Adaptation with these gains: γ, range and ε per joint.
 pub(super) fn adaptation<C: Scalar, const N: usize>(
     robot: &Robot,
@@ -78,6 +86,6 @@ pub(super) fn adaptation<C: Scalar, const N: usize>(
         gain: each(&|i, phi| rate[i] * phi * phi),
         low: each(&|i, phi| phi - range[i] * phi.abs()),
         high: each(&|i, phi| phi + range[i] * phi.abs()),
-        least: vector(least),
+        least: own(least.clone()),
     }
 }

@@ -4,7 +4,7 @@ use flexure_core::control;
 use flexure_core::linalg::Vector;
 use flexure_core::scalar::Scalar;
 
-use crate::laws::adaptation::{ADAPTED, PARAMETERS, adaptation};
+use crate::laws::adaptation::{self, ADAPTED, PARAMETERS, adaptation};
 use crate::laws::command_filtered_backstepping::{FILTERED, FILTERS, filtered};
 use crate::laws::gain::Gain;
 use crate::laws::registry::{Claim, LawKind};
@@ -36,6 +36,11 @@ impl LawKind for AdaptiveCommandFilteredBackstepping {
             least,
         ]
     };
+
+    fn objection(gains: &Self::Gains, _robot: &Robot) -> Option<String> {
+        let [.., least] = gains;
+        adaptation::objection(least)
+    }
 
     type Core<C: Scalar, const N: usize> = control::AdaptiveCommandFilteredBackstepping<C, N>;
 

@@ -5,7 +5,7 @@ use flexure_core::linalg::Vector;
 use flexure_core::scalar::Scalar;
 
 use crate::files::quantity::Quantity;
-use crate::laws::adaptation::{ADAPTED, PARAMETERS, adaptation};
+use crate::laws::adaptation::{self, ADAPTED, PARAMETERS, adaptation};
 use crate::laws::command_filtered_backstepping::{FILTERED, FILTERS, filtered};
 use crate::laws::gain::Gain;
 use crate::laws::registry::{Claim, LawKind};
@@ -43,6 +43,11 @@ impl LawKind for AdaptiveVcbc {
             least,
         ]
     };
+
+    fn objection(gains: &Self::Gains, _robot: &Robot) -> Option<String> {
+        let [.., least] = gains;
+        adaptation::objection(least)
+    }
 
     type Core<C: Scalar, const N: usize> = control::AdaptiveVcbc<C, N>;
 

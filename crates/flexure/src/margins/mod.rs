@@ -312,8 +312,12 @@ impl Margins {
             };
             let message = format!("{}, {}: the loop {how}: it has no margins", self.name, self.law());
             let help = self.sampled.as_ref().and_then(Sampled::help).unwrap_or_else(|| {
-                "small errors shrink: join the reference smoothly; `flexure run` shows how it diverges"
-                    .to_owned()
+                let small = if self.sampled.is_some() {
+                    "small errors shrink: join"
+                } else {
+                    "perhaps from its start: join"
+                };
+                format!("{small} the reference smoothly; `flexure run` shows how it goes wrong")
             });
             scenario.places.problem("controller", "diverged", message, help)
         })

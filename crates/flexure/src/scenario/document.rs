@@ -184,7 +184,7 @@ impl Scenario {
             Controller::Vcbc(gains) => Ok(gains.as_ref()),
             other => {
                 let message = format!("controller.kind is '{}': certificates are for 'vcbc'", other.kind());
-                let help = "of other laws nothing is proved; `flexure run` simulates them";
+                let help = "other laws have no certificates; docs/controllers.md says what is proved of each, and `flexure run` simulates them";
                 Err(self.places.problem("controller.kind", "unsupported", message, help))
             }
         }

@@ -35,7 +35,8 @@ impl<const N: usize> Remembered<N> {
     };
 
     /// The memory at the time `t` in s at which the robot moves as `x` and shall be at `q_ld`: from that `before`, if there is one, and the mean torque that
-    /// the motors were `given` since [N m]. Where it would become no number it stays as it was: it waits for the next reading.
+    /// the motors were `given` since [N m]. While what is heard is no number it stays as it was: it waits for the next reading. What becomes no number of
+    /// numbers is none: the torque shows it.
     pub fn at<L: Links<f64, N>, F: Feedback<L, N>>(
         law: &F,
         robot: &Fjr<f64, L, N>,
@@ -52,8 +53,10 @@ impl<const N: usize> Remembered<N> {
                 law.advanced(robot, [&before.seen, &seen], &before.z, &applied, t - before.t)
             }
         };
-        let is_number = z.iter().all(is_number);
-        is_number.then_some(Self { z, seen, t, asked: given }).or_else(|| before.copied())
+        let Motion { q_l, q_m, v_l, v_m } = x;
+        let heard = [q_l, q_m, v_l, v_m, &given].into_iter().all(is_number);
+        let counts = heard || z.iter().all(is_number);
+        counts.then_some(Self { z, seen, t, asked: given }).or_else(|| before.copied())
     }
 
     /// Takes note of what left the controller [N m], if it is a number.

@@ -68,6 +68,37 @@ fn every_memory_goes_on_from_its_state() {
     }
 }
 
+/// On a tree with fewer joints than its capacity every memory moves with the robot, and what adapts adapts.
+#[test]
+fn no_memory_stands_still() {
+    let mut scenario = scenario("planar-3r-tanh");
+    for Entry { name, .. } in CONTROLLERS {
+        scenario.controller = Controller::default_for(name, &scenario.robot).expect("registered");
+        let parts = scenario.controller.memory();
+        if parts.is_empty() {
+            continue;
+        }
+        let mut held = scenario.open().expect("supported");
+        let names = held.state_names();
+        let mut after = |count: usize| {
+            rows(&mut *held, count);
+            held.state()
+        };
+        let (before, now) = (after(2), after(100));
+        let moved = |part: &str| {
+            let own = format!("law.{part}");
+            let values = names.iter().zip(before.iter().zip(&now));
+            values
+                .filter(|(signal, _)| signal.name.contains(&own))
+                .any(|(_, (x, y))| x.to_bits() != y.to_bits())
+        };
+        let moving = parts.iter().filter(|(part, _)| moved(part)).count();
+        assert!(moving > 0, "{name}");
+        let adapts = parts.iter().any(|(part, _)| *part == "phi_0");
+        assert!(!adapts || (0..10).any(|k| moved(&format!("phi_{k}"))), "{name}");
+    }
+}
+
 /// Each number of a state has a name of its own and comes back as it was; a state with one number more, less or broken is refused
 /// and changes nothing.
 #[test]

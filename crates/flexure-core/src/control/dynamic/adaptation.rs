@@ -89,7 +89,9 @@ impl<C: Scalar, const N: usize> Adaptation<C, N> {
             let moved = zip(&found, &clamped, |found, clamped| *found - *clamped);
             let missing = model.pivots()[i].scale(self.least[i]) - factor.pivots()[i] - dot(&slope, &moved);
             let along = zip(&self.gain, &slope, Vector::diag_mul);
-            let share = missing.select(missing / dot(&slope, &along), T::ZERO);
+            let power = dot(&slope, &along);
+            // Where nothing is missing, or nothing adapts, nothing moves.
+            let share = (-missing).select(T::ZERO, (-power).select(T::ZERO, missing / power));
             found = zip(&found, &along, |found, along| *found + along.scaled(share));
         }
         found

@@ -28,7 +28,8 @@ pub struct ControlByInterconnection<C, const N: usize> {
 }
 
 impl<C: Scalar, const N: usize> DynamicLaw<C, N, 2> for ControlByInterconnection<C, N> {
-    const READS: Signals = Signals { q_l: false, q_m: false, v_l: false, v_m: true };
+    // Positions where it starts and in increments.
+    const READS: Signals = Signals { q_l: false, q_m: true, v_l: false, v_m: true };
     const JOINTWISE: bool = true;
 
     #[inline]
