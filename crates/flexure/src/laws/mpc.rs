@@ -4,13 +4,11 @@ use flexure_core::control;
 use flexure_core::linalg::Vector;
 use flexure_core::scalar::Scalar;
 
-use crate::files::Problems;
 use crate::files::quantity::Quantity;
 use crate::laws::gain::Gain;
-use crate::laws::optimal::{self, NO_DESIGN, Rows, WEIGHTS, matrix, rows};
+use crate::laws::optimal::{Designed, NO_DESIGN, WEIGHTS, matrix, predictive};
 use crate::laws::registry::{Claim, LawKind};
 use crate::robot::Robot;
-use crate::robot::sized::{OF_THE_KIND, fjr, sized};
 use crate::units;
 
 /// The kind `mpc`: [`control::Mpc`], designed where all joints are at 0, for the torque limits of the robot.
@@ -41,8 +39,7 @@ impl LawKind for Mpc {
                 "step is {first} s for one joint and {other} s for another: all torques are planned together"
             ));
         }
-        let found = designed(robot, gains).ok()?;
-        let none = found.reach.iter().any(|reach| !reach.is_finite());
+        let none = designed(robot, gains).reach.iter().any(|reach| !reach.is_finite());
         none.then(|| NO_DESIGN.to_owned())
     }
 
@@ -53,9 +50,7 @@ impl LawKind for Mpc {
         robot: &Robot,
         vector: impl Fn(&Vec<f64>) -> Vector<C, N>,
     ) -> Self::Core<C, N> {
-        let n = robot.joint_count();
-        let Designed { plan, leaving, reach } =
-            designed(robot, gains).unwrap_or_else(|_| Designed::nothing(n));
+        let Designed { plan, leaving, reach } = designed(robot, gains);
         control::Mpc {
             plan: plan.map(|gain| gain.map(|rows| matrix(&rows, &vector))),
             leaving: leaving.map(|rows| matrix(&rows, &vector)),
@@ -65,37 +60,9 @@ impl LawKind for Mpc {
     }
 }
 
-/// What the law has of a design, by joints of the robot; no numbers where the weights have no stabilising solution.
-struct Designed {
-    plan: [[Rows; 4]; HORIZON],
-    leaving: [Rows; HORIZON],
-    reach: Vec<f64>,
-}
-
-impl Designed {
-    fn nothing(n: usize) -> Self {
-        let nothing = || optimal::nothing(n);
-        Self {
-            plan: [(); HORIZON].map(|()| [(); 4].map(|()| nothing())),
-            leaving: [(); HORIZON].map(|()| nothing()),
-            reach: vec![f64::NAN; n],
-        }
-    }
-}
-
-/// # Errors
-/// If the robot has more joints than this program was built for.
-fn designed(robot: &Robot, gains: &[Vec<f64>; 6]) -> Result<Designed, Problems> {
-    let n = robot.joint_count();
+/// The plan with these gains.
+fn designed(robot: &Robot, gains: &[Vec<f64>; 6]) -> Designed<HORIZON> {
     let [q, theta, v, w, torque, step] = gains;
-    Ok(sized!(roomy robot, L, N => {
-        let arm = fjr::<_, L<f64>, N>(robot, &robot.links, |x| x, &|x| x).expect(OF_THE_KIND);
-        let (cost, limit) = (optimal::cost([q, theta, v, w, torque]), Vector([f64::INFINITY; N]));
-        let law = control::Mpc::<f64, N, HORIZON>::design(&arm, &Vector::ZERO, &cost, step[0], &limit);
-        law.map_or_else(|_| Designed::nothing(n), |law| Designed {
-            plan: law.plan.each_ref().map(|gain| gain.each_ref().map(|block| rows(block, n))),
-            leaving: law.leaving.each_ref().map(|block| rows(block, n)),
-            reach: law.reach.iter().take(n).collect(),
-        })
-    }))
+    // All are alike.
+    predictive(robot, [q, theta, v, w, torque], step.first().copied().unwrap_or(f64::NAN))
 }

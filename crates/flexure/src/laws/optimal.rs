@@ -1,12 +1,14 @@
 //! What optimal laws share: the weights of errors and torques, and designs whose joint count is hidden.
 
-use flexure_core::control::QuadraticCost;
+use flexure_core::control::{Lqr, Mpc, QuadraticCost};
 use flexure_core::linalg::{Matrix, Vector};
 use flexure_core::scalar::Scalar;
 
+use crate::files::Problems;
 use crate::files::quantity::Quantity;
 use crate::laws::gain::Gain;
-use crate::robot::padded;
+use crate::robot::sized::{OF_THE_KIND, fjr, sized};
+use crate::robot::{Robot, padded};
 use crate::units;
 
 /// The error that costs 1 a second.
@@ -40,7 +42,7 @@ pub(super) const NO_DESIGN: &str =
     "no feedback is optimal for these weights: they leave a motion unseen, or lie too far apart";
 
 /// What the weights say, with joints that only fill the vectors.
-pub(super) fn cost<const N: usize>(weights: [&Vec<f64>; 5]) -> QuadraticCost<f64, N> {
+fn cost<const N: usize>(weights: [&Vec<f64>; 5]) -> QuadraticCost<f64, N> {
     let [q, theta, v, w, torque] = weights.map(|weight| padded(weight, 1.0));
     QuadraticCost { state: [q, theta, v, w], torque }
 }
@@ -49,12 +51,12 @@ pub(super) fn cost<const N: usize>(weights: [&Vec<f64>; 5]) -> QuadraticCost<f64
 pub(super) type Rows = Vec<Vec<f64>>;
 
 /// The rows of the first `n` joints.
-pub(super) fn rows<const N: usize>(matrix: &Matrix<f64, N, N>, n: usize) -> Rows {
+fn rows<const N: usize>(matrix: &Matrix<f64, N, N>, n: usize) -> Rows {
     (0..n).map(|i| matrix.row(i).iter().take(n).collect()).collect()
 }
 
 /// No numbers, for `n` joints: of weights without a law no torque is one, and the loop says so at its first instant.
-pub(super) fn nothing(n: usize) -> Rows {
+fn nothing(n: usize) -> Rows {
     vec![vec![f64::NAN; n]; n]
 }
 
@@ -66,4 +68,47 @@ pub(super) fn matrix<C: Scalar, const N: usize>(
     let none = vec![0.0; rows.len()];
     let mut rows = rows.iter();
     Matrix([(); N].map(|()| vector(rows.next().unwrap_or(&none)).0))
+}
+
+/// F of q, θ, v and w, designed where all joints are at 0; not numbers where the weights have no stabilising solution, and of robots with more joints than this
+/// program was built for.
+pub(super) fn regulator(robot: &Robot, weights: [&Vec<f64>; 5]) -> [Rows; 4] {
+    let n = robot.joint_count();
+    let designed = || -> Result<_, Problems> {
+        Ok(sized!(roomy robot, L, N => {
+            let arm = fjr::<_, L<f64>, N>(robot, &robot.links, |x| x, &|x| x).expect(OF_THE_KIND);
+            let law = Lqr::design(&arm, &Vector::ZERO, &cost(weights), f64::INFINITY).ok();
+            law.map(|law| law.gain.map(|block| rows(&block, n)))
+        }))
+    };
+    designed().ok().flatten().unwrap_or_else(|| [(); 4].map(|()| nothing(n)))
+}
+
+/// What [`Mpc`] has of a design, by joints of the robot.
+pub(super) struct Designed<const H: usize> {
+    pub plan: [[Rows; 4]; H],
+    pub leaving: [Rows; H],
+    pub reach: Vec<f64>,
+}
+
+/// The plan of `H` torques, each held for a `step` in s, likewise.
+pub(super) fn predictive<const H: usize>(robot: &Robot, weights: [&Vec<f64>; 5], step: f64) -> Designed<H> {
+    let n = robot.joint_count();
+    let designed = || -> Result<_, Problems> {
+        Ok(sized!(roomy robot, L, N => {
+            let arm = fjr::<_, L<f64>, N>(robot, &robot.links, |x| x, &|x| x).expect(OF_THE_KIND);
+            let limit = Vector([f64::INFINITY; N]);
+            let law = Mpc::<f64, N, H>::design(&arm, &Vector::ZERO, &cost(weights), step, &limit).ok();
+            law.map(|law| Designed {
+                plan: law.plan.each_ref().map(|gain| gain.each_ref().map(|block| rows(block, n))),
+                leaving: law.leaving.each_ref().map(|block| rows(block, n)),
+                reach: law.reach.iter().take(n).collect(),
+            })
+        }))
+    };
+    designed().ok().flatten().unwrap_or_else(|| Designed {
+        plan: [(); H].map(|()| [(); 4].map(|()| nothing(n))),
+        leaving: [(); H].map(|()| nothing(n)),
+        reach: vec![f64::NAN; n],
+    })
 }
