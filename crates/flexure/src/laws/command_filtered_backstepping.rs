@@ -18,8 +18,9 @@ pub struct CommandFilteredBackstepping;
 pub(super) const FILTERED: [Gain; 7] = [
     SHAPING,
     LINK_DAMPING,
+    // Four times the springs: what the links' velocity error does to the motor, times K/W_3, stays slower than the filters.
     Gain::new("metric", Quantity::positive("weight W_3 of motor errors", units::STIFFNESS), |drive| {
-        drive.stiffness
+        4.0 * drive.stiffness
     }),
     Gain::new(
         "motor_shaping",
@@ -37,7 +38,7 @@ pub(super) const FILTERED: [Gain; 7] = [
         |drive| 2.0 * drive.inner_bandwidth(),
     ),
     Gain::new("bandwidth", Quantity::positive("bandwidth ω of the filters", units::RATE), |drive| {
-        20.0 * drive.bandwidth()
+        120.0 * drive.bandwidth()
     }),
 ];
 

@@ -129,19 +129,16 @@ fn unknown_kinds_have_no_gains() {
 }
 
 /// At 1 kHz starting gains keep every law near smooth motions, but for laws of two time scales where a link is too light for
-/// damping of its motor to reach it, filters in the place of derivatives where springs are too stiff for those that 1 kHz allows, and, of laws without a model,
-/// a somewhat larger error.
+/// damping of its motor to reach it, and, of laws without a model, a somewhat larger error.
 #[test]
 fn starting_gains_follow() {
     let mut strayed = Vec::new();
     let two_time_scales =
         |kind| ["integral-manifold", "singular-perturbation", "composite-ph"].contains(&kind);
-    let filters = |kind: &str| kind.ends_with("command-filtered-backstepping") || kind == "adaptive-vcbc";
     for (name, kind) in ["panda-tanh-smooth", "tomei-3r-tanh", "planar-3r-tanh"]
         .into_iter()
         .flat_map(|name| names().map(move |kind| (name, kind)))
         .filter(|&(name, kind)| !(name == "tomei-3r-tanh" && two_time_scales(kind)))
-        .filter(|&(name, kind)| !(name != "planar-3r-tanh" && filters(kind)))
     {
         let mut scenario = load_scenario(name).expect("built in");
         scenario.controller = Controller::default_for(kind, &scenario.robot).expect("registered");
