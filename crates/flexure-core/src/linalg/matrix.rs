@@ -3,7 +3,7 @@
 use core::ops::{Add, Index, IndexMut, Mul, Neg, Sub};
 
 use super::{Ldl, Vector};
-use crate::array::{filled, mapped};
+use crate::array::mapped;
 use crate::scalar::{Over, Scalar};
 
 /// A matrix of `R` rows and `C` columns, stored by rows.
@@ -14,7 +14,7 @@ impl<S: Copy, const R: usize, const C: usize> Matrix<S, R, C> {
     /// The matrix whose entry `(i, j)` is `f(i, j)`.
     #[inline]
     pub fn from_fn(mut f: impl FnMut(usize, usize) -> S) -> Self {
-        Self(filled(|i| filled(|j| f(i, j))))
+        Self(core::array::from_fn(|i| core::array::from_fn(|j| f(i, j))))
     }
 
     /// Every entry through `f`.
