@@ -30,7 +30,7 @@ pub struct Certify {
     #[arg(long, value_name = "D", value_delimiter = ',', allow_negative_numbers = true)]
     pub disturbance: Option<Vec<f64>>,
     /// Largest velocity errors in rad/s, links then motors: certifies the contraction rate, in a metric that grows with the error, of any two
-    /// solutions while both keep to them and to the region. For phi = tanh.
+    /// solutions of the virtual system while both keep to them and to the region. For phi = tanh, and for linear where the link metric hardens.
     #[arg(long, value_name = "S", value_delimiter = ',', allow_negative_numbers = true)]
     pub velocity_error: Option<Vec<f64>>,
     /// Prove the rate once more, from the full inequality without any theorem.

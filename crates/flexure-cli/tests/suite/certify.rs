@@ -145,7 +145,7 @@ fn velocity_errors_with_a_bound_give_a_faster_rate() {
     assert!(rate > 19.0 && found["contraction_rate"].as_f64().unwrap() < 0.3, "{rate}");
     assert_eq!(found["stretched"]["velocity_error"].as_array().unwrap().len(), 4);
     let said = certify("two-link-tanh", &[]).stdout;
-    let words = "1/s between any two solutions, while both have |q̃_i| ≤ 3 rad and |s_i| ≤ 5 rad/s";
+    let words = "1/s between any two solutions of the virtual system, while both have |q̃_i| ≤ 3 rad and |s_i| ≤ 5 rad/s";
     assert!(said.contains(words), "{said}");
     let verified = folder.run(&["verify", "out/two-link-tanh.certificate.json"]).done().stdout;
     assert!(verified.contains("stretched: 19."), "{verified}");

@@ -14,6 +14,7 @@ impl<S: Copy, const R: usize, const C: usize> Matrix<S, R, C> {
     /// The matrix whose entry `(i, j)` is `f(i, j)`.
     #[inline]
     pub fn from_fn(mut f: impl FnMut(usize, usize) -> S) -> Self {
+        // Not by loops as the rest: with them the optimiser does not see that large ones cannot panic.
         Self(core::array::from_fn(|i| core::array::from_fn(|j| f(i, j))))
     }
 

@@ -15,7 +15,7 @@ pub struct Pendulum<C> {
 
 impl<C: Scalar> Pendulum<C> {
     /// The same pendulum with constants of another type.
-    pub fn map<D: Copy>(&self, f: impl Fn(C) -> D) -> Pendulum<D> {
+    pub fn map<D>(&self, f: impl Fn(C) -> D) -> Pendulum<D> {
         Pendulum { inertia: f(self.inertia), weight_moment: f(self.weight_moment) }
     }
 }

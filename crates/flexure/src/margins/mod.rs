@@ -312,12 +312,12 @@ impl Margins {
             };
             let message = format!("{}, {}: the loop {how}: it has no margins", self.name, self.law());
             let help = self.sampled.as_ref().and_then(Sampled::help).unwrap_or_else(|| {
-                let small = if self.sampled.is_some() {
-                    "small errors shrink: join"
+                let cause = if self.sampled.is_some() {
+                    "small errors shrink: join the reference smoothly"
                 } else {
-                    "perhaps from its start: join"
+                    "small errors were not looked at: try other gains, or join the reference smoothly"
                 };
-                format!("{small} the reference smoothly; `flexure run` shows how it goes wrong")
+                format!("{cause}; `flexure run` shows how it goes wrong")
             });
             scenario.places.problem("controller", "diverged", message, help)
         })

@@ -35,7 +35,7 @@ pub(super) fn check(certificate: &Certificate) -> Result<Vec<Claim>, Rejected> {
     })?;
     let speeds: Vec<_> = claim.velocity_error.iter().map(ToString::to_string).collect();
     let value = format!(
-        "{} 1/s between any two solutions while both are in the region with |s| <= {} rad/s",
+        "{} 1/s between any two solutions of the virtual system while both are in the region with |s| <= {} rad/s",
         claim.rate,
         speeds.join(", ")
     );

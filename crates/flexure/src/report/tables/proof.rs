@@ -203,7 +203,7 @@ fn stretched(summary: &ProofSummary) -> Option<String> {
     let errors = summary.region.as_ref().and_then(|region| region.error.as_deref());
     let errors = errors.map_or(String::new(), |errors| format!("|q̃_i| ≤ {} {rad} and ", list(errors)));
     Some(format!(
-        "stretched    {} 1/s between any two solutions, while both have {errors}|s_i| ≤ {} {speed}",
+        "stretched    {} 1/s between any two solutions of the virtual system, while both have {errors}|s_i| ≤ {} {speed}",
         significant(stretched.rate, 6),
         list(&stretched.velocity_error)
     ))

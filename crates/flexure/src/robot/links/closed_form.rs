@@ -20,7 +20,7 @@ pub trait ClosedForm<C> {
     type With<D>: ClosedForm<D>;
 
     /// The same links with every number through `f`.
-    fn map<D: Copy>(&self, f: impl Fn(C) -> D) -> Self::With<D>
+    fn map<D>(&self, f: impl Fn(C) -> D) -> Self::With<D>
     where
         C: Copy;
 

@@ -38,7 +38,7 @@ impl<C> ClosedForm<C> for Pendulum<C> {
 
     type With<D> = Pendulum<D>;
 
-    fn map<D: Copy>(&self, f: impl Fn(C) -> D) -> Pendulum<D>
+    fn map<D>(&self, f: impl Fn(C) -> D) -> Pendulum<D>
     where
         C: Copy,
     {

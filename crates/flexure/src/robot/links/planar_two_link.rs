@@ -36,7 +36,7 @@ impl<C> ClosedForm<C> for PlanarTwoLink<C> {
 
     type With<D> = PlanarTwoLink<D>;
 
-    fn map<D: Copy>(&self, f: impl Fn(C) -> D) -> PlanarTwoLink<D>
+    fn map<D>(&self, f: impl Fn(C) -> D) -> PlanarTwoLink<D>
     where
         C: Copy,
     {
