@@ -35,8 +35,8 @@ impl<const N: usize> Remembered<N> {
     };
 
     /// The memory at the time `t` in s at which the robot moves as `x` and shall be at `q_ld`: from that `before`, if there is one, and the mean torque that
-    /// the motors were `given` since [N m]. While what is heard is no number it stays as it was: it waits for the next reading. What becomes no number of
-    /// numbers is none: the torque shows it.
+    /// the motors were `given` since [N m]. While a reading or that torque is no number it stays as it was and waits. A memory that becomes no number
+    /// although all of them are numbers is kept as that: the torque is none either, and the loop says so.
     pub fn at<L: Links<f64, N>, F: Feedback<L, N>>(
         law: &F,
         robot: &Fjr<f64, L, N>,
