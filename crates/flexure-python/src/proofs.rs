@@ -26,10 +26,10 @@ fn list(name: &'static str, given: Option<&Bound<'_, PyAny>>) -> PyResult<Option
 }
 
 /// Proves how fast the closed loop contracts, and where, as `flexure certify`: a dict with the keys of its `--json`, and `certificate`,
-/// its text, or None if nothing was proved. Errors in rad, links then motors, torques in N m, rates in 1/s, speed in rad/s.
+/// its text, or None if nothing was proved. Errors in rad, links then motors, torques in N m, rates in 1/s.
 #[pyfunction]
 #[pyo3(signature = (scenario, *, error_box = None, initial_error = None, rate = None, disturbance = None, velocity_error = None,
-                    direct = false, speed = 5.0, budget = 1000, out = None, progress = None))]
+                    direct = false, budget = 10_000, out = None, progress = None))]
 #[expect(clippy::too_many_arguments, reason = "keywords")]
 pub fn certify<'py>(
     py: Python<'py>,
@@ -40,7 +40,6 @@ pub fn certify<'py>(
     disturbance: Option<&Bound<'py, PyAny>>,
     velocity_error: Option<&Bound<'py, PyAny>>,
     direct: bool,
-    speed: f64,
     budget: usize,
     out: Option<PathBuf>,
     progress: Option<&Bound<'py, PyAny>>,
@@ -60,7 +59,7 @@ pub fn certify<'py>(
         prepare(folder_of(out)).map_err(unwritten)?;
     }
     let loaded = scenario.loaded.clone();
-    let direct = direct.then_some(Direct { speed, budget });
+    let direct = direct.then_some(Direct { budget });
     let [disturbance, velocity_error] =
         [list("disturbance", disturbance)?, list("velocity_error", velocity_error)?];
     let question = Question { region, rate, disturbance, velocity_error, direct }

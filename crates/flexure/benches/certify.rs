@@ -21,7 +21,7 @@ mod arm;
 /// Boxes that a proof may look at.
 const BUDGET: usize = 20_000;
 
-/// True rates of the paper's arm over |q̃_i| ≤ 3, all q_l, |q̇_l| ≤ 5: theory, section 5.
+/// True rates of the paper's arm over |q̃_i| ≤ 3, all q_l and q̇_l: theory, section 5.
 const TANH: f64 = 0.295_981_114_963_205_7;
 const LINEAR: f64 = 30.0;
 const COUPLED_TANH: f64 = 10.0 - std::f64::consts::SQRT_2;

@@ -36,11 +36,8 @@ pub struct Certify {
     /// Prove the rate once more, from the full inequality without any theorem.
     #[arg(long)]
     pub direct: bool,
-    /// With --direct: largest speed of the links, rad/s.
-    #[arg(long, value_name = "V", default_value_t = 5.0, allow_negative_numbers = true, requires = "direct")]
-    pub speed: f64,
     /// With --direct: boxes that may be looked at.
-    #[arg(long, value_name = "BOXES", default_value_t = 1000, requires = "direct")]
+    #[arg(long, value_name = "BOXES", default_value_t = 10_000, requires = "direct")]
     pub budget: usize,
     /// Answer no (exit code 1) where the proof is about the ideal loop and the file has more: imperfections, plant options, jumps
     /// of the reference, an estimator, a guard.

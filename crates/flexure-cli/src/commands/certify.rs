@@ -100,7 +100,7 @@ fn question(options: &Certify, scenario: &Scenario) -> Result<Question, Problem>
         (None, Some(start)) => Region::Start(start.clone()),
         (None, None) => Region::Chosen,
     };
-    let direct = options.direct.then_some(Direct { speed: options.speed, budget: options.budget });
+    let direct = options.direct.then_some(Direct { budget: options.budget });
     let disturbance = options.disturbance.clone();
     let velocity_error = options.velocity_error.clone();
     Question { region, rate: options.rate, disturbance, velocity_error, direct }.fitting(scenario)

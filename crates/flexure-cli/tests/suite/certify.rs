@@ -172,7 +172,7 @@ fn bad_options_are_told_apart() {
         (&["two-link-tanh", "--error-box", "1,2,3"], "1 or 4 numbers"),
         (&["two-link-tanh", "--error-box", "wide"], "invalid"),
         (&["two-link-tanh", "--error-box", "1e-300"], "cannot be represented"),
-        (&["two-link-tanh", "--speed", "3"], "--direct"),
+        (&["two-link-tanh", "--budget", "3"], "--direct"),
         (&["two-link-tanh", "--initial-error", "0"], "empty"),
         (&["two-link-tanh", "--initial-error", "1", "--error-box", "1"], "cannot be used with"),
         (&["two-link-tanh", "--rate", "-1"], "must be > 0"),

@@ -273,8 +273,7 @@ def certify(
     disturbance: _Numbers | None = None,
     velocity_error: _Numbers | None = None,
     direct: bool = False,
-    speed: float = 5.0,
-    budget: int = 1000,
+    budget: int = 10_000,
     out: _Path | None = None,
     progress: _Told = None,
 ) -> dict[str, Any]: ...

@@ -78,8 +78,7 @@ def certify(
     disturbance: Numbers | None = None,
     velocity_error: Numbers | None = None,
     direct: bool = False,
-    speed: float = 5.0,
-    budget: int = 1000,
+    budget: int = 10_000,
     out: Path | None = None,
     progress: Progress = None,
 ) -> dict[str, Any]:
@@ -87,7 +86,7 @@ def certify(
 
     The dict has the keys of `--json`, with `verdict` ("proved", "proved (ideal loop)", "refuted", "undecided", …), and `certificate`,
     the text that `verify` checks, None if nothing was proved. Errors in rad, links then motors; rate in 1/s; disturbance in N m, on
-    the motors; velocity errors in rad/s, links then motors; speed in rad/s.
+    the motors; velocity errors in rad/s, links then motors.
     """
     scenario = _scenario(scenario)
     return _watched(
@@ -101,7 +100,6 @@ def certify(
             disturbance=disturbance,
             velocity_error=velocity_error,
             direct=direct,
-            speed=speed,
             budget=budget,
             out=out,
             progress=told,

@@ -29,16 +29,11 @@ pub(crate) fn along_reference(scenario: &Scenario) -> Result<Box<dyn TrackingLoo
     }))
 }
 
-/// The variations of the loop over the region of `certificate`, with link speeds of up to `speed` [rad/s]: what the direct engine
-/// proves about.
+/// The variations of the loop over the region of `certificate`: what the direct engine proves about.
 ///
 /// # Errors
 /// If the law is not v-CBC, or the robot has too many joints.
-pub(crate) fn over_region(
-    scenario: &Scenario,
-    certificate: &Certificate,
-    speed: f64,
-) -> Result<Box<dyn Flow>, Problems> {
+pub(crate) fn over_region(scenario: &Scenario, certificate: &Certificate) -> Result<Box<dyn Flow>, Problems> {
     let (gains, robot) = (scenario.vcbc()?, &scenario.robot);
     Ok(sized!(robot, L, N => {
         let enclosed = fjr(robot, &robot.enclosed, |x| robot.bounds(x), &Interval::midpoint);
@@ -48,12 +43,12 @@ pub(crate) fn over_region(
             law: law_over(gains, |x| scenario.bounds(x)),
         };
         let point = VcbcLoop::<f64, L<f64>, _, _, N> { robot: point.expect(OF_THE_KIND), law: law(gains) };
-        Box::new(vcbc(bounds, point, &region(robot, certificate, speed)))
+        Box::new(vcbc(bounds, point, &region(robot, certificate)))
     }))
 }
 
-/// The region of `certificate` with link speeds of up to `speed` [rad/s].
-fn region<const N: usize>(robot: &Robot, certificate: &Certificate, speed: f64) -> StateBox<N> {
+/// The region of `certificate`.
+fn region<const N: usize>(robot: &Robot, certificate: &Certificate) -> StateBox<N> {
     let n = robot.joint_count();
     let errors = &certificate.region.error;
     let around = |x: f64| Interval::point(-x).hull(Interval::point(x));
@@ -67,7 +62,6 @@ fn region<const N: usize>(robot: &Robot, certificate: &Certificate, speed: f64) 
         velocity_error_l: of_joints(&|_| Interval::ENTIRE),
         velocity_error_m: of_joints(&|_| Interval::ENTIRE),
         position: of_joints(&|i| range(robot, i)),
-        velocity: of_joints(&|_| around(speed)),
     }
 }
 

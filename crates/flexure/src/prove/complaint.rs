@@ -54,7 +54,7 @@ impl Proof {
                         problem(
                             "undecided",
                             message,
-                            "lower --speed, or name a smaller region; raise --budget if that many boxes were looked at",
+                            "raise --budget, name a smaller region, or ask for a --rate with more room",
                         ),
                         false,
                     ))

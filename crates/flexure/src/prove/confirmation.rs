@@ -19,8 +19,8 @@ const NO_RATE: &str = "no contraction rate of this loop holds at every speed";
 /// What the direct engine says of a certified rate.
 pub type Confirmation = Verdict<Proved, DirectWitness>;
 
-/// Proves the contraction rate of `certificate` again, on its region and for link speeds of up to `direct.speed`, from the full
-/// inequality, looking at no more than `direct.budget` boxes. What `progress` breaks off is undecided.
+/// Proves the contraction rate of `certificate` again, on its region, from the full inequality, looking at no more than
+/// `direct.budget` boxes. What `progress` breaks off is undecided.
 ///
 /// # Errors
 /// If the robot has too many joints, or the law is not v-CBC.
@@ -34,5 +34,5 @@ pub fn confirm(
         return Ok(Verdict::Undecided(Undecided { at: NO_RATE.to_owned(), spent: 0 }));
     };
     let rate = rate.bounds().lo() * SHARE;
-    Ok(prove_watched(&*over_region(scenario, certificate, direct.speed)?, rate, direct.budget, progress))
+    Ok(prove_watched(&*over_region(scenario, certificate)?, rate, direct.budget, progress))
 }

@@ -1,7 +1,7 @@
 //! Questions that do not fit the robot are refused before anything is computed.
 
 use crate::files::Problem;
-use crate::prove::question::{Direct, Question, Region, SMALLEST_ERROR};
+use crate::prove::question::{Question, Region, SMALLEST_ERROR};
 use crate::scenario::Scenario;
 
 /// Largest and smallest number that a question takes: products of a few of them stay finite.
@@ -49,12 +49,6 @@ impl Question {
             let message = format!("the rate is {rate:e} 1/s, must be > 0 and at most 1e30");
             let hint = "decay rate of the distance of two solutions; leave it out for the largest";
             return Err(Problem::new("range", message, hint));
-        }
-        if let Some(Direct { speed, .. }) =
-            self.direct.filter(|direct| !(0.0..=LARGEST).contains(&direct.speed))
-        {
-            let message = format!("the speed is {speed} rad/s, must be >= 0 and at most 1e30");
-            return Err(Problem::new("range", message, "the largest speed of the links that is looked at"));
         }
         Ok(Self { region, disturbance, velocity_error, ..self })
     }

@@ -55,8 +55,6 @@ pub struct Question {
 /// How hard the direct engine may try.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Direct {
-    /// Largest speed of the links in its region [rad/s].
-    pub speed: f64,
     /// Boxes that it may look at.
     pub budget: usize,
 }

@@ -118,11 +118,7 @@ pub const CERTIFIED: [&str; 3] = ["two-link-tanh", "two-link-linear", "two-link-
 /// What is asked of them: position errors of up to 3 rad, as far as the arm turns, and both engines.
 fn question(scenario: &Scenario) -> Question {
     let errors = vec![3.0; 2 * scenario.robot.joint_count()];
-    Question {
-        region: Region::Errors(errors),
-        direct: Some(Direct { speed: 5.0, budget: 1000 }),
-        ..Question::default()
-    }
+    Question { region: Region::Errors(errors), direct: Some(Direct { budget: 1000 }), ..Question::default() }
 }
 
 /// A proof, and what it is about.

@@ -94,7 +94,7 @@ fn proofs_keep_what_is_proved() {
     let scenario = load_scenario("two-link-tanh").expect("built in");
     let question = Question {
         region: Region::Errors(vec![3.0; 4]),
-        direct: Some(Direct { speed: 5.0, budget: 1000 }),
+        direct: Some(Direct { budget: 1000 }),
         ..Question::default()
     };
     let until = |limit: f64| {

@@ -65,9 +65,9 @@ pub fn closed_loop<C: Decimal, P>(shaping: impl Fn(Vector<C, 2>) -> P) -> Arm<C,
     VcbcLoop { robot: robot(), law: law(shaping) }
 }
 
-/// |q̃_i| ≤ 3, all q_l, |q̇_l| ≤ 5.
+/// |q̃_i| ≤ 3, all q_l.
 pub fn region() -> StateBox<2> {
-    StateBox::within(3.0, 5.0)
+    StateBox::within(3.0)
 }
 
 pub fn flow<PI, P>(

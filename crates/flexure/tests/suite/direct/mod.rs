@@ -5,3 +5,4 @@ mod arm;
 mod other_laws;
 mod rates;
 mod soundness;
+mod three_joints;

@@ -57,7 +57,7 @@ impl<C: Decimal> System<C> for Flipped<C> {
 /// Where slopes are flat the coupling decides: |q̃_i| ≤ 6.
 #[test]
 fn coupling_that_adds_up() {
-    let wide = StateBox::within(6.0, 5.0);
+    let wide = StateBox::within(6.0);
     let rate = 7e-4;
     let right = prove(&flow(tanh, tanh, &wide), rate, 10_000);
     assert!(right.proved().is_some(), "{right:?}");
@@ -201,7 +201,7 @@ fn uncertain_constants() {
         [Interval::point(0.159), Interval::point(0.055)],
         [Interval::point(0.0392), Interval::point(0.00808)],
     );
-    let flow: arm::ArmFlow<_, _> = vcbc(uncertain, exact, &StateBox::within(3.0, 5.0));
+    let flow: arm::ArmFlow<_, _> = vcbc(uncertain, exact, &StateBox::within(3.0));
     let verdict = best_rate(&flow, 20_000);
     println!("uncertain: {verdict:?}");
     assert!(verdict.proved().is_some_and(|best| best.rate > 0.2959), "{verdict:?}");

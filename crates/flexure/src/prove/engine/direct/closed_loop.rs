@@ -2,7 +2,7 @@
 
 use flexure_core::control::{Input, Shaping, Vcbc};
 use flexure_core::linalg::{Matrix, Vector};
-use flexure_core::model::{Fjr, LinkMatrices, Links};
+use flexure_core::model::{Fjr, Links};
 use flexure_core::scalar::{Dual, Interval, Over, Scalar};
 use flexure_core::virtual_system::{ErrorState, VelocityErrors, velocity_error_rates};
 
@@ -13,9 +13,9 @@ use crate::units::{self, Unit};
 
 /// A robot under the v-CBC law, constants of type `C`.
 ///
-/// Coordinates, `N` each: q̃_l, q̃_m in rad, s_l, s_m [rad/s] (errors), q_l in rad and q̇_l [rad/s] (real motion). Variations are
-/// those of the errors, δz = (δq̃_l, δq̃_m, δs_l, δs_m) with δs = M⁻¹ δσ at the real motion, which needs no inverse of M:
-/// W = ½ δzᵀ diag(Π_l, Π_m, M_l, M_m) δz.
+/// Coordinates, `N` each: q̃_l, q̃_m in rad, s_l, s_m [rad/s] (errors) and q_l in rad (real motion). Variations are those of the
+/// errors, δz = (δq̃_l, δq̃_m, δs_l, δs_m) with δs = M⁻¹ δσ at the real motion, which needs no inverse of M:
+/// W = ½ δzᵀ diag(Π_l, Π_m, M_l, M_m) δz. How fast the links move does not matter: E_l + ½ Ṁ_l is skew.
 #[derive(Clone, Debug)]
 pub struct VcbcLoop<C, L, Pl, Pm, const N: usize> {
     /// The robot.
@@ -37,8 +37,6 @@ pub struct StateBox<const N: usize> {
     pub velocity_error_m: [Interval; N],
     /// Link positions q_l in rad; [`full_turn`] is every angle.
     pub position: [Interval; N],
-    /// Link velocities q̇_l [rad/s].
-    pub velocity: [Interval; N],
 }
 
 /// Every angle in rad: [−π, π], rounded outwards.
@@ -49,17 +47,15 @@ pub fn full_turn() -> Interval {
 }
 
 impl<const N: usize> StateBox<N> {
-    /// Position errors within ±`error` in rad on both sides, link velocities within ±`velocity` [rad/s], all angles, all
-    /// velocity errors.
-    pub fn within(error: f64, velocity: f64) -> Self {
-        let around = |x: f64| [Interval::point(-x).hull(Interval::point(x)); N];
+    /// Position errors within ±`error` in rad on both sides, all angles, all velocity errors.
+    pub fn within(error: f64) -> Self {
+        let error = [Interval::point(-error).hull(Interval::point(error)); N];
         Self {
-            error_l: around(error),
-            error_m: around(error),
+            error_l: error,
+            error_m: error,
             velocity_error_l: [Interval::ENTIRE; N],
             velocity_error_m: [Interval::ENTIRE; N],
             position: [full_turn(); N],
-            velocity: around(velocity),
         }
     }
 
@@ -71,7 +67,6 @@ impl<const N: usize> StateBox<N> {
             ("s_l", units::SPEED, &self.velocity_error_l),
             ("s_m", units::SPEED, &self.velocity_error_m),
             ("q_l", units::ANGLE, &self.position),
-            ("v_l", units::SPEED, &self.velocity),
         ];
         let named = |(name, unit, ranges): (&str, Unit, &[Interval; N])| {
             let coordinate = |(i, &range): (usize, &Interval)| Coordinate {
@@ -107,34 +102,28 @@ where
 {
     /// Ẇ = δzᵀ G δz, G = diag(Π_l, Π_m, 1, 1) F + diag(½ Π̇_l, 0, −½ Ṁ_l, 0), F the Jacobian of the rates of
     /// (q̃_l, q̃_m, σ_l, σ_m): d/dt ½ δσᵀ M⁻¹ δσ = δsᵀ δσ̇ − ½ δsᵀ Ṁ δs.
+    ///
+    /// Of the motion of the links, F has −E_l = ½ Ṁ_l − S_l with a skew S_l in the rows and columns of momenta: with −½ Ṁ_l a skew matrix is left,
+    /// δsᵀ S_l δs = 0. So both are left out before anything is enclosed. Enclosed they would not cancel, and no rate would be shown at
+    /// every speed, nor of three joints at any.
     fn balance(&self, at: &[C]) -> Balance<C> {
         let n = self.robot.links.joints();
-        let block = |k: usize| block(at, n, k);
-        let (q_l, v_l): (Vector<C, N>, Vector<C, N>) = (block(4), block(5));
-        let model = LinkMatrices::new(&self.robot.links, &q_l, &v_l);
-        let E_l = model.workless();
+        let mass = self.robot.links.mass_matrix(&block(at, n, 4));
 
-        let F = jacobian(&at[..4 * n], 4 * n, |z| self.rates(z, &E_l));
-        let (Pi_l, Pi_l_rate) = self.link_metric(at, &E_l);
+        let F = jacobian(&at[..4 * n], 4 * n, |z| self.rates(z));
+        let (Pi_l, Pi_l_rate) = self.link_metric(at);
         let half = C::from_f64(0.5);
         let carried = |i: usize, j: usize| match i / n {
             0 => Pi_l[i] * F[(i, j)],
             1 => self.law.motor.metric[i - n] * F[(i, j)],
             _ => F[(i, j)],
         };
-        let inside = |i: usize, j: usize, k: usize| i / n == k && j / n == k;
         let dissipation = Symmetric::from_fn(4 * n, |i, j| {
-            let metric_rate = if i == j && inside(i, j, 0) {
-                half * Pi_l_rate[i]
-            } else if inside(i, j, 2) {
-                -half * model.mass_rate[(i - 2 * n, j - 2 * n)]
-            } else {
-                C::ZERO
-            };
+            let metric_rate = if i == j && i < n { half * Pi_l_rate[i] } else { C::ZERO };
             -(symmetric_part(carried, i, j) + metric_rate)
         });
         let weight = Symmetric::from_fn(4 * n, |i, j| match i / n {
-            2 if inside(i, j, 2) => model.mass[(i - 2 * n, j - 2 * n)],
+            2 if j / n == 2 => mass[(i - 2 * n, j - 2 * n)],
             _ if i != j => C::ZERO,
             0 => Pi_l[i],
             1 => self.law.motor.metric[i - n],
@@ -151,21 +140,20 @@ where
     Pl: Shaping<C, N>,
     Pm: Shaping<C, N>,
 {
-    /// The rates of (q̃_l, q̃_m, σ_l, σ_m) at z, along a real motion with the workless matrix `E_l`.
-    fn rates(&self, z: &[Dual<C, 1>], E_l: &Matrix<C, N, N>) -> Vec<Dual<C, 1>> {
+    /// The rates of (q̃_l, q̃_m, σ_l, σ_m) at z, but for −E_l s_l.
+    fn rates(&self, z: &[Dual<C, 1>]) -> Vec<Dual<C, 1>> {
         let n = self.robot.links.joints();
         let block = |k: usize| block(z, n, k);
         let errors = VelocityErrors { e_l: block(0), e_m: block(1), s_l: block(2), s_m: block(3) };
-        let lifted = E_l.map(Dual::constant);
         let ErrorState { e_l, e_m, sigma_l, sigma_m } =
-            velocity_error_rates(&self.robot, &self.law, &errors, &lifted, &Input::ZERO);
+            velocity_error_rates(&self.robot, &self.law, &errors, &Matrix::ZERO, &Input::ZERO);
         [e_l, e_m, sigma_l, sigma_m].iter().flat_map(|part| part.iter().take(n)).collect()
     }
 
     /// Π_l and its rate: it moves with q̃_l.
-    fn link_metric(&self, at: &[C], E_l: &Matrix<C, N, N>) -> (Vector<C, N>, Vector<C, N>) {
+    fn link_metric(&self, at: &[C]) -> (Vector<C, N>, Vector<C, N>) {
         let z: Vec<Dual<C, 1>> = at.iter().map(|&x| Dual::constant(x)).collect();
-        let rates = self.rates(&z, E_l);
+        let rates = self.rates(&z);
         let moving = Vector::from_fn(|i| match rates.get(i) {
             Some(rate) if i < self.robot.links.joints() => Dual { value: at[i], gradient: [rate.value] },
             _ => Dual::constant(C::ZERO),

@@ -23,16 +23,19 @@ pub(crate) fn halves(range: Interval) -> Option<(Interval, Interval)> {
     if inside { Interval::new(range.lo(), cut).zip(Interval::new(cut, range.hi())) } else { None }
 }
 
-/// The uncertainty of a matrix: how many entries are unbounded, and the widths of the others, weighted.
-type Spread = (usize, f64);
+/// How far a matrix is from being seen to be positive: how many entries are unbounded, and of the others the widths, weighted, but
+/// of those on the diagonal how low they can be. How high those can be does not matter: cut where only that shrinks, one half is as hard as
+/// the whole.
+type Lack = (usize, f64);
 
-fn spread(a: &Symmetric<Interval>, reach: &[f64]) -> Spread {
+fn lack(a: &Symmetric<Interval>, reach: &[f64]) -> Lack {
     let (mut unbounded, mut sum) = (0, 0.0);
     for i in 0..a.size() {
         for j in 0..=i {
-            let width = a.at(i, j).width();
-            if width.is_finite() {
-                sum += width * reach[i] * reach[j] * if i == j { 1.0 } else { 2.0 };
+            let entry = a.at(i, j);
+            let amount = if i == j { -entry.lo() } else { 2.0 * entry.width() };
+            if amount.is_finite() {
+                sum += amount * reach[i] * reach[j];
             } else {
                 unbounded += 1;
             }
@@ -57,8 +60,8 @@ fn pinned(at: &[Interval], i: usize) -> Vec<Interval> {
     pinned
 }
 
-/// The coordinate whose width widens `matrix` most, of those in `candidates`: each is tried at its midpoint. Without any
-/// effect, the one that is widest as a part of its range. `None` where nothing can be bisected.
+/// The coordinate that is best bisected, of those in `candidates`: the one whose worse half lacks least. Without any effect, the one that
+/// is widest as a part of its range. `None` where nothing can be bisected.
 pub(crate) fn most_effective(
     flow: &dyn Flow,
     at: &[Interval],
@@ -70,10 +73,23 @@ pub(crate) fn most_effective(
     if splittable.len() < 2 {
         return splittable.first().copied();
     }
-    let before = spread(&matrix(at), reach);
-    let tried = splittable.iter().map(|&i| (i, spread(&matrix(&pinned(at, i)), reach)));
-    let (best, after) = tried.min_by(|(_, a), (_, b)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)))?;
-    let better = after.0 < before.0 || (after.0 == before.0 && after.1 < before.1 * (1.0 - 1e-9));
+    let order = |a: &Lack, b: &Lack| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1));
+    let whole = matrix(at);
+    let before = lack(&whole, reach);
+    let worse_half = |i: usize| {
+        let (left, right) = halves(at[i])?;
+        let of = |half: Interval| {
+            let mut at = at.to_vec();
+            at[i] = half;
+            lack(&matrix(&at), reach)
+        };
+        Some((i, std::cmp::max_by(of(left), of(right), order)))
+    };
+    let tried = splittable.iter().filter_map(|&i| worse_half(i));
+    let (best, after) = tried.min_by(|(_, a), (_, b)| order(a, b))?;
+    let rounding =
+        (0..whole.size()).map(|i| whole.at(i, i).lo().abs() * reach[i] * reach[i]).sum::<f64>() * 1e-9;
+    let better = after.0 < before.0 || (after.0 == before.0 && after.1 < before.1 - rounding);
     let part = |i: usize| match at[i].width() / flow.coordinates()[i].range.width() {
         part if part.is_finite() => part,
         _ => f64::INFINITY,
