@@ -24,8 +24,7 @@ pub(crate) fn halves(range: Interval) -> Option<(Interval, Interval)> {
 }
 
 /// How far a matrix is from being seen to be positive: how many entries are unbounded, and of the others the widths, weighted, but
-/// of those on the diagonal how low they can be. How high those can be does not matter: cut where only that shrinks, one half is as hard as
-/// the whole.
+/// of those on the diagonal how low they can be: how high those can be does not matter.
 type Lack = (usize, f64);
 
 fn lack(a: &Symmetric<Interval>, reach: &[f64]) -> Lack {
@@ -48,20 +47,20 @@ fn lack(a: &Symmetric<Interval>, reach: &[f64]) -> Lack {
 pub(crate) fn relevant(flow: &dyn Flow, at: &[Interval]) -> Vec<usize> {
     let whole = flow.enclosure(at);
     let splittable: Vec<usize> = (0..at.len()).filter(|&i| halves(at[i]).is_some()).collect();
-    let changes = |&i: &usize| flow.enclosure(&pinned(at, i)) != whole;
+    let changes = |&i: &usize| flow.enclosure(&pinned(at, i, at[i].midpoint())) != whole;
     let relevant: Vec<usize> = splittable.iter().copied().filter(changes).collect();
     if relevant.is_empty() { splittable } else { relevant }
 }
 
-/// The box with coordinate `i` at its midpoint.
-fn pinned(at: &[Interval], i: usize) -> Vec<Interval> {
+/// The box with coordinate `i` at `place`.
+fn pinned(at: &[Interval], i: usize, place: f64) -> Vec<Interval> {
     let mut pinned = at.to_vec();
-    pinned[i] = Interval::point(at[i].midpoint());
+    pinned[i] = Interval::point(place);
     pinned
 }
 
-/// The coordinate that is best bisected, of those in `candidates`: the one whose worse half lacks least. Without any effect, the one that
-/// is widest as a part of its range. `None` where nothing can be bisected.
+/// The coordinate that is best bisected, of those in `candidates`: the one of which `matrix` lacks least once it is known, wherever it then is: at
+/// an end or in the middle. Without any effect, the one that is widest as a part of its range. `None` where nothing can be bisected.
 pub(crate) fn most_effective(
     flow: &dyn Flow,
     at: &[Interval],
@@ -76,20 +75,15 @@ pub(crate) fn most_effective(
     let order = |a: &Lack, b: &Lack| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1));
     let whole = matrix(at);
     let before = lack(&whole, reach);
-    let worse_half = |i: usize| {
-        let (left, right) = halves(at[i])?;
-        let of = |half: Interval| {
-            let mut at = at.to_vec();
-            at[i] = half;
-            lack(&matrix(&at), reach)
-        };
-        Some((i, std::cmp::max_by(of(left), of(right), order)))
+    let known = |i: usize| {
+        let places = [at[i].lo(), at[i].midpoint(), at[i].hi()].into_iter().filter(|x| x.is_finite());
+        let worst = places.map(|x| lack(&matrix(&pinned(at, i, x)), reach)).max_by(order);
+        worst.map(|worst| (i, worst))
     };
-    let tried = splittable.iter().filter_map(|&i| worse_half(i));
+    let tried = splittable.iter().filter_map(|&i| known(i));
     let (best, after) = tried.min_by(|(_, a), (_, b)| order(a, b))?;
-    let rounding =
-        (0..whole.size()).map(|i| whole.at(i, i).lo().abs() * reach[i] * reach[i]).sum::<f64>() * 1e-9;
-    let better = after.0 < before.0 || (after.0 == before.0 && after.1 < before.1 - rounding);
+    let size: f64 = (0..whole.size()).map(|i| whole.at(i, i).lo().abs() * reach[i] * reach[i]).sum();
+    let better = after.0 < before.0 || (after.0 == before.0 && after.1 < before.1 - 1e-9 * size);
     let part = |i: usize| match at[i].width() / flow.coordinates()[i].range.width() {
         part if part.is_finite() => part,
         _ => f64::INFINITY,
