@@ -33,7 +33,7 @@ pub struct Certify {
     /// solutions of the virtual system while both keep to them and to the region. For phi = tanh, and for linear where the link metric hardens.
     #[arg(long, value_name = "S", value_delimiter = ',', allow_negative_numbers = true)]
     pub velocity_error: Option<Vec<f64>>,
-    /// Prove the rate once more, from the full inequality without any theorem.
+    /// Prove the certified contraction rate once more, from the full inequality; of theorems only that the rate of the mass matrix cancels.
     #[arg(long)]
     pub direct: bool,
     /// With --direct: boxes that may be looked at.

@@ -54,7 +54,7 @@ impl Proof {
                         problem(
                             "undecided",
                             message,
-                            "raise --budget, name a smaller region, or ask for a --rate with more room",
+                            "raise --budget: built-in arms of three joints take 6000 to 36000 boxes, and each further joint multiplies that",
                         ),
                         false,
                     ))

@@ -1,4 +1,4 @@
-//! The direct engine of the prover: full matrix, no reduction by hand.
+//! The direct engine of the prover: the full matrix.
 
 mod agreement;
 mod arm;
