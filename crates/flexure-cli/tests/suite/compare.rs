@@ -27,7 +27,12 @@ fn a_comparison_leaves_a_table_a_page_and_figures() {
         "compare.html",
     ];
     assert_eq!(place.names("out"), names);
-    assert_eq!(place.read("out/compare.csv").lines().count(), 3);
+    let rows = place.read("out/compare.csv");
+    assert_eq!(rows.lines().count(), 3);
+    assert!(rows.lines().next().unwrap().ends_with(",measures,proved"), "{rows}");
+    for (law, about) in [(",vcbc,", ",all,tracking"), (",pd,", ",q_m dq_m,regulation")] {
+        assert!(rows.lines().any(|row| row.contains(law) && row.ends_with(about)), "{rows}");
+    }
     assert!(place.read("out/compare.html").contains("Where v-CBC is not the best"));
 
     let json = place.run(&[&args[..], &["--json", "--out", "other"]].concat()).done().json();

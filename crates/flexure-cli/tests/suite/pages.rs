@@ -77,7 +77,7 @@ fn a_run_has_a_page() {
     let expected = if outcome.code == Some(0) { "✓ good" } else { "✕ bad" };
     assert_eq!(mark(&page), expected);
     assert!(
-        page.contains("proved bound of eₗ in continuous time")
+        page.contains("proved bound of eₗ in continuous time (here torques are held)")
             && page.contains("No measure of the run exceeds")
     );
     assert!(page.contains("href=\"two-link-tanh.csv\"") && page.contains("href=\"two-link-tanh.view.html\""));

@@ -23,6 +23,7 @@ use crate::report::pages::margins::margins_page;
 use crate::report::pages::run::run_page;
 use crate::report::pages::sweep::sweep_page;
 use crate::report::pages::tune::tune_page;
+use crate::report::tables::leaderboard::measured;
 use crate::scenario::Scenario;
 use crate::sweep::{Statistics, Sweep};
 
@@ -209,9 +210,10 @@ pub fn view_name<'a>(scenarios: impl Iterator<Item = &'a Scenario>) -> String {
     format!("{}.view.html", names.join("-and-"))
 }
 
-/// Writes the scores as CSV: a row a task and law; errors in rad, torques in N m, nothing for numbers that there are not.
+/// Writes the scores as CSV: a row a task and law; errors in rad, torques in N m, nothing for numbers that there are not. What a law
+/// measures and what is proved of it, in continuous time, is the same on every task.
 fn write_scores(path: &Path, board: &Leaderboard) -> Result<(), WriteError> {
-    const HEADER: [&str; 15] = [
+    const HEADER: [&str; 17] = [
         "task",
         "law",
         "rank",
@@ -227,6 +229,8 @@ fn write_scores(path: &Path, board: &Leaderboard) -> Result<(), WriteError> {
         "chatter",
         "saturated_fraction",
         "diverged_at",
+        "measures",
+        "proved",
     ];
     write_atomic(path, |out| {
         let mut csv = csv::Writer::from_writer(out);
@@ -250,9 +254,13 @@ fn write_scores(path: &Path, board: &Leaderboard) -> Result<(), WriteError> {
                 score.diverged_at.unwrap_or(f64::NAN),
             ];
             let text = |x: f64| if x.is_finite() { x.to_string() } else { String::new() };
-            csv.write_record(
-                [task.scenario.clone(), score.law.clone()].into_iter().chain(numbers.map(text)),
-            )?;
+            let standing = board.ranking.iter().find(|standing| standing.law == score.law);
+            let about = [
+                standing.map_or_else(String::new, measured),
+                standing.and_then(|standing| standing.proved).unwrap_or_default().to_owned(),
+            ];
+            let first = [task.scenario.clone(), score.law.clone()];
+            csv.write_record(first.into_iter().chain(numbers.map(text)).chain(about))?;
         }
         csv.flush()
     })

@@ -105,6 +105,7 @@ impl Experiment {
             happenings: pushes(&scenario),
             settled: run.summary.settling_time,
             decay,
+            held: scenario.hold == Hold::ZeroOrder,
             ultimate: ultimate.clone(),
         };
         let figure = run_figure(&sketch, &options);

@@ -34,6 +34,8 @@ pub struct FigureOptions {
     pub settled: Option<f64>,
     /// What is proved of the position errors of this loop, if anything is.
     pub decay: Option<Decay>,
+    /// Whether the torque is held for a control period, which what is proved leaves out.
+    pub held: bool,
     /// What its position errors come down to, of a loop that converges practically.
     pub ultimate: Option<Ultimate>,
 }
@@ -176,8 +178,9 @@ pub(crate) fn bounds_of(options: &FigureOptions, of: impl Fn(&[f64]) -> Option<f
 pub(crate) fn legend_of_bounds(options: &FigureOptions) -> Vec<(String, Stroke)> {
     let proved = options.decay.as_ref().map(|decay| {
         let rate = significant(decay.rate, 3);
+        let hold = if options.held { " (here torques are held)" } else { "" };
         [
-            (format!("proved bound of eₗ in continuous time, shrinking at {rate} 1/s"), BOUNDS[0]),
+            (format!("proved bound of eₗ in continuous time{hold}, shrinking at {rate} 1/s"), BOUNDS[0]),
             ("the same of eₘ".to_owned(), BOUNDS[1]),
         ]
     });

@@ -122,6 +122,14 @@ pub(crate) fn measured(standing: &Standing) -> String {
     }
 }
 
+/// What the ranking's columns do not say by themselves.
+const LEGEND: &str = "
+laws whose mean ranks with one seed overlap share a place
+spectral radius: of the sampled loop, the largest over tasks and instants; a loop whose
+small errors grow on the whole way does not follow, more than 1 in passing is borne
+proved: of the law in continuous time, for the robot of its model and gains that meet its
+conditions, which a search does not ask for; nothing is proved of these tasks";
+
 fn ranking(board: &Leaderboard, width: usize) -> String {
     let titles = [
         "place",
@@ -150,5 +158,5 @@ fn ranking(board: &Leaderboard, width: usize) -> String {
         let last = [Cell::new(measured(standing)), Cell::new(standing.proved.unwrap_or(NONE))];
         table.add_row(Row::from(first.into_iter().chain(numbers.map(right)).chain(last).collect::<Vec<_>>()));
     }
-    laid_out(&table, 2, width)
+    laid_out(&table, 2, width) + LEGEND
 }

@@ -2,10 +2,9 @@
 //!
 //! W = ½ δzᵀ P δz decays at least at 2β where `dissipation − β P` is positive definite, with Ẇ = −δzᵀ `dissipation` δz.
 //! Both matrices come from the code of the core on dual numbers over intervals, column by column; the inequality is proved
-//! over a region by bisection, preconditioned by the inverse factor of its value at the midpoint. Nothing here but
-//! [`VcbcLoop`], which leaves out Ṁ_l and what cancels it, knows the system: not that
-//! coupling cancels, nor what a shaping function is: the engine serves laws that no theorem covers, and is there to distrust
-//! the theorems where there are some.
+//! over a region by bisection, preconditioned by the inverse factor of its value at the midpoint. Only [`VcbcLoop`] knows the
+//! system: it leaves out Ṁ_l and what cancels it. Nothing else here knows that coupling cancels, or what a shaping function is:
+//! the engine serves laws that no theorem covers, and is there to distrust the theorems where there are some.
 //!
 //! | part | does |
 //! | --- | --- |
