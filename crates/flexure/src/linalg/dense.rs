@@ -77,6 +77,12 @@ impl Dense<f64> {
         Self::from_fn(n, b.columns(), |i, j| b[(i, j)] / self[(i, i)])
     }
 
+    /// Rows as columns.
+    #[must_use]
+    pub fn transposed(&self) -> Self {
+        Self::from_fn(self.columns, self.rows().len(), |i, j| self[(j, i)])
+    }
+
     /// Every entry times `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {

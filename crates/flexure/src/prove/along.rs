@@ -14,7 +14,7 @@ use crate::progress::Progress;
 use crate::prove::closed_loop::along_reference;
 use crate::prove::engine::envelope::closed_loop::{Place, Slope, TrackingLoop};
 use crate::prove::engine::envelope::slab::QUANTITIES;
-use crate::prove::engine::envelope::tube::ErrorTube;
+use crate::prove::engine::envelope::tube::{ErrorTube, Tube};
 use crate::prove::engine::envelope::witness::candidates;
 use crate::prove::engine::envelope::{AlongRequest, Course, course};
 use crate::prove::engine::number::Number;

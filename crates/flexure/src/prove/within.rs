@@ -102,6 +102,7 @@ fn spread(robot: &Robot, disturbance: Option<&[Number]>) -> Spread {
             || vec![Interval::ZERO; robot.joint_count()],
             |torques| torques.iter().map(Number::bounds).collect(),
         ),
+        link_torque: vec![Interval::ZERO; robot.joint_count()],
     }
 }
 

@@ -45,6 +45,7 @@ fn the_whole_is_the_worst_of_its_instants() {
         link_damping: points(&tolerances.link_damping),
         motor_damping: points(&tolerances.motor_damping),
         motor_torque: points(&[0.0; 2]),
+        link_torque: points(&[0.0; 2]),
     };
     let at = |k: u32| {
         let time = Interval::point(scenario.duration * f64::from(k) / 128.0);

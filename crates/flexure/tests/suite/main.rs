@@ -26,6 +26,7 @@ mod experiments;
 mod feasible;
 mod feed_forward;
 mod following;
+mod funnel;
 mod golden_panda;
 mod golden_two_link;
 mod held;

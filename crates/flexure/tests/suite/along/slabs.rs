@@ -8,7 +8,7 @@ use flexure::feasible;
 use flexure::laws::{AnyShaping, law_over};
 use flexure::prove::engine::envelope::closed_loop::Enclosed;
 use flexure::prove::engine::envelope::slab::Slab;
-use flexure::prove::engine::envelope::tube::ErrorTube;
+use flexure::prove::engine::envelope::tube::{ErrorTube, Tube};
 use flexure::references::{AnyReference, PointToPoint, Profile, Reference};
 use flexure::robot::Links;
 use flexure::scenario::{Scenario, load_scenario};

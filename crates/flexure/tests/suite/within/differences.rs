@@ -53,6 +53,7 @@ fn what_differences_add_is_bounded_and_tight() {
             link_damping: points(&tolerances.link_damping),
             motor_damping: points(&tolerances.motor_damping),
             motor_torque: points(&torque),
+            link_torque: points(&[0.0; 2]),
         };
         for (level, start) in [(1e-9, 4.5), (1e-4, 0.0)] {
             // Of errors in all blocks, and in one alone.

@@ -7,7 +7,7 @@ use flexure_core::model::{Fjr, Links, MassFactor, Motion};
 use flexure_core::reference::Reference;
 use flexure_core::scalar::{Interval, Jet, Scalar};
 
-use crate::linalg::Symmetric;
+use crate::linalg::{Dense, Symmetric};
 
 /// A number over a box as a series in one direction: its value, its first derivative and half its second.
 pub type Slope = Jet<Interval, 3>;
@@ -65,14 +65,20 @@ pub trait TrackingLoop: Sync {
     fn kinks(&self) -> &[Interval];
     /// φ_l [rad/s] at the link position errors `e_l` in rad.
     fn approach(&self, e_l: &[Slope]) -> Vec<Slope>;
+    /// φ_m [rad/s] at the motor position errors `e_m` in rad.
+    fn approach_m(&self, e_m: &[Slope]) -> Vec<Slope>;
     /// What the law says at `x`, with the Taylor coefficients `q_ld` of the reference in rad/sᵏ.
     fn command(&self, x: &Place, q_ld: &[[Slope; 5]]) -> Answer;
     /// M_l⁻¹ [1/(kg m²)] at `q_l` in rad.
     fn inverse_mass(&self, q_l: &[Interval]) -> Symmetric<Interval>;
+    /// C_l [N m s/rad], of Christoffel symbols, at `q_l` in rad and `v_l` [rad/s].
+    fn coriolis(&self, q_l: &[Interval], v_l: &[Interval]) -> Dense<Interval>;
     /// s_lᵀ M_l s_l in J at `q_l` in rad.
     fn link_energy(&self, q_l: &[Interval], s_l: &[Interval]) -> Interval;
     /// The diagonals of Π_l, Π_m [N m/rad] and M_m [kg m²].
     fn metrics(&self) -> [Vec<Interval>; 3];
+    /// The diagonals of D_l + K_ld and D_m + K_md [N m s/rad].
+    fn damping(&self) -> [Vec<Interval>; 2];
     /// What the law takes springs, motors and dampers to be.
     fn drive(&self) -> Drive;
 }
@@ -120,6 +126,10 @@ where
         self.list(&self.law.link.shaping.eval(&vector(e_l)))
     }
 
+    fn approach_m(&self, e_m: &[Slope]) -> Vec<Slope> {
+        self.list(&self.law.motor.shaping.eval(&vector(e_m)))
+    }
+
     fn command(&self, x: &Place, q_ld: &[[Slope; 5]]) -> Answer {
         let motion =
             Motion { q_l: vector(&x.q_l), q_m: vector(&x.q_m), v_l: vector(&x.v_l), v_m: vector(&x.v_m) };
@@ -135,12 +145,17 @@ where
 
     fn inverse_mass(&self, q_l: &[Interval]) -> Symmetric<Interval> {
         let factor = self.robot.links.factor(&vector(q_l));
-        let unit = |j: usize| Vector::from_fn(|i| if i == j { Interval::ONE } else { Interval::ZERO });
         let columns: Vec<Vector<Interval, N>> = (0..self.joints()).map(|j| factor.solve(&unit(j))).collect();
         // Entry and mirror image enclose the same number.
         Symmetric::from_fn(self.joints(), |i, j| {
             columns[j][i].intersection(columns[i][j]).unwrap_or(columns[j][i])
         })
+    }
+
+    fn coriolis(&self, q_l: &[Interval], v_l: &[Interval]) -> Dense<Interval> {
+        let (q, v) = (vector(q_l), vector(v_l));
+        let column = |j| self.list(&self.robot.links.inertial_torque(&q, &v, &unit(j), &Vector::ZERO));
+        Dense::from_columns(&(0..self.joints()).map(column).collect::<Vec<_>>())
     }
 
     fn link_energy(&self, q_l: &[Interval], s_l: &[Interval]) -> Interval {
@@ -151,6 +166,13 @@ where
     fn metrics(&self) -> [Vec<Interval>; 3] {
         let (Metric::Constant(link) | Metric::Hardening { base: link, .. }) = &self.law.link.metric;
         [self.list(link), self.list(&self.law.motor.metric), self.list(&self.robot.motor_inertia)]
+    }
+
+    fn damping(&self) -> [Vec<Interval>; 2] {
+        [
+            self.list(&(self.robot.link_damping + self.law.link.damping)),
+            self.list(&(self.robot.motor_damping + self.law.motor.damping)),
+        ]
     }
 
     fn drive(&self) -> Drive {
@@ -176,6 +198,11 @@ where
     Pm: Shaping<Interval, N>,
 {
     law.command(robot, x, q_ld, &Input::ZERO)
+}
+
+/// The unit vector of joint `j`.
+fn unit<const N: usize>(j: usize) -> Vector<Interval, N> {
+    Vector::from_fn(|i| if i == j { Interval::ONE } else { Interval::ZERO })
 }
 
 /// Per-joint numbers as a vector; zero for joints that only fill the capacity.

@@ -26,11 +26,12 @@
 //! Nothing of the coupling cancels here: q_md = q_l + K⁻¹ u_l is made with the model's K, and its derivatives with the model's
 //! accelerations.
 
-use flexure_core::scalar::{Interval, Jet, Over, Scalar};
+use flexure_core::scalar::{Interval, Over, Scalar};
 
 use crate::linalg::{Dense, Symmetric, cholesky, solved, weakest};
-use crate::prove::engine::envelope::closed_loop::{Place, Slope, TrackingLoop};
-use crate::prove::engine::envelope::slab::{View, Way, differences};
+use crate::prove::engine::envelope::closed_loop::TrackingLoop;
+use crate::prove::engine::envelope::response::responses;
+use crate::prove::engine::envelope::slab::{Way, differences};
 use crate::prove::engine::envelope::tube::ErrorTube;
 
 /// Blocks of W: q̃_l, q̃_m, s_l, s_m.
@@ -50,6 +51,8 @@ pub struct Spread {
     pub motor_damping: Vec<Interval>,
     /// Unknown torque on the motors [N m].
     pub motor_torque: Vec<Interval>,
+    /// Unknown torque on the links [N m].
+    pub link_torque: Vec<Interval>,
 }
 
 impl Spread {
@@ -62,12 +65,14 @@ impl Spread {
             link_damping: times(&self.link_damping),
             motor_damping: times(&self.motor_damping),
             motor_torque: self.motor_torque.clone(),
+            link_torque: self.link_torque.clone(),
         }
     }
 
     /// Every tolerance that is not 0, with its key in robot files and its joint, from 0, and nothing beside it.
     pub fn one_by_one(&self) -> Vec<(&'static str, usize, Self)> {
-        let none = Self { motor_torque: vec![Interval::ZERO; self.motor_torque.len()], ..self.times(0.0) };
+        let zero = || vec![Interval::ZERO; self.motor_torque.len()];
+        let none = Self { motor_torque: zero(), link_torque: zero(), ..self.times(0.0) };
         let of = |key, values: fn(&mut Self) -> &mut Vec<Interval>| {
             let all = values(&mut self.clone()).clone();
             let none = none.clone();
@@ -151,7 +156,7 @@ impl Deviation {
         let n = system.joints();
         let jets = system.reference(time);
         let tube = ErrorTube::new(system, level, &jets.iter().map(|jet| jet[0]).collect::<Vec<_>>());
-        let way = Way::new(system, &tube, jets, time, goes_on);
+        let way = Way::new(system, &tube, &jets, time, goes_on);
         let (q_m, v_m) = way.motors(system)?;
         let drive = system.drive();
         let all = way.along(&|seed| {
@@ -196,7 +201,7 @@ impl Deviation {
         let on_links: Vec<_> = (0..n).map(on_link).collect();
         let of_motors: Vec<_> = (0..n).map(of_motor).collect();
         let ranges = |part: usize| all.ranges[part * n..(part + 1) * n].to_vec();
-        let responses = responses(system, &way, &tube, [&q_m.ranges, &ranges(0), &ranges(2)]);
+        let responses = responses(system, &way, tube.inverse_mass(), [&q_m.ranges, &ranges(0), &ranges(2)]);
         let through = |response: &Dense<Interval>, j: usize| {
             (0..n).fold(Affine::ZERO, |sum, i| sum.plus(on_links[i].times(response[(j, i)])))
         };
@@ -269,35 +274,4 @@ impl Deviation {
             f64::INFINITY
         }
     }
-}
-
-/// By how much a torque on each link [N m] moves, by its acceleration, the rates of q_md and of q̇_mr: ∂q_md/∂q̇_l M_l⁻¹ and
-/// ∂q̇_mr/∂q̇_l M_l⁻¹ over slab and tube, a column per link.
-fn responses(
-    system: &dyn TrackingLoop,
-    way: &Way<'_>,
-    tube: &ErrorTube,
-    [q_m, v_l, v_m]: [&[Interval]; 3],
-) -> [Dense<Interval>; 2] {
-    let n = system.joints();
-    let seed = way.seeded(View::Everywhere);
-    let (q_l, natural) = seed.links(system);
-    let constant = |values: &[Interval]| values.iter().map(|&x| Slope::value(x)).collect::<Vec<_>>();
-    let mass = tube.inverse_mass();
-    let answers: Vec<_> = (0..n)
-        .map(|i| {
-            let moved = |(j, (&v, natural)): (usize, (&Interval, &Slope))| {
-                let natural = natural.coefficient(0);
-                Jet::new([v.intersection(natural).unwrap_or(v), mass.at(i, j), Interval::ZERO])
-            };
-            let v_l = v_l.iter().zip(&natural).enumerate().map(moved).collect();
-            let place = Place { q_l: q_l.clone(), q_m: constant(q_m), v_l, v_m: constant(v_m) };
-            system.command(&place, &seed.q_ld)
-        })
-        .collect();
-    let first = |x: &Slope| x.coefficient(1);
-    [
-        Dense::from_fn(n, n, |j, i| first(&answers[i].q_md[j])),
-        Dense::from_fn(n, n, |j, i| first(&answers[i].s_m[j])),
-    ]
 }

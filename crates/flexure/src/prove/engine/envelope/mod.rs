@@ -5,6 +5,11 @@
 
 pub mod closed_loop;
 pub mod deviation;
+pub mod flow;
+pub mod funnel;
+pub mod recursion;
+mod response;
+pub mod shape;
 pub mod slab;
 pub mod tube;
 pub mod witness;

@@ -5,11 +5,13 @@
 //! on the way. Positions and velocities of the motors, which the law's derivatives depend on, are enclosed in the same manner
 //! first.
 
+use std::sync::Arc;
+
 use flexure_core::scalar::{Interval, Jet, Scalar};
 
 use crate::linalg::Dense;
 use crate::prove::engine::envelope::closed_loop::{Answer, Place, Slope, TrackingLoop};
-use crate::prove::engine::envelope::tube::ErrorTube;
+use crate::prove::engine::envelope::tube::{ErrorTube, Tube};
 
 /// Quantities per joint that are bounded, in the order of a slab's ranges: those of all joints, one quantity after the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,8 +33,8 @@ pub const QUANTITIES: [BoundedQuantity; 3] =
 pub struct Slab {
     /// Times that the slab covers in s.
     pub time: Interval,
-    /// The errors and the metric of W.
-    pub tube: ErrorTube,
+    /// The errors.
+    pub tube: Arc<dyn Tube>,
     /// The quantities on the reference at the middle.
     pub nominal: Vec<Interval>,
     /// Their derivatives by the errors q̃_l, q̃_m, s_l, s_m: a row per quantity, a column per error.
@@ -57,9 +59,18 @@ impl Slab {
         time: Interval,
         goes_on: &dyn Fn() -> bool,
     ) -> Option<Self> {
-        let jets = system.reference(time);
-        let tube = ErrorTube::new(system, level, &jets.iter().map(|jet| jet[0]).collect::<Vec<_>>());
-        let way = Way::new(system, &tube, jets, time, goes_on);
+        let q_ld: Vec<_> = system.reference(time).iter().map(|jet| jet[0]).collect();
+        Self::of(system, Arc::new(ErrorTube::new(system, level, &q_ld)), time, goes_on)
+    }
+
+    /// The errors of `tube` over the times `time` in s; none if it no longer `goes_on`.
+    pub fn of(
+        system: &dyn TrackingLoop,
+        tube: Arc<dyn Tube>,
+        time: Interval,
+        goes_on: &dyn Fn() -> bool,
+    ) -> Option<Self> {
+        let way = Way::new(system, &*tube, &system.reference(time), time, goes_on);
         let (q_m, v_m) = way.motors(system)?;
         let all = way.along(&|seed| {
             let (q_m, v_m) = (q_m.at(seed), v_m.at(seed));
@@ -103,6 +114,22 @@ impl Smooth {
             _ => Self::Twice,
         }
     }
+}
+
+/// Taylor coefficients of a reference over a slab, from those over it and in its `middle`: each is what it is there and `offset` in s times
+/// its slope, if it is continuous.
+fn tightened(all: &[Interval; 7], middle: &[Interval; 7], smooth: Smooth, offset: Interval) -> [Interval; 7] {
+    let continuous = match smooth {
+        Smooth::Not => 4,
+        Smooth::Once => 5,
+        Smooth::Twice => 6,
+    };
+    let mut tight = *all;
+    for k in (0..continuous).rev() {
+        let linear = middle[k] + tight[k + 1] * Interval::point((k + 1) as f64) * offset;
+        tight[k] = linear.intersection(all[k]).unwrap_or(all[k]);
+    }
+    tight
 }
 
 /// Where numbers are looked at, and by what they are differentiated.
@@ -157,7 +184,7 @@ pub(super) struct Way<'a> {
     offset: Interval,
     /// The box around the tube.
     errors: Vec<Interval>,
-    tube: &'a ErrorTube,
+    tube: &'a dyn Tube,
     /// Whether somebody waits for it.
     goes_on: &'a dyn Fn() -> bool,
 }
@@ -175,22 +202,32 @@ pub(super) struct Views {
 impl<'a> Way<'a> {
     pub(super) fn new(
         system: &dyn TrackingLoop,
-        tube: &'a ErrorTube,
-        jets: Vec<[Interval; 7]>,
+        tube: &'a dyn Tube,
+        jets: &[[Interval; 7]],
         time: Interval,
         goes_on: &'a dyn Fn() -> bool,
     ) -> Self {
-        let middle = Interval::point(time.midpoint());
+        let at = Interval::point(time.midpoint());
+        let (smooth, middle, offset) = (Smooth::over(system, time), system.reference(at), time - at);
         Self {
             n: system.joints(),
-            smooth: Smooth::over(system, time),
-            middle: system.reference(middle),
-            all: jets,
-            offset: time - middle,
+            all: jets
+                .iter()
+                .zip(&middle)
+                .map(|(all, middle)| tightened(all, middle, smooth, offset))
+                .collect(),
+            smooth,
+            middle,
+            offset,
             errors: tube.errors(),
             tube,
             goes_on,
         }
+    }
+
+    /// Positions of the links in rad.
+    pub(super) fn links(&self, system: &dyn TrackingLoop) -> Vec<Interval> {
+        self.seeded(View::Everywhere).links(system).0.iter().map(|q| q.coefficient(0)).collect()
     }
 
     /// Positions and velocities of the motors.

@@ -1,9 +1,22 @@
-//! The error tube {W ≤ c} around a reference, at the link positions that it reaches.
+//! Error tubes around a reference over a slab of time: what every one of them tells, and {W ≤ c} at the link positions that it
+//! reaches.
 
 use flexure_core::scalar::{Interval, Scalar};
 
 use crate::linalg::Symmetric;
 use crate::prove::engine::envelope::closed_loop::TrackingLoop;
+
+/// A set of errors q̃_l, q̃_m in rad, s_l, s_m [rad/s] around 0, the same whatever their signs are.
+pub trait Tube: std::fmt::Debug + Send + Sync {
+    /// The box that it lies in, in the order q̃_l, q̃_m, s_l, s_m.
+    fn errors(&self) -> Vec<Interval>;
+
+    /// The values of g·x̃ over it, g the 4n derivatives `gradient` in that order.
+    fn reach(&self, gradient: &[Interval]) -> Interval;
+
+    /// A point of it, but for rounding, where g·x̃ is largest.
+    fn farthest(&self, gradient: &[f64]) -> Vec<f64>;
+}
 
 /// Errors q̃_l, q̃_m, s_l, s_m with W ≤ c, W = ½ (q̃_lᵀ Π_l q̃_l + q̃_mᵀ Π_m q̃_m + s_lᵀ M_l s_l + s_mᵀ M_m s_m), and what the
 /// inverse of diag(Π_l, Π_m, M_l, M_m) is there.
@@ -27,21 +40,6 @@ impl ErrorTube {
             q_ld.iter().zip(link).map(|(&q, &inverse)| q + ball(twice_level * inverse)).collect();
         let inverse_mass = system.inverse_mass(&q_l);
         Self { twice_level, inverses, inverse_mass }
-    }
-
-    /// The box that the tube lies in: |x̃_i| ≤ √(2 c (P⁻¹)_ii) for q̃_l, q̃_m in rad and s_l, s_m [rad/s].
-    pub fn errors(&self) -> Vec<Interval> {
-        let n = self.inverse_mass.size();
-        let [link, motor, inertia] = &self.inverses;
-        let mass = (0..n).map(|i| self.inverse_mass.at(i, i));
-        let all = link.iter().chain(motor).copied().chain(mass).chain(inertia.iter().copied());
-        all.map(|inverse| ball(self.twice_level * inverse)).collect()
-    }
-
-    /// The values of g·x̃ over the tube, g the 4n derivatives `gradient` in the order of [`errors`](Self::errors): at
-    /// most √(2 c gᵀ P⁻¹ g), the norm dual to W's.
-    pub fn reach(&self, gradient: &[Interval]) -> Interval {
-        ball(self.twice_level * self.dual_square(gradient))
     }
 
     /// √(gᵀ P⁻¹ g), from above: |g·x̃| is at most that times √(2 W).
@@ -77,7 +75,7 @@ impl ErrorTube {
     }
 
     /// P⁻¹ g: the direction of the error at which g·x̃ is largest.
-    pub fn pull(&self, gradient: &[Interval]) -> Vec<Interval> {
+    fn pull(&self, gradient: &[Interval]) -> Vec<Interval> {
         let n = self.inverse_mass.size();
         let row = |i: usize| {
             (0..n).fold(Interval::ZERO, |sum, j| sum + self.inverse_mass.at(i, j) * gradient[2 * n + j])
@@ -105,8 +103,33 @@ impl ErrorTube {
     }
 }
 
+impl Tube for ErrorTube {
+    /// |x̃_i| ≤ √(2 c (P⁻¹)_ii).
+    fn errors(&self) -> Vec<Interval> {
+        let n = self.inverse_mass.size();
+        let [link, motor, inertia] = &self.inverses;
+        let mass = (0..n).map(|i| self.inverse_mass.at(i, i));
+        let all = link.iter().chain(motor).copied().chain(mass).chain(inertia.iter().copied());
+        all.map(|inverse| ball(self.twice_level * inverse)).collect()
+    }
+
+    /// At most √(2 c gᵀ P⁻¹ g), the norm dual to W's.
+    fn reach(&self, gradient: &[Interval]) -> Interval {
+        ball(self.twice_level * self.dual_square(gradient))
+    }
+
+    /// √(2 c) P⁻¹ g / √(gᵀ P⁻¹ g).
+    fn farthest(&self, gradient: &[f64]) -> Vec<f64> {
+        let points: Vec<_> = gradient.iter().map(|&g| Interval::point(g)).collect();
+        let pull: Vec<f64> = self.pull(&points).iter().map(|x| x.midpoint()).collect();
+        let length = gradient.iter().zip(&pull).map(|(g, x)| g * x).sum::<f64>().sqrt();
+        let scale = if length > 0.0 { self.twice_level.midpoint().sqrt() / length } else { 0.0 };
+        pull.iter().map(|x| x * scale).collect()
+    }
+}
+
 /// The numbers x with x² ≤ `square`.
-fn ball(square: Interval) -> Interval {
+pub(super) fn ball(square: Interval) -> Interval {
     let radius = square.sqrt().hi();
     Interval::new(-radius, radius).unwrap_or(Interval::ENTIRE)
 }

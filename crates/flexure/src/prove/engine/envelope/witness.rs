@@ -35,13 +35,10 @@ pub fn candidates(system: &dyn TrackingLoop, level: f64, course: &Course, k: usi
     on_reference.chain(corners).collect()
 }
 
-/// √(2c) P⁻¹ g / √(gᵀ P⁻¹ g), away from zero, for the derivatives g of quantity `k` at `time` in s.
+/// Where the derivatives g of quantity `k` at `time` in s point, away from zero.
 fn corner(system: &dyn TrackingLoop, level: f64, time: f64, k: usize) -> Candidate {
     let slab = Slab::new(system, level, Interval::point(time));
-    let gradient: Vec<_> = slab.gradients.row(k).iter().map(|g| Interval::point(g.midpoint())).collect();
-    let pull: Vec<f64> = slab.tube.pull(&gradient).iter().map(|x| x.midpoint()).collect();
-    let length = gradient.iter().zip(&pull).map(|(g, x)| g.midpoint() * x).sum::<f64>().sqrt();
-    let scale = if length > 0.0 { INSIDE * (2.0 * level).sqrt() / length } else { 0.0 };
-    let scale = scale.copysign(slab.nominal[k].midpoint());
-    Candidate { time, error: pull.iter().map(|x| x * scale).collect() }
+    let gradient: Vec<_> = slab.gradients.row(k).iter().map(|g| g.midpoint()).collect();
+    let scale = INSIDE.copysign(slab.nominal[k].midpoint());
+    Candidate { time, error: slab.tube.farthest(&gradient).iter().map(|x| x * scale).collect() }
 }

@@ -1,0 +1,258 @@
+//! Ellipsoids that follow a flow, in floats: they suggest, and never prove.
+//!
+//! Ẋ = A X + X Aᵀ + Σ α X + Σ (D²/α + τ) n nᵀ + Σ X c cᵀ X / τ, sums over what drives the errors. The multipliers α and τ are free; they
+//! are taken where the link errors of the X that stays are least: with S from the adjoint equation the derivatives of tr(E X Eᵀ) by them
+//! are zero at α = D √(nᵀ S n / tr(S X)) and τ = √(cᵀ X S X c / nᵀ S n). Kurzhanski & Vályi, *Ellipsoidal Calculus for Estimation and
+//! Control* (1997), chapter 3; Boyd et al., *Linear Matrix Inequalities in System and Control Theory* (1994), section 6.1.
+
+use crate::linalg::{Dense, Leading, Symmetric, cholesky, eigenvectors, lower_inverse, lyapunov};
+use crate::prove::engine::envelope::flow::{Channel, Flow};
+use crate::prove::engine::envelope::shape::Shape;
+
+/// Weights of what drives the errors: the channels of a flow, and then what it leaves open of each error.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Multipliers {
+    /// α [1/s], above 0; 0 where nothing constant drives.
+    pub alpha: Vec<f64>,
+    /// τ, above 0; 0 where nothing depends on the errors.
+    pub tau: Vec<f64>,
+}
+
+/// Multipliers are found by so many fixed-point steps.
+const STEPS: usize = 8;
+
+/// α is halved so often to find some for which something stays.
+const HALVINGS: usize = 12;
+
+/// The first guess of the sum of all α [1/s].
+const FIRST: f64 = 1.0;
+
+/// X of directions that nothing drives, over that of the ellipsoid nearby.
+const UNDRIVEN: f64 = 1e-6;
+
+/// A flow in the coordinates of an ellipsoid, in which that is the unit ball.
+struct Scaled {
+    matrix: Dense<f64>,
+    drives: Vec<Channel>,
+    /// q̃_l.
+    links: Dense<f64>,
+}
+
+impl Multipliers {
+    /// Where the link errors of the X that stays are least, and that X: of `flow` as it stands around an ellipsoid of about the size of
+    /// `near`, from `start` on; none if nothing stays.
+    pub fn best(flow: &Flow, near: &Shape, start: Option<&Self>) -> Option<(Self, Shape)> {
+        let scaled = Scaled::new(flow, near);
+        let first = Self::first(&scaled);
+        let mut found =
+            start.filter(|start| start.alpha.len() == scaled.drives.len()).unwrap_or(&first).clone();
+        let mut x = Dense::zeros(near.size(), near.size());
+        let mut last = x.clone();
+        let unit = Dense::identity(near.size());
+        let links = &scaled.links.transposed() * &scaled.links;
+        for step in 0..STEPS {
+            let mut both = None;
+            for _ in 0..HALVINGS {
+                let matrix = scaled.effective(&found, &x);
+                both = lyapunov(&matrix, &scaled.source(&found)).zip(lyapunov(&matrix.transposed(), &links));
+                if both.is_some() {
+                    break;
+                }
+                found.alpha.iter_mut().for_each(|alpha| *alpha *= 0.5);
+            }
+            let (stays, adjoint) = both?;
+            last = stays.clone();
+            // Where less stays than there is, what there is counts.
+            x = if product_trace(&stays, &adjoint) > product_trace(&unit, &adjoint) {
+                stays
+            } else {
+                unit.clone()
+            };
+            if step + 1 < STEPS {
+                // The first guess knows nothing of the sizes.
+                let guessed = step == 0 && start.is_none();
+                found = scaled.stationary(&found, if guessed { 1.0 } else { 0.5 }, &x, &adjoint)?;
+            }
+        }
+        // Where little drives, some directions are not driven at all.
+        Some((found, shaped(near, &(&last + &unit.scaled(UNDRIVEN)))?))
+    }
+
+    /// α in equal parts, τ of 1 in scaled coordinates.
+    fn first(scaled: &Scaled) -> Self {
+        let share = FIRST / scaled.drives.len().max(1) as f64;
+        let of = |value: fn(&Channel) -> f64| scaled.drives.iter().map(value).collect::<Vec<_>>();
+        let alpha = of(|drive| if drive.size > 0.0 { 1.0 } else { 0.0 }).iter().map(|x| x * share).collect();
+        let length = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let tau = scaled
+            .drives
+            .iter()
+            .map(|drive| drive.slope.as_ref().map_or(0.0, |slope| length(slope) / length(&drive.column)));
+        Self { alpha, tau: tau.collect() }
+    }
+
+    /// Σ α.
+    pub fn growth(&self) -> f64 {
+        self.alpha.iter().sum()
+    }
+}
+
+/// What drives the errors of `flow`: its channels, and then what it leaves open of each.
+pub fn drives(flow: &Flow) -> Vec<Channel> {
+    let n = flow.rest.len();
+    let open = flow.rest.iter().enumerate().filter(|(_, rest)| **rest > 0.0).map(|(i, &size)| {
+        let column = (0..n).map(|k| if k == i { 1.0 } else { 0.0 }).collect();
+        Channel { column, size, slope: None }
+    });
+    flow.channels.iter().cloned().chain(open).collect()
+}
+
+impl Scaled {
+    fn new(flow: &Flow, shape: &Shape) -> Self {
+        let (lower, n) = (&shape.lower, shape.size());
+        let inverse = lower_inverse(lower);
+        let through =
+            |column: &[f64]| (0..n).map(|i| (0..=i).map(|k| inverse[(i, k)] * column[k]).sum()).collect();
+        let seen = |row: &[f64]| (0..n).map(|j| (j..n).map(|k| row[k] * lower[(k, j)]).sum()).collect();
+        let scaled = |drive: Channel| Channel {
+            column: through(&drive.column),
+            size: drive.size,
+            slope: drive.slope.as_deref().map(seen),
+        };
+        Self {
+            matrix: &(&inverse * &flow.matrix) * lower,
+            drives: drives(flow).into_iter().map(scaled).collect(),
+            links: lower.slice(0..n / 4),
+        }
+    }
+
+    /// A + ½ Σ α + ½ Σ X c cᵀ / τ.
+    fn effective(&self, with: &Multipliers, x: &Dense<f64>) -> Dense<f64> {
+        let n = self.matrix.columns();
+        let growth = 0.5 * with.growth();
+        let mut matrix = Dense::from_fn(n, n, |i, j| self.matrix[(i, j)] + if i == j { growth } else { 0.0 });
+        for (drive, tau) in self.drives.iter().zip(&with.tau) {
+            let Some(slope) = &drive.slope else { continue };
+            let pulled = times(x, slope);
+            for i in 0..n {
+                for j in 0..n {
+                    matrix[(i, j)] += 0.5 * pulled[i] * slope[j] / tau;
+                }
+            }
+        }
+        matrix
+    }
+
+    /// Σ (D²/α + τ) n nᵀ.
+    fn source(&self, with: &Multipliers) -> Dense<f64> {
+        let n = self.matrix.columns();
+        let mut source = Dense::zeros(n, n);
+        for (k, drive) in self.drives.iter().enumerate() {
+            let weight = weight(drive.size, with.alpha[k], with.tau[k]);
+            for i in 0..n {
+                for j in 0..n {
+                    source[(i, j)] += weight * drive.column[i] * drive.column[j];
+                }
+            }
+        }
+        source
+    }
+
+    /// The multipliers at which the derivatives are zero with these X and S, or `part` of the way there from `before`.
+    fn stationary(
+        &self,
+        before: &Multipliers,
+        part: f64,
+        x: &Dense<f64>,
+        adjoint: &Dense<f64>,
+    ) -> Option<Multipliers> {
+        let trace = product_trace(x, adjoint);
+        let on_the_way = |before: f64, now: f64| {
+            if now > 0.0 { before.powf(1.0 - part) * now.powf(part) } else { before }
+        };
+        let one = |(k, drive): (usize, &Channel)| {
+            let felt = dot(&drive.column, &times(adjoint, &drive.column));
+            let alpha = drive.size * (felt / trace).sqrt();
+            let tau = drive.slope.as_ref().map_or(0.0, |slope| {
+                let pulled = times(x, slope);
+                (dot(&pulled, &times(adjoint, &pulled)) / felt).sqrt()
+            });
+            (on_the_way(before.alpha[k], alpha), on_the_way(before.tau[k], tau))
+        };
+        let (alpha, tau): (Vec<f64>, Vec<f64>) = self.drives.iter().enumerate().map(one).unzip();
+        let finite = alpha.iter().chain(&tau).all(|x| x.is_finite());
+        finite.then_some(Multipliers { alpha, tau })
+    }
+}
+
+/// How often what an end of a step lacks is added.
+const ADDED: usize = 8;
+
+/// Where `flow` leads from `from` in `step` s, with `slack` [1/s] more than is needed; none where nothing comes of it.
+///
+/// With F = Ẋ of the unit ball, and 𝓛 how Ẋ depends on X, both ends of the step ask for Ẋ ≥ F and Ẋ − h 𝓛 Ẋ ≥ F. An implicit step has
+/// Ẋ − h 𝓛 Ẋ = F + E with E = 0; E grows by what the first asks for.
+pub fn next(flow: &Flow, with: &Multipliers, from: &Shape, step: f64, slack: f64) -> Option<Shape> {
+    let scaled = Scaled::new(flow, from);
+    let n = from.size();
+    let unit = Dense::identity(n);
+    let matrix = scaled.effective(with, &unit);
+    let applied = |x: &Dense<f64>| {
+        let moved = &matrix * x;
+        &moved + &moved.transposed()
+    };
+    let shifted = &matrix.scaled(step) + &unit.scaled(-0.5);
+    let rate = &applied(&unit) + &scaled.source(with);
+    let mut more = unit.scaled(slack);
+    for _ in 0..ADDED {
+        let found = lyapunov(&shifted, &(&rate + &more))?;
+        let missing = parts(&(&found + &rate.scaled(-1.0)), |x| (-x).max(0.0));
+        if (0..n).all(|i| missing[(i, i)] < 0.1 * slack) {
+            return shaped(from, &(&unit + &(&found + &unit.scaled(slack)).scaled(step)));
+        }
+        let forward = &missing + &applied(&missing).scaled(-step);
+        more = &more + &parts(&forward, |x| x.max(0.0));
+    }
+    None
+}
+
+/// An ellipsoid that holds both, about.
+pub fn joined(a: &Shape, b: &Shape) -> Option<Shape> {
+    let (n, inverse) = (a.size(), lower_inverse(&a.lower));
+    let half = &inverse * &b.lower;
+    let beyond = &(&half * &half.transposed()) + &Dense::identity(n).scaled(-1.0);
+    shaped(a, &(&parts(&beyond, |x| x.max(0.0)) + &Dense::identity(n)))
+}
+
+/// D²/α + τ.
+pub fn weight(size: f64, alpha: f64, tau: f64) -> f64 {
+    if size > 0.0 { size * size / alpha + tau } else { tau }
+}
+
+/// The matrix with the eigenvectors of `a` and its eigenvalues through `f`.
+fn parts(a: &Dense<f64>, f: impl Fn(f64) -> f64) -> Dense<f64> {
+    let n = a.columns();
+    let mut diagonal = a.clone();
+    let vectors = eigenvectors(Leading::whole(&mut diagonal));
+    Dense::from_fn(n, n, |i, j| (0..n).map(|k| vectors[(i, k)] * f(diagonal[(k, k)]) * vectors[(j, k)]).sum())
+}
+
+/// L C with C Cᵀ = `x`, L that of `shape`.
+fn shaped(shape: &Shape, x: &Dense<f64>) -> Option<Shape> {
+    let factor = cholesky(&Symmetric::from_fn(x.columns(), |i, j| x[(i, j)]))?;
+    let lower = &shape.lower * &factor;
+    Some(Shape { lower })
+}
+
+/// tr(A B) of symmetric matrices.
+fn product_trace(a: &Dense<f64>, b: &Dense<f64>) -> f64 {
+    a.rows().zip(b.rows()).map(|(a, b)| dot(a, b)).sum()
+}
+
+fn times(a: &Dense<f64>, x: &[f64]) -> Vec<f64> {
+    a.rows().map(|row| dot(row, x)).collect()
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
