@@ -28,7 +28,8 @@ fn list(name: &'static str, given: Option<&Bound<'_, PyAny>>) -> PyResult<Option
 /// Proves how fast the closed loop contracts, and where, as `flexure certify`: a dict with the keys of its `--json`, and `certificate`,
 /// its text, or None if nothing was proved. Errors in rad, links then motors, torques in N m, rates in 1/s.
 #[pyfunction]
-#[pyo3(signature = (scenario, *, error_box = None, initial_error = None, rate = None, disturbance = None, velocity_error = None,
+#[pyo3(signature = (scenario, *, error_box = None, initial_error = None, rate = None, disturbance = None, link_disturbance = None,
+                    velocity_error = None,
                     direct = false, budget = 10_000, out = None, progress = None))]
 #[expect(clippy::too_many_arguments, reason = "keywords")]
 pub fn certify<'py>(
@@ -38,6 +39,7 @@ pub fn certify<'py>(
     initial_error: Option<&Bound<'py, PyAny>>,
     rate: Option<f64>,
     disturbance: Option<&Bound<'py, PyAny>>,
+    link_disturbance: Option<&Bound<'py, PyAny>>,
     velocity_error: Option<&Bound<'py, PyAny>>,
     direct: bool,
     budget: usize,
@@ -60,9 +62,10 @@ pub fn certify<'py>(
     }
     let loaded = scenario.loaded.clone();
     let direct = direct.then_some(Direct { budget });
-    let [disturbance, velocity_error] =
-        [list("disturbance", disturbance)?, list("velocity_error", velocity_error)?];
-    let question = Question { region, rate, disturbance, velocity_error, direct }
+    let [disturbance, link_disturbance] =
+        [list("disturbance", disturbance)?, list("link_disturbance", link_disturbance)?];
+    let velocity_error = list("velocity_error", velocity_error)?;
+    let question = Question { region, rate, disturbance, link_disturbance, velocity_error, direct }
         .fitting(&loaded)
         .map_err(|problem| refused(py, &problem))?;
     let found = watched(py, progress, |progress| {

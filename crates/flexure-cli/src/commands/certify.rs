@@ -102,8 +102,10 @@ fn question(options: &Certify, scenario: &Scenario) -> Result<Question, Problem>
     };
     let direct = options.direct.then_some(Direct { budget: options.budget });
     let disturbance = options.disturbance.clone();
+    let link_disturbance = options.link_disturbance.clone();
     let velocity_error = options.velocity_error.clone();
-    Question { region, rate: options.rate, disturbance, velocity_error, direct }.fitting(scenario)
+    Question { region, rate: options.rate, disturbance, link_disturbance, velocity_error, direct }
+        .fitting(scenario)
 }
 
 /// The exit code: 1 for what is refuted or unstable, and if it is `strict` for what is proved of another loop than the one in the

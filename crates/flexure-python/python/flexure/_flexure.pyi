@@ -271,6 +271,7 @@ def certify(
     initial_error: _Numbers | None = None,
     rate: float | None = None,
     disturbance: _Numbers | None = None,
+    link_disturbance: _Numbers | None = None,
     velocity_error: _Numbers | None = None,
     direct: bool = False,
     budget: int = 10_000,

@@ -76,6 +76,7 @@ def certify(
     initial_error: Numbers | None = None,
     rate: float | None = None,
     disturbance: Numbers | None = None,
+    link_disturbance: Numbers | None = None,
     velocity_error: Numbers | None = None,
     direct: bool = False,
     budget: int = 10_000,
@@ -86,7 +87,7 @@ def certify(
 
     The dict has the keys of `--json`, with `verdict` ("proved", "proved (ideal loop)", "refuted", "undecided", …), and `certificate`,
     the text that `verify` checks, None if nothing was proved. Errors in rad, links then motors; rate in 1/s; disturbance in N m, on
-    the motors; velocity errors in rad/s, links then motors.
+    the motors, link_disturbance on the links; velocity errors in rad/s, links then motors.
     """
     scenario = _scenario(scenario)
     return _watched(
@@ -98,6 +99,7 @@ def certify(
             initial_error=initial_error,
             rate=rate,
             disturbance=disturbance,
+            link_disturbance=link_disturbance,
             velocity_error=velocity_error,
             direct=direct,
             budget=budget,

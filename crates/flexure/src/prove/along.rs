@@ -98,7 +98,7 @@ pub(crate) fn enclosed(scenario: &Scenario) -> Result<Box<dyn TrackingLoop>, Pro
 }
 
 /// Whether W is what the bounds take it to be, and continuous.
-fn suitable(scenario: &Scenario) -> Result<(), Problems> {
+pub(crate) fn suitable(scenario: &Scenario) -> Result<(), Problems> {
     scenario.vcbc()?;
     if let Some(problem) = uneven_metric(scenario) {
         return Err(problem.into());
@@ -136,31 +136,18 @@ fn bounds(
 ) -> Option<Along> {
     let robot = &scenario.robot;
     let given = [&robot.limits.velocity, &robot.limits.deflection, &robot.limits.torque];
-    let limits: Vec<Interval> = given.into_iter().flatten().map(|&limit| robot.bounds(limit)).collect();
+    let all: Vec<Interval> = given.into_iter().flatten().map(|&limit| robot.bounds(limit)).collect();
     let duration = scenario.bounds(scenario.duration).hi();
-    let course = course(system, &AlongRequest { level, duration, limits, budget }, &|fraction| {
+    let course = course(system, &AlongRequest { level, duration, limits: all, budget }, &|fraction| {
         progress(COURSE * fraction)
     })?;
     let n = system.joints();
-    let peaks = |quantity: usize| {
-        let of = |f: &dyn Fn(usize) -> f64| (quantity * n..(quantity + 1) * n).map(f).collect();
-        Peaks {
-            bound: of(&|k| course.bound(k).0),
-            time: of(&|k| course.bound(k).1),
-            nominal: of(&|k| course.nominal(k).0),
-        }
-    };
-    let keys = ["velocity_limit", "deflection_limit", "torque_limit"];
-    let limit = |(joint, quantity): (usize, usize)| {
-        let limit = given[quantity][joint];
-        limit.is_finite().then(|| {
-            let done = (joint * QUANTITIES.len() + quantity) as f64 / (n * QUANTITIES.len()) as f64;
-            let is_watched = || progress(COURSE + (1.0 - COURSE) * done).is_continue();
-            let verdict = verdict(scenario, system, &course, level, quantity * n + joint, limit, &is_watched);
-            Limit { joint, key: keys[quantity], limit, verdict }
-        })
-    };
-    let [velocity, deflection, torque] = [0, 1, 2].map(peaks);
+    let limits = limits(scenario, n, &|k, limit| {
+        let done = k as f64 / (n * QUANTITIES.len()) as f64;
+        let is_watched = || progress(COURSE + (1.0 - COURSE) * done).is_continue();
+        verdict(scenario, system, &course, level, k, limit, &is_watched)
+    });
+    let [velocity, deflection, torque] = peaks(&course, n);
     Some(Along {
         level,
         error: ErrorTube::new(system, level, &vec![Interval::ZERO; n]).errors()[..n]
@@ -170,9 +157,41 @@ fn bounds(
         velocity,
         deflection,
         torque,
-        limits: (0..n).flat_map(|i| (0..QUANTITIES.len()).map(move |k| (i, k))).filter_map(limit).collect(),
+        limits,
         slabs: course.spent,
     })
+}
+
+/// The largest values of each quantity, of `n` joints.
+pub(crate) fn peaks(course: &Course, n: usize) -> [Peaks; 3] {
+    [0, 1, 2].map(|quantity| {
+        let of = |f: &dyn Fn(usize) -> f64| (quantity * n..(quantity + 1) * n).map(f).collect();
+        Peaks {
+            bound: of(&|k| course.bound(k).0),
+            time: of(&|k| course.bound(k).1),
+            nominal: of(&|k| course.nominal(k).0),
+        }
+    })
+}
+
+/// The limits in the file of the scenario's robot, of `n` joints, with what `verdict` says of a quantity, by its place among all, and its
+/// limit.
+pub(crate) fn limits(
+    scenario: &Scenario,
+    n: usize,
+    verdict: &dyn Fn(usize, f64) -> Verdict<f64, Exceeding>,
+) -> Vec<Limit> {
+    let given = &scenario.robot.limits;
+    let given = [
+        ("velocity_limit", &given.velocity),
+        ("deflection_limit", &given.deflection),
+        ("torque_limit", &given.torque),
+    ];
+    let limit = |(joint, quantity): (usize, usize)| {
+        let (key, limit) = (given[quantity].0, given[quantity].1[joint]);
+        limit.is_finite().then(|| Limit { joint, key, limit, verdict: verdict(quantity * n + joint, limit) })
+    };
+    (0..n).flat_map(|i| (0..QUANTITIES.len()).map(move |k| (i, k))).filter_map(limit).collect()
 }
 
 /// Whether quantity `k` keeps `limit`; a state that exceeds it is looked for as long as it `goes_on`.
@@ -195,26 +214,28 @@ fn verdict(
         .then(|| exceeding::first(scenario, &candidates(system, level, course, k), level, k, exact.hi()))
         .flatten();
     found.map_or_else(
-        || {
-            let at = if bound.is_finite() {
-                format!(
-                    "near t = {time:.4} s the bound is {bound:.6e}, above the limit of {limit}; the largest value seen is \
-                     {seen:.6e}"
-                )
-            } else {
-                format!("no finite bound was found near t = {time:.4} s")
-            };
-            Verdict::Undecided(Undecided { at, spent: course.spent })
-        },
+        || Verdict::Undecided(Undecided { at: beyond(bound, time, limit, seen), spent: course.spent }),
         Verdict::Refuted,
     )
 }
 
-/// W at the initial state, from above.
-fn storage(scenario: &Scenario, system: &dyn TrackingLoop) -> f64 {
+/// Why a limit is not decided.
+pub(crate) fn beyond(bound: f64, time: f64, limit: f64, seen: f64) -> String {
+    if bound.is_finite() {
+        format!(
+            "near t = {time:.4} s the bound is {bound:.6e}, above the limit of {limit}; the largest value seen is \
+             {seen:.6e}"
+        )
+    } else {
+        format!("no finite bound was found near t = {time:.4} s")
+    }
+}
+
+/// The errors q̃_l, q̃_m in rad, s_l, s_m [rad/s] at the initial state.
+pub(crate) fn start_errors(scenario: &Scenario, system: &dyn TrackingLoop) -> [Vec<Interval>; 4] {
     let initial = &scenario.initial;
-    let enclosed = |values: &[f64]| values.iter().map(|&x| scenario.bounds(x)).collect::<Vec<_>>();
-    let constant = |values: &[f64]| enclosed(values).into_iter().map(Slope::value).collect::<Vec<_>>();
+    let constant =
+        |values: &[f64]| values.iter().map(|&x| Slope::value(scenario.bounds(x))).collect::<Vec<_>>();
     let x = Place {
         q_l: constant(&initial.q_l),
         q_m: constant(&initial.q_m),
@@ -224,17 +245,19 @@ fn storage(scenario: &Scenario, system: &dyn TrackingLoop) -> f64 {
     let jets = system.reference(Interval::ZERO);
     let q_ld: Vec<_> = jets.iter().map(|jet| std::array::from_fn(|k| Slope::value(jet[k]))).collect();
     let answer = system.command(&x, &q_ld);
+    [answer.e_l, answer.e_m, answer.s_l, answer.s_m]
+        .map(|errors| errors.iter().map(|e| e.coefficient(0)).collect())
+}
+
+/// W at the initial state, from above.
+fn storage(scenario: &Scenario, system: &dyn TrackingLoop) -> f64 {
+    let [e_l, e_m, s_l, s_m] = start_errors(scenario, system);
+    let q_l: Vec<_> = scenario.initial.q_l.iter().map(|&q| scenario.bounds(q)).collect();
     let [link, motor, inertia] = system.metrics();
-    let form = |metric: &[Interval], e: &[Slope]| {
-        metric
-            .iter()
-            .zip(e)
-            .fold(Interval::ZERO, |sum, (&metric, e)| sum + metric * e.coefficient(0).square())
+    let form = |metric: &[Interval], e: &[Interval]| {
+        metric.iter().zip(e).fold(Interval::ZERO, |sum, (&metric, e)| sum + metric * e.square())
     };
-    let s_l: Vec<_> = answer.s_l.iter().map(|s| s.coefficient(0)).collect();
-    let twice = form(&link, &answer.e_l)
-        + form(&motor, &answer.e_m)
-        + form(&inertia, &answer.s_m)
-        + system.link_energy(&enclosed(&initial.q_l), &s_l);
+    let twice =
+        form(&link, &e_l) + form(&motor, &e_m) + form(&inertia, &s_m) + system.link_energy(&q_l, &s_l);
     (twice * Interval::point(0.5)).hi()
 }

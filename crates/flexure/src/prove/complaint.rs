@@ -59,7 +59,10 @@ impl Proof {
                         false,
                     ))
                 }
-                _ => self.limits(scenario).or_else(|| self.tolerances(scenario)),
+                _ => self
+                    .limits(scenario)
+                    .or_else(|| self.no_funnel(scenario))
+                    .or_else(|| self.tolerances(scenario)),
             },
             Verdict::Refuted(witness) => {
                 let message = format!(
@@ -82,6 +85,9 @@ impl Proof {
 
     /// What to say where nothing was shown of the robots within the tolerances.
     fn tolerances(&self, scenario: &Scenario) -> Option<(Problem, bool)> {
+        if matches!(self.robust, Some(Ok(_))) {
+            return None;
+        }
         let Some(Err(open)) = &self.within else { return None };
         let message =
             format!("{}: the robots within its tolerances are not decided: {}", scenario.name, open.at);
@@ -104,9 +110,22 @@ impl Proof {
         Some((scenario.robot.places.problem(&place, "undecided", message, help), false))
     }
 
+    /// What to say where torques on the links were named and no funnel was found.
+    fn no_funnel(&self, scenario: &Scenario) -> Option<(Problem, bool)> {
+        let Some(Err(open)) = self.robust.as_ref().filter(|_| self.link_disturbance) else { return None };
+        let message =
+            format!("{}: under the disturbance of the links nothing is decided: {}", scenario.name, open.at);
+        let help =
+            format!("the certificate is about links without disturbance; name a smaller one, or {ASK_LESS}");
+        Some((scenario.places.problem("controller", "undecided", message, help), false))
+    }
+
     /// What to say of the robot's limits where the tube may exceed them; one that it does exceed comes first.
     fn limits(&self, scenario: &Scenario) -> Option<(Problem, bool)> {
-        let limits = &self.along.as_ref()?.limits;
+        let limits = match (&self.robust, &self.along) {
+            (Some(Ok(robust)), _) => &robust.limits,
+            (_, along) => &along.as_ref()?.limits,
+        };
         let refuted = limits.iter().find(|limit| matches!(limit.verdict, Verdict::Refuted(_)));
         let limit = refuted.or_else(|| limits.iter().find(|limit| limit.verdict.proved().is_none()))?;
         let Limit { joint, key, limit, verdict } = limit;

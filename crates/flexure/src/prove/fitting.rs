@@ -29,13 +29,18 @@ impl Question {
             }
             Region::Chosen => Region::Chosen,
         };
+        let torques = |name: &str, torques: Option<Vec<f64>>, hint: &str| {
+            let torques = torques.map(|torques| per_joint(name, torques, n, hint)).transpose()?;
+            if let Some(negative) = torques.iter().flatten().find(|&&d| d < 0.0) {
+                let message = format!("{name} is {negative} N m, must be >= 0");
+                return Err(Problem::new("range", message, "the largest absolute value of the torque"));
+            }
+            Ok(torques)
+        };
         let hint = "one number, or one per motor, in N m, link side of the gear";
-        let disturbance =
-            self.disturbance.map(|torques| per_joint("the disturbance", torques, n, hint)).transpose()?;
-        if let Some(negative) = disturbance.iter().flatten().find(|&&d| d < 0.0) {
-            let message = format!("the disturbance is {negative} N m, must be >= 0");
-            return Err(Problem::new("range", message, "the largest absolute value of the torque"));
-        }
+        let disturbance = torques("the disturbance", self.disturbance, hint)?;
+        let hint = "one number, or one per link, in N m";
+        let link_disturbance = torques("the disturbance of the links", self.link_disturbance, hint)?;
         let hint = "one number, or one per joint of the links, then of the motors, in rad/s";
         let velocity_error = self
             .velocity_error
@@ -50,7 +55,7 @@ impl Question {
             let hint = "decay rate of the distance of two solutions; leave it out for the largest";
             return Err(Problem::new("range", message, hint));
         }
-        Ok(Self { region, disturbance, velocity_error, ..self })
+        Ok(Self { region, disturbance, link_disturbance, velocity_error, ..self })
     }
 }
 

@@ -11,6 +11,7 @@ pub mod engine;
 mod fitting;
 pub mod paper;
 pub mod question;
+pub mod robust;
 pub mod sampling;
 pub mod standing;
 pub mod subject;

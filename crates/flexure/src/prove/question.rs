@@ -7,7 +7,7 @@ use flexure_core::scalar::Interval;
 
 use crate::files::{Problem, Problems};
 use crate::progress::{Progress, unwatched};
-use crate::prove::along::{Along, along, start_level, uneven_metric};
+use crate::prove::along::{Along, along, start_level, suitable, uneven_metric};
 use crate::prove::asked_rate::at_rate;
 use crate::prove::confirmation::{Confirmation, confirm};
 use crate::prove::decay::Decay;
@@ -19,10 +19,11 @@ use crate::prove::engine::structural;
 use crate::prove::engine::verdict::Verdict;
 use crate::prove::engine::witness::RateWitness;
 use crate::prove::paper::paper_rate;
+use crate::prove::robust::{NoFunnel, Robust, robust};
 use crate::prove::sampling::{Sampled, sample};
 use crate::prove::subject::subject;
 use crate::prove::verified::certify;
-use crate::prove::within::{Open, Within, within};
+use crate::prove::within::{Open, Within, spread, within};
 use crate::scenario::{self, Scenario};
 use crate::{laws, robot};
 
@@ -46,6 +47,8 @@ pub struct Question {
     pub rate: Option<f64>,
     /// Largest unknown torque on each motor [N m].
     pub disturbance: Option<Vec<f64>>,
+    /// Largest unknown torque on each link [N m].
+    pub link_disturbance: Option<Vec<f64>>,
     /// Largest velocity errors [rad/s], links then motors, if a rate in a stretched metric is asked for.
     pub velocity_error: Option<Vec<f64>>,
     /// Whether the direct engine shall prove the rate once more, and how hard it may try.
@@ -101,7 +104,11 @@ pub struct Proof {
     pub start: Option<f64>,
     /// What holds of every robot within the tolerances of the robot file, if it has some, or why nothing was shown.
     pub within: Option<Result<Within, Open>>,
-    /// Bounds along the reference inside the tube, if a disturbance or tolerances were named.
+    /// Whether torques on the links were named.
+    pub link_disturbance: bool,
+    /// How far the motion can be from its reference, by a funnel, if disturbances or tolerances were named; or why there is none.
+    pub robust: Option<Result<Robust, NoFunnel>>,
+    /// Bounds along the reference inside the tube of W, if a disturbance of the motors or tolerances were named and there is no funnel.
     pub along: Option<Along>,
     /// Options that were not given, and numbers that no source vouches for.
     pub assumptions: Vec<String>,
@@ -288,9 +295,10 @@ pub fn prove(scenario: &Scenario, question: &Question) -> Result<Proof, Problems
     prove_watched(scenario, question, &unwatched)
 }
 
-/// Where the rates, all robots within tolerances and the direct proof end, about; bounds along the reference take the rest.
+/// Where the rates, all robots within tolerances, the funnel and the direct proof end, about; bounds along the reference take the rest.
 const RATES: f64 = 0.05;
 const WITHIN: f64 = 0.25;
+const ROBUST: f64 = 0.5;
 const DIRECT: f64 = 0.6;
 
 /// As [`prove`]; `progress` is told about what fraction is done. Once the rates are proved, what it breaks off has what was
@@ -330,15 +338,29 @@ pub fn prove_watched(
     let budget = slabs(scenario.robot.joint_count());
     let watched = &watched;
     let between = |from: f64, to: f64| move |fraction: f64| watched(from + (to - from) * fraction);
-    let (within, begun) = match verdict.proved().filter(|_| has_tolerances) {
+    let on_links = question.link_disturbance.is_some();
+    let (within, begun) = match verdict.proved().filter(|_| has_tolerances && !on_links) {
         None => (None, RATES),
         Some(certificate) => {
             let found = within(scenario, certificate, start, budget / SHARE, &between(RATES, WITHIN))?;
             (found, WITHIN)
         }
     };
+    let feels = question.disturbance.is_some() || on_links || has_tolerances;
+    let (robust, begun) = match verdict.proved().filter(|_| feels && !uneven && suitable(scenario).is_ok()) {
+        Some(_) if !is_broken_off() => {
+            let number = |torques: &Option<Vec<f64>>| {
+                torques.as_ref().map(|all| all.iter().map(|&d| Number::decimal(d)).collect::<Vec<_>>())
+            };
+            let [motors, links] = [&question.disturbance, &question.link_disturbance].map(number);
+            let spread = spread(&scenario.robot, motors.as_deref(), links.as_deref());
+            (robust(scenario, &spread, &between(begun, ROBUST))?, ROBUST)
+        }
+        _ => (None, begun),
+    };
     // Where the robot need not be that of the file, the level is that of all robots that it may be.
     let level = match &within {
+        _ if on_links || matches!(robust, Some(Ok(_))) => None,
         _ if !has_tolerances => verdict.proved().and_then(|certificate| level_of_the_run(certificate, start)),
         Some(Ok(within)) => Some(Number::above(within.level)),
         _ => None,
@@ -363,6 +385,8 @@ pub fn prove_watched(
         confirmation,
         start,
         within,
+        link_disturbance: on_links,
+        robust,
         along,
         paper_rate: paper_rate(&scenario.robot, gains, &problem, sampled.largest_inertia),
         verdict,

@@ -11,6 +11,7 @@ use crate::prove::engine::number::Number;
 use crate::prove::engine::verdict::Verdict;
 use crate::prove::engine::witness::WitnessState;
 use crate::prove::question::{Proof, inside};
+use crate::prove::robust::{NoFunnel, Robust};
 use crate::prove::sampling;
 use crate::prove::standing::Standing;
 use crate::prove::within::{Closer, Open, Within};
@@ -60,7 +61,9 @@ pub struct ProofSummary {
     pub start: Option<StartSummary>,
     /// What holds of every robot within the tolerances of the robot file; none if it has none.
     pub within: Option<WithinSummary>,
-    /// Bounds along the reference inside the tube; none without a disturbance or tolerances.
+    /// How far the motion can be from its reference, by a funnel; none without disturbances or tolerances.
+    pub funnel: Option<FunnelSummary>,
+    /// Bounds along the reference inside the tube of W; none without a disturbance or tolerances, or where there is a funnel.
     pub along: Option<Along>,
     /// What the direct engine says of the contraction rate; none if it was not asked.
     pub direct: Option<DirectSummary>,
@@ -162,6 +165,16 @@ pub struct WithinSummary {
     pub at: Option<String>,
     /// Smaller tolerances of which something was shown, where nothing was of those of the file.
     pub closer: Option<Closer>,
+}
+
+/// A funnel along the reference, or why there is none.
+#[derive(Clone, Debug, Serialize)]
+#[serde(tag = "verdict", rename_all = "lowercase")]
+pub enum FunnelSummary {
+    /// Errors stay in it.
+    Proved(Box<Robust>),
+    /// None was found.
+    Undecided(NoFunnel),
 }
 
 /// An error tube.
@@ -289,6 +302,9 @@ impl ProofSummary {
                 .zip(certificate)
                 .map(|(level, certificate)| StartSummary { level, inside: inside(certificate, level) }),
             within: proof.within.as_ref().map(within),
+            funnel: proof.robust.clone().map(|found| {
+                found.map_or_else(FunnelSummary::Undecided, |found| FunnelSummary::Proved(Box::new(found)))
+            }),
             along: proof.along.clone(),
             direct: proof.confirmation.as_ref().map(direct),
             tube: certificate.and_then(|c| c.tube.as_ref()).map(|tube| TubeSummary {

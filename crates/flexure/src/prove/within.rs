@@ -89,20 +89,27 @@ const NEAR: f64 = 0.9;
 /// Cutting goes on while it makes the tube this much narrower.
 const GAIN: f64 = 0.01;
 
-/// The tolerances of `robot`, and `disturbance` on its motors.
-fn spread(robot: &Robot, disturbance: Option<&[Number]>) -> Spread {
+/// The tolerances of `robot`, and unknown torques on its motors and links.
+pub(crate) fn spread(
+    robot: &Robot,
+    motor_torque: Option<&[Number]>,
+    link_torque: Option<&[Number]>,
+) -> Spread {
     let enclosed = |values: &[f64]| values.iter().map(|&x| robot.bounds(x)).collect();
+    let torque = |torques: Option<&[Number]>| {
+        torques.map_or_else(
+            || vec![Interval::ZERO; robot.joint_count()],
+            |torques| torques.iter().map(Number::bounds).collect(),
+        )
+    };
     let tolerances = &robot.tolerances;
     Spread {
         stiffness: enclosed(&tolerances.stiffness),
         motor_inertia: enclosed(&tolerances.motor_inertia),
         link_damping: enclosed(&tolerances.link_damping),
         motor_damping: enclosed(&tolerances.motor_damping),
-        motor_torque: disturbance.map_or_else(
-            || vec![Interval::ZERO; robot.joint_count()],
-            |torques| torques.iter().map(Number::bounds).collect(),
-        ),
-        link_torque: vec![Interval::ZERO; robot.joint_count()],
+        motor_torque: torque(motor_torque),
+        link_torque: torque(link_torque),
     }
 }
 
@@ -122,7 +129,7 @@ pub fn within(
     let disturbance = certificate.tube.as_ref().map(|tube| &*tube.disturbance);
     let search = Search {
         system: &*system,
-        spread: spread(&scenario.robot, disturbance),
+        spread: spread(&scenario.robot, disturbance, None),
         rates: rates(certificate),
         duration: scenario.bounds(scenario.duration).hi(),
         budget,

@@ -9,7 +9,7 @@ use crate::prove::along::{Along, Limit};
 use crate::prove::engine::certificate::{LoopSide, Norm, StructureName};
 use crate::prove::engine::verdict::Verdict;
 use crate::prove::standing::outside_of_proofs;
-use crate::prove::summary::{BlockSummary, ProofSummary, WithinSummary, WitnessSummary};
+use crate::prove::summary::{BlockSummary, FunnelSummary, ProofSummary, WithinSummary, WitnessSummary};
 use crate::robot::JointKind;
 use crate::units::{self, Unit};
 
@@ -182,8 +182,12 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
         ));
     }
     lines.extend(stretched(summary));
-    if let Some(within) = &summary.within {
+    let in_funnel = matches!(summary.funnel, Some(FunnelSummary::Proved(_)));
+    if let Some(within) = summary.within.as_ref().filter(|within| within.rate.is_some() || !in_funnel) {
         lines.extend(tolerated(within, &rad));
+    }
+    if let Some(found) = &summary.funnel {
+        lines.extend(funnel(found, summary));
     }
     if let Some(along) = &summary.along {
         lines.extend(bounds(along, summary));
@@ -240,6 +244,46 @@ fn tolerated(within: &WithinSummary, rad: &str) -> Vec<String> {
     ]
 }
 
+/// What holds in the funnel.
+fn funnel(found: &FunnelSummary, summary: &ProofSummary) -> Vec<String> {
+    let found = match found {
+        FunnelSummary::Proved(found) => found,
+        FunnelSummary::Undecided(none) => return vec![format!("funnel       none was found: {}", none.at)],
+    };
+    let [rad, speed, torque] = [units::ANGLE, units::SPEED, units::TORQUE].map(|unit| summary.unit(unit));
+    let (links, motors) = found.error.split_at(found.error.len() / 2);
+    let mut lines = vec![
+        format!(
+            "funnel       all along the run from its start, with every torque and every robot asked about: |q̃_l| ≤ {} {rad}, |q̃_m| ≤ {} {rad}",
+            list(links),
+            list(motors)
+        ),
+        format!(
+            "funnel       errors up to {} times those come back: V − 1 falls at {} 1/s or faster",
+            short(found.room, 3),
+            engineering(found.rate)
+        ),
+        format!(
+            "funnel       |q̇_l| {}, |q_m − q_l| {}",
+            bounded(&found.velocity.bound, &speed),
+            bounded(&found.deflection.bound, &rad)
+        ),
+        format!(
+            "funnel       |u_m| {}, {} {torque} on the reference with the numbers of the file",
+            bounded(&found.torque.bound, &torque),
+            list(&found.torque.nominal)
+        ),
+    ];
+    lines.extend(of_limits(&found.limits, summary));
+    lines
+}
+
+/// What is known of limits.
+fn of_limits(limits: &[Limit], summary: &ProofSummary) -> Vec<String> {
+    let undecided = limits.iter().filter(|limit| matches!(limit.verdict, Verdict::Undecided(_)));
+    limits.iter().filter_map(|bound| limit(bound, &summary.kinds)).chain(open(undecided)).collect()
+}
+
 /// What is bounded along the reference.
 fn bounds(along: &Along, summary: &ProofSummary) -> Vec<String> {
     let [rad, speed, torque] = [units::ANGLE, units::SPEED, units::TORQUE].map(|unit| summary.unit(unit));
@@ -256,9 +300,7 @@ fn bounds(along: &Along, summary: &ProofSummary) -> Vec<String> {
             list(&along.torque.nominal)
         ),
     ];
-    let undecided = along.limits.iter().filter(|limit| matches!(limit.verdict, Verdict::Undecided(_)));
-    lines.extend(along.limits.iter().filter_map(|bound| limit(bound, &summary.kinds)));
-    lines.extend(open(undecided));
+    lines.extend(of_limits(&along.limits, summary));
     lines
 }
 

@@ -1,0 +1,165 @@
+//! How far a scenario's motion can be from its reference, by a funnel: for every robot within the tolerances of its file, under any torque up to
+//! given ones on links and motors.
+//!
+//! The statement: of the law in continuous time with true states, from the scenario's start until its end, the errors are in the ellipsoids
+//! of the funnel, and so within the bounds here; see [`Funnel`].
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use flexure_core::scalar::Interval;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::files::Problems;
+use crate::files::number::{engineering, short};
+use crate::progress::Progress;
+use crate::prove::along::{Exceeding, Limit, Peaks, beyond, enclosed, limits, peaks, start_errors};
+use crate::prove::engine::envelope::Course;
+use crate::prove::engine::envelope::closed_loop::TrackingLoop;
+use crate::prove::engine::envelope::deviation::Spread;
+use crate::prove::engine::envelope::funnel::{Funnel, FunnelRequest, Open};
+use crate::prove::engine::envelope::slab::Slab;
+use crate::prove::engine::verdict::{Undecided, Verdict};
+use crate::scenario::Scenario;
+
+/// Bounds over the whole run, one per joint.
+#[derive(Clone, Debug, Serialize)]
+pub struct Robust {
+    /// |q̃_i| in rad, links then motors.
+    pub error: Vec<f64>,
+    /// |s_i| \[rad/s\], links then motors.
+    pub velocity_error: Vec<f64>,
+    /// Errors up to so many times those of the funnel come back into it: V − 1 decays for V = zᵀ X⁻¹ z > 1.
+    pub room: f64,
+    /// Rate of that, at the slowest time of the run \[1/s\].
+    pub rate: f64,
+    /// Link speeds |q̇_l| \[rad/s\].
+    pub velocity: Peaks,
+    /// Deflections of the springs |q_m − q_l| in rad.
+    pub deflection: Peaks,
+    /// Motor torques |u_m| \[N m\].
+    pub torque: Peaks,
+    /// Verdicts on the limits in the robot's file, joint by joint: proved that they are not reached, or undecided.
+    pub limits: Vec<Limit>,
+    /// Slabs of time that the funnel has.
+    pub slabs: usize,
+}
+
+/// Why there is no funnel.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NoFunnel {
+    /// In words with numbers.
+    pub at: String,
+}
+
+/// Length of a slab to begin with in s.
+const SLAB: f64 = 0.02;
+
+/// Fewest and most slabs.
+const FEWEST: usize = 64;
+const MOST: usize = 4000;
+
+/// Errors so much larger than the funnel's are to come back into it.
+const ROOM: f64 = 1.2;
+
+/// Part of the work that the funnel takes, about.
+const FUNNEL: f64 = 0.7;
+
+/// The bounds for `scenario` with what `spread` leaves open. None where `progress` breaks it off.
+///
+/// # Errors
+/// As [`along`](crate::prove::along::along).
+pub fn robust(
+    scenario: &Scenario,
+    spread: &Spread,
+    progress: Progress<'_>,
+) -> Result<Option<Result<Robust, NoFunnel>>, Problems> {
+    let system = enclosed(scenario)?;
+    Ok(bounds(scenario, &*system, spread, progress))
+}
+
+fn bounds(
+    scenario: &Scenario,
+    system: &dyn TrackingLoop,
+    spread: &Spread,
+    progress: Progress<'_>,
+) -> Option<Result<Robust, NoFunnel>> {
+    let duration = scenario.bounds(scenario.duration).hi();
+    let first = slabs(duration);
+    let request = |slabs: usize| FunnelRequest {
+        spread: spread.clone(),
+        duration,
+        start: start_errors(scenario, system).concat(),
+        slabs,
+        room: ROOM,
+    };
+    let mut found = Funnel::along(system, &request(first), &|fraction| progress(0.5 * FUNNEL * fraction))?;
+    if found.is_err() && 2 * first <= MOST {
+        found = Funnel::along(system, &request(2 * first), &|fraction| {
+            progress(0.5 * FUNNEL * (1.0 + fraction))
+        })?;
+    }
+    let funnel = match found {
+        Ok(funnel) => funnel,
+        Err(open) => return Some(Err(no_funnel(&open))),
+    };
+    let course = course(system, &funnel, &|fraction| progress(FUNNEL + (1.0 - FUNNEL) * fraction))?;
+    Some(Ok(Robust::new(scenario, system.joints(), &funnel, &course)))
+}
+
+/// Number of slabs to begin with for a run of `duration` s.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to small numbers")]
+fn slabs(duration: f64) -> usize {
+    (duration / SLAB).ceil().clamp(FEWEST as f64, MOST as f64) as usize
+}
+
+fn no_funnel(open: &Open) -> NoFunnel {
+    let largest = open.error.iter().copied().fold(0.0, f64::max);
+    let at = format!(
+        "at t = {} s link errors beyond {} rad were not shown to stay bounded",
+        short(open.time, 4),
+        engineering(largest)
+    );
+    NoFunnel { at }
+}
+
+/// What the robot may do in the funnel.
+fn course(system: &dyn TrackingLoop, funnel: &Funnel, progress: Progress<'_>) -> Option<Course> {
+    let (done, count) = (AtomicUsize::new(0), funnel.pieces.len());
+    let goes_on = || progress(done.load(Ordering::Relaxed) as f64 / count.max(1) as f64).is_continue();
+    let slab = |piece: &crate::prove::engine::envelope::funnel::Piece| {
+        let slab = Slab::of(system, Arc::new(piece.passage.clone()), piece.time, &goes_on);
+        done.fetch_add(1, Ordering::Relaxed);
+        slab
+    };
+    Some(Course { slabs: funnel.pieces.par_iter().map(slab).collect::<Option<_>>()?, spent: count })
+}
+
+impl Robust {
+    fn new(scenario: &Scenario, n: usize, funnel: &Funnel, course: &Course) -> Self {
+        let extents = funnel.extents();
+        let (error, velocity_error) = extents.split_at(2 * n);
+        let verdict = |k: usize, limit: f64| -> Verdict<f64, Exceeding> {
+            let (bound, time) = course.bound(k);
+            let exact: Interval = scenario.robot.bounds(limit);
+            if bound <= exact.lo() {
+                return Verdict::Proved(bound);
+            }
+            let at = beyond(bound, time, limit, course.seen(k).0);
+            Verdict::Undecided(Undecided { at, spent: course.spent })
+        };
+        let [velocity, deflection, torque] = peaks(course, n);
+        Self {
+            error: error.to_vec(),
+            velocity_error: velocity_error.to_vec(),
+            room: ROOM,
+            rate: funnel.rate(),
+            velocity,
+            deflection,
+            torque,
+            limits: limits(scenario, n, &verdict),
+            slabs: funnel.pieces.len(),
+        }
+    }
+}
