@@ -129,6 +129,34 @@ fn tubes_lie_inside_the_region() {
     assert_eq!(tube("500").code, Some(3));
 }
 
+/// Torques on links: a funnel whose bounds grow with them and which says which limits are kept; none for errors of radians, and then
+/// nothing is bounded.
+#[test]
+fn torques_on_links_give_a_funnel() {
+    let folder = Place::new();
+    let funnel = |torque: &str, json: &[&str]| {
+        let asked = ["certify", "two-link-hardware", "--set", "duration=5", "--link-disturbance", torque];
+        folder.run(&[&asked, json].concat())
+    };
+    let largest = |torque: &str| {
+        let found = funnel(torque, &["--json"]).done().json()["funnel"].clone();
+        assert_eq!(found["verdict"], "proved", "{found}");
+        let limits = found["limits"].as_array().unwrap();
+        assert!(
+            !limits.is_empty() && limits.iter().all(|limit| limit["verdict"]["proved"].is_number()),
+            "{limits:?}"
+        );
+        found["error"].as_array().unwrap()[0].as_f64().unwrap()
+    };
+    let (small, large) = (largest("0.01"), largest("0.03,0.01"));
+    assert!(small < large && large < 0.01, "{small} {large}");
+    let outcome = funnel("5", &[]);
+    assert_eq!(outcome.code, Some(3), "{outcome:?}");
+    assert!(outcome.stdout.contains("funnel       none was found"), "{outcome:?}");
+    let json = funnel("5", &["--json"]).json();
+    assert!(json["funnel"]["verdict"] == "undecided" && json["along"].is_null(), "{json}");
+}
+
 /// A rate of any two solutions while velocity errors keep to a bound, in the file, in the lines and in `--json`; and a link metric that
 /// hardens has none but that.
 #[test]
@@ -164,7 +192,7 @@ fn bad_options_are_told_apart() {
     folder.scenario("motor.toml", &[(motor, &hardening(motor))]);
     folder.scenario("phi.toml", &[("\"tanh\"", "\"tahn\"")]);
     folder.scenario("metric.toml", &[("[55.0, 30.0]", "[55.0, -30.0]")]);
-    let cases: [(&[&str], &str); 21] = [
+    let cases: [(&[&str], &str); 25] = [
         (&["two-link-tanh", "--error-box", "0"], "empty"),
         (&["two-link-tanh", "--error-box", "-1"], "empty"),
         (&["two-link-tanh", "--error-box", "nan"], "magnitude"),
@@ -178,6 +206,10 @@ fn bad_options_are_told_apart() {
         (&["two-link-tanh", "--rate", "-1"], "must be > 0"),
         (&["two-link-tanh", "--disturbance", "-1"], "must be >= 0"),
         (&["two-link-tanh", "--disturbance", "1,2,3"], "1 or 2 numbers"),
+        (&["two-link-tanh", "--link-disturbance", "-1"], "must be >= 0"),
+        (&["two-link-tanh", "--link-disturbance", "1,2,3"], "1 or 2 numbers"),
+        (&["two-link-tanh", "--link-disturbance", "nan"], "magnitude"),
+        (&["two-link-tanh", "--link-disturbance", "inf"], "magnitude"),
         (&["two-link-tanh", "--velocity-error", "-1"], "must be >= 0"),
         (&["two-link-tanh", "--velocity-error", "1,2,3"], "1 or 4 numbers"),
         (&["two-link-linear", "--velocity-error", "1"], "stretched"),

@@ -63,6 +63,9 @@ const MOST: usize = 4000;
 /// Errors so much larger than the funnel's are to come back into it.
 const ROOM: f64 = 1.2;
 
+/// Link errors from which on a number says nothing, in rad.
+const FAR: f64 = 1e3;
+
 /// Part of the work that the funnel takes, about.
 const FUNNEL: f64 = 0.7;
 
@@ -116,11 +119,15 @@ fn slabs(duration: f64) -> usize {
 
 fn no_funnel(open: &Open) -> NoFunnel {
     let largest = open.error.iter().copied().fold(0.0, f64::max);
-    let at = format!(
-        "at t = {} s link errors beyond {} rad were not shown to stay bounded",
-        short(open.time, 4),
-        engineering(largest)
-    );
+    let time = short(open.time, 4);
+    let at = if largest < FAR {
+        format!(
+            "at t = {time} s link errors beyond {} rad were not shown to stay bounded",
+            engineering(largest)
+        )
+    } else {
+        format!("at t = {time} s no bound of the errors was found")
+    };
     NoFunnel { at }
 }
 

@@ -1,7 +1,7 @@
 //! What is said of every robot within the tolerances of the robot file, against robots that are within them.
 
 mod differences;
-mod motions;
+pub mod motions;
 mod said;
 
 use std::fs;
@@ -17,10 +17,10 @@ use flexure::scenario::{Scenario, load_scenario};
 use crate::along::floats::Floats;
 use crate::common::Random;
 
-type Arm = Floats<PlanarTwoLink<f64>, 2>;
+pub type Arm = Floats<PlanarTwoLink<f64>, 2>;
 
-/// K, M_m, D_l, D_m of both joints, and an unknown torque on their motors.
-type Numbers = [Vector<f64, 2>; 5];
+/// K, M_m, D_l, D_m of both joints, and unknown torques on their motors and their links.
+pub type Numbers = [Vector<f64, 2>; 6];
 
 /// An arm with drives as such arms have them, and gains for 16 1/s.
 const SCENARIO: &str = r#"robot = "two-link-plausible"
@@ -101,10 +101,10 @@ fn displaced() -> Scenario {
 
 /// By how much the accelerations of links and motors differ from the model's where its numbers are off by `off`.
 fn difference(arm: &Arm, off: &Numbers, x: &Motion<f64, 2>, u_m: &Vector<f64, 2>) -> [Vector<f64, 2>; 2] {
-    let [stiffness, inertia, link_damping, motor_damping, torque] = off;
+    let [stiffness, inertia, link_damping, motor_damping, torque, on_link] = off;
     let zeta = x.deflection();
     let robot = &arm.robot;
-    let on_links = stiffness.diag_mul(&zeta) - link_damping.diag_mul(&x.v_l);
+    let on_links = stiffness.diag_mul(&zeta) - link_damping.diag_mul(&x.v_l) + *on_link;
     let a_l = robot.links.mass_matrix(&x.q_l).ldl().solve(&on_links);
     let a_m = Vector::from_fn(|i| {
         let mass = robot.motor_inertia[i];
@@ -118,10 +118,10 @@ fn difference(arm: &Arm, off: &Numbers, x: &Motion<f64, 2>, u_m: &Vector<f64, 2>
     [a_l, a_m]
 }
 
-/// Numbers that are off by as much as may be, or a random part of that, and a torque of at most `torque`.
-fn drawn(tolerances: &Tolerances, torque: [f64; 2], r: &mut Random) -> Numbers {
+/// Numbers that are off by as much as may be, or a random part of that, and a torque on the motors of at most `torque`.
+pub fn drawn(tolerances: &Tolerances, torque: [f64; 2], r: &mut Random) -> Numbers {
     let [k, m, d_l, d_m] = tolerances.named().map(|(_, values)| [values[0], values[1]]);
-    [k, m, d_l, d_m, torque].map(|most| {
+    [k, m, d_l, d_m, torque, [0.0; 2]].map(|most| {
         Vector(most.map(|most| if r.below(3) == 0 { most * r.next() } else { most.copysign(r.next()) }))
     })
 }

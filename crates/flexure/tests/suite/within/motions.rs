@@ -10,7 +10,7 @@ use crate::along::floats;
 use crate::common::Random;
 
 /// The rates of change of positions and velocities, links then motors, of an arm that is off by `off`.
-fn rates(arm: &Arm, off: &Numbers, t: f64, x: &Motion<f64, 2>) -> [Vector<f64, 2>; 4] {
+pub fn rates(arm: &Arm, off: &Numbers, t: f64, x: &Motion<f64, 2>) -> [Vector<f64, 2>; 4] {
     let command = arm.command(t, x);
     let zeta = x.deflection();
     let robot = &arm.robot;
@@ -25,7 +25,7 @@ fn rates(arm: &Arm, off: &Numbers, t: f64, x: &Motion<f64, 2>) -> [Vector<f64, 2
 }
 
 /// `x` a time `h` later at these rates.
-fn along(x: &Motion<f64, 2>, [v_l, v_m, a_l, a_m]: &[Vector<f64, 2>; 4], h: f64) -> Motion<f64, 2> {
+pub fn along(x: &Motion<f64, 2>, [v_l, v_m, a_l, a_m]: &[Vector<f64, 2>; 4], h: f64) -> Motion<f64, 2> {
     Motion {
         q_l: x.q_l + v_l.scaled(h),
         q_m: x.q_m + v_m.scaled(h),
@@ -76,19 +76,24 @@ fn moved(
     end: f64,
     mut each: impl FnMut(f64, &Motion<f64, 2>),
 ) {
-    let rate = |t: f64, x: &Motion<f64, 2>| rates(arm, off, t, x);
     let h = 1e-3;
     let mut t = 0.0;
     while t < end {
         each(t, &x);
-        let k1 = rate(t, &x);
-        let k2 = rate(t + 0.5 * h, &along(&x, &k1, 0.5 * h));
-        let k3 = rate(t + 0.5 * h, &along(&x, &k2, 0.5 * h));
-        let k4 = rate(t + h, &along(&x, &k3, h));
-        let mean = std::array::from_fn(|i| (k1[i] + (k2[i] + k3[i]).scaled(2.0) + k4[i]).scaled(1.0 / 6.0));
-        x = along(&x, &mean, h);
+        x = later(arm, off, t, &x, h);
         t += h;
     }
+}
+
+/// The arm a time `h` after `t`.
+pub fn later(arm: &Arm, off: &Numbers, t: f64, x: &Motion<f64, 2>, h: f64) -> Motion<f64, 2> {
+    let rate = |t: f64, x: &Motion<f64, 2>| rates(arm, off, t, x);
+    let k1 = rate(t, x);
+    let k2 = rate(t + 0.5 * h, &along(x, &k1, 0.5 * h));
+    let k3 = rate(t + 0.5 * h, &along(x, &k2, 0.5 * h));
+    let k4 = rate(t + h, &along(x, &k3, h));
+    let mean = std::array::from_fn(|i| (k1[i] + (k2[i] + k3[i]).scaled(2.0) + k4[i]).scaled(1.0 / 6.0));
+    along(x, &mean, h)
 }
 
 /// Robots within the tolerances under the law that knows the numbers of the file, from anywhere in the level set: errors come down

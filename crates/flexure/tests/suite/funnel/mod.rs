@@ -1,5 +1,7 @@
 //! Funnels of the arm with the gains of its hardware: how wide they are, and that the check of a slab can fail.
 
+mod motions;
+
 use flexure::core::scalar::{Interval, Scalar};
 use flexure::progress::unwatched;
 use flexure::prove::engine::envelope::deviation::Spread;
