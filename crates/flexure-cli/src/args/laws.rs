@@ -32,6 +32,9 @@ pub struct Certify {
     /// Largest unknown torque on each link in N m: bounds errors, speeds, deflections and torques by a funnel along the reference.
     #[arg(long, value_name = "D", value_delimiter = ',', allow_negative_numbers = true)]
     pub link_disturbance: Option<Vec<f64>>,
+    /// Multiply the disturbances until a limit of the robot may act: the largest funnel in which none does, and which one is in the way.
+    #[arg(long)]
+    pub up_to_limits: bool,
     /// Largest velocity errors in rad/s, links then motors: certifies the contraction rate, in a metric that grows with the error, of any two
     /// solutions of the virtual system while both keep to them and to the region. For phi = tanh, and for linear where the link metric hardens.
     #[arg(long, value_name = "S", value_delimiter = ',', allow_negative_numbers = true)]

@@ -104,7 +104,9 @@ fn question(options: &Certify, scenario: &Scenario) -> Result<Question, Problem>
     let disturbance = options.disturbance.clone();
     let link_disturbance = options.link_disturbance.clone();
     let velocity_error = options.velocity_error.clone();
-    Question { region, rate: options.rate, disturbance, link_disturbance, velocity_error, direct }
+    let up_to_limits = options.up_to_limits;
+    let rate = options.rate;
+    Question { region, rate, disturbance, link_disturbance, up_to_limits, velocity_error, direct }
         .fitting(scenario)
 }
 

@@ -157,6 +157,25 @@ fn torques_on_links_give_a_funnel() {
     assert!(json["funnel"]["verdict"] == "undecided" && json["along"].is_null(), "{json}");
 }
 
+/// The largest torques under which no limit acts do not depend on how they are named, and the limit that is in the way is named.
+#[test]
+fn torques_grow_up_to_limits() {
+    let folder = Place::new();
+    let largest = |torque: &str| {
+        let asked = ["certify", "two-link-hardware", "--set", "duration=2", "--up-to-limits", "--json"];
+        let found = folder.run(&[&asked[..], &["--link-disturbance", torque]].concat()).done().json();
+        let funnel = &found["funnel"];
+        let limits = funnel["limits"].as_array().unwrap();
+        assert!(limits.iter().all(|limit| limit["verdict"]["proved"].is_number()), "{limits:?}");
+        let [times, beyond] = [funnel, &funnel["binding"]].map(|of| of["times"].as_f64().unwrap());
+        assert!(times < beyond && beyond < 1.04 * times, "{funnel}");
+        assert!(!funnel["binding"]["at"].as_str().unwrap().is_empty(), "{funnel}");
+        times
+    };
+    let ratio = largest("0.01") / largest("0.08");
+    assert!((7.6..8.4).contains(&ratio), "{ratio}");
+}
+
 /// A rate of any two solutions while velocity errors keep to a bound, in the file, in the lines and in `--json`; and a link metric that
 /// hardens has none but that.
 #[test]
@@ -192,7 +211,7 @@ fn bad_options_are_told_apart() {
     folder.scenario("motor.toml", &[(motor, &hardening(motor))]);
     folder.scenario("phi.toml", &[("\"tanh\"", "\"tahn\"")]);
     folder.scenario("metric.toml", &[("[55.0, 30.0]", "[55.0, -30.0]")]);
-    let cases: [(&[&str], &str); 25] = [
+    let cases: [(&[&str], &str); 27] = [
         (&["two-link-tanh", "--error-box", "0"], "empty"),
         (&["two-link-tanh", "--error-box", "-1"], "empty"),
         (&["two-link-tanh", "--error-box", "nan"], "magnitude"),
@@ -210,6 +229,8 @@ fn bad_options_are_told_apart() {
         (&["two-link-tanh", "--link-disturbance", "1,2,3"], "1 or 2 numbers"),
         (&["two-link-tanh", "--link-disturbance", "nan"], "magnitude"),
         (&["two-link-tanh", "--link-disturbance", "inf"], "magnitude"),
+        (&["two-link-tanh", "--up-to-limits"], "not which torques"),
+        (&["two-link-tanh", "--up-to-limits", "--disturbance", "0"], "not which torques"),
         (&["two-link-tanh", "--velocity-error", "-1"], "must be >= 0"),
         (&["two-link-tanh", "--velocity-error", "1,2,3"], "1 or 4 numbers"),
         (&["two-link-linear", "--velocity-error", "1"], "stretched"),

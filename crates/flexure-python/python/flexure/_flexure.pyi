@@ -272,6 +272,7 @@ def certify(
     rate: float | None = None,
     disturbance: _Numbers | None = None,
     link_disturbance: _Numbers | None = None,
+    up_to_limits: bool = False,
     velocity_error: _Numbers | None = None,
     direct: bool = False,
     budget: int = 10_000,

@@ -41,6 +41,12 @@ impl Question {
         let disturbance = torques("the disturbance", self.disturbance, hint)?;
         let hint = "one number, or one per link, in N m";
         let link_disturbance = torques("the disturbance of the links", self.link_disturbance, hint)?;
+        let some = disturbance.iter().chain(&link_disturbance).flatten().any(|&d| d > 0.0);
+        if self.up_to_limits && !some {
+            let message = "the largest torques up to limits are asked for, and not which torques".to_owned();
+            let hint = "name some, on links or motors: those are multiplied until a limit may act";
+            return Err(Problem::new("range", message, hint));
+        }
         let hint = "one number, or one per joint of the links, then of the motors, in rad/s";
         let velocity_error = self
             .velocity_error

@@ -19,7 +19,7 @@ use crate::prove::engine::structural;
 use crate::prove::engine::verdict::Verdict;
 use crate::prove::engine::witness::RateWitness;
 use crate::prove::paper::paper_rate;
-use crate::prove::robust::{NoFunnel, Robust, robust};
+use crate::prove::robust::{NoFunnel, Robust, robust, up_to_limits};
 use crate::prove::sampling::{Sampled, sample};
 use crate::prove::subject::subject;
 use crate::prove::verified::certify;
@@ -49,6 +49,8 @@ pub struct Question {
     pub disturbance: Option<Vec<f64>>,
     /// Largest unknown torque on each link [N m].
     pub link_disturbance: Option<Vec<f64>>,
+    /// Whether these torques say only which ones, and the largest multiple is looked for under which no limit of the robot acts.
+    pub up_to_limits: bool,
     /// Largest velocity errors [rad/s], links then motors, if a rate in a stretched metric is asked for.
     pub velocity_error: Option<Vec<f64>>,
     /// Whether the direct engine shall prove the rate once more, and how hard it may try.
@@ -354,7 +356,8 @@ pub fn prove_watched(
             };
             let [motors, links] = [&question.disturbance, &question.link_disturbance].map(number);
             let spread = spread(&scenario.robot, motors.as_deref(), links.as_deref());
-            (robust(scenario, &spread, &between(begun, ROBUST))?, ROBUST)
+            let bounds = if question.up_to_limits { up_to_limits } else { robust };
+            (bounds(scenario, &spread, &between(begun, ROBUST))?, ROBUST)
         }
         _ => (None, begun),
     };

@@ -26,6 +26,10 @@ use crate::scenario::Scenario;
 /// Bounds over the whole run, one per joint.
 #[derive(Clone, Debug, Serialize)]
 pub struct Robust {
+    /// The torques are so many times those that were asked about.
+    pub times: f64,
+    /// What is in the way of larger ones, where the largest were looked for.
+    pub binding: Option<Binding>,
     /// |q̃_i| in rad, links then motors.
     pub error: Vec<f64>,
     /// |s_i| \[rad/s\], links then motors.
@@ -44,6 +48,19 @@ pub struct Robust {
     pub limits: Vec<Limit>,
     /// Slabs of time that the funnel has.
     pub slabs: usize,
+}
+
+/// What is in the way of a funnel in which no limit acts.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Binding {
+    /// Under so many times the torques that were asked about.
+    pub times: f64,
+    /// Index of the joint from 0 whose limit may act; none where there is no funnel.
+    pub joint: Option<usize>,
+    /// The key of its limit in robot files.
+    pub key: Option<&'static str>,
+    /// When, and how far, in words with numbers.
+    pub at: String,
 }
 
 /// Why there is no funnel.
@@ -66,6 +83,15 @@ const ROOM: f64 = 1.2;
 /// Link errors from which on a number says nothing, in rad.
 const FAR: f64 = 1e3;
 
+/// How often the torques are doubled or halved at most, to a funnel in which no limit acts and one in which one may.
+const DOUBLED: usize = 12;
+
+/// How often what lies between is halved then: to within 3 %.
+const HALVED: usize = 5;
+
+/// Funnels that are looked for, about, for the largest torques.
+const LOOKED_FOR: f64 = 9.0;
+
 /// Part of the work that the funnel takes, about.
 const FUNNEL: f64 = 0.7;
 
@@ -80,6 +106,65 @@ pub fn robust(
 ) -> Result<Option<Result<Robust, NoFunnel>>, Problems> {
     let system = enclosed(scenario)?;
     Ok(bounds(scenario, &*system, spread, progress))
+}
+
+/// The bounds under the largest torques under which no limit of the robot acts: torques of `spread` times a number, tolerances as they are.
+/// The robot's controller may then limit torques and speeds as its file says: what is bounded is the motion of that loop, too.
+/// None where `progress` breaks it off.
+///
+/// # Errors
+/// As [`robust`].
+pub fn up_to_limits(
+    scenario: &Scenario,
+    spread: &Spread,
+    progress: Progress<'_>,
+) -> Result<Option<Result<Robust, NoFunnel>>, Problems> {
+    let system = enclosed(scenario)?;
+    let mut done = 0.0;
+    let at = |times: f64| {
+        let spread = spread.with_torques_times(times);
+        let found =
+            bounds(scenario, &*system, &spread, &|part| progress(((done + part) / LOOKED_FOR).min(1.0)));
+        done += 1.0;
+        found.map(|found| found.map(|found| Robust { times, ..found }))
+    };
+    Ok(largest(at))
+}
+
+/// The largest number that `at` has a funnel for in which no limit acts; where there is none, what it says of the smallest that was tried.
+fn largest(mut at: impl FnMut(f64) -> Option<Result<Robust, NoFunnel>>) -> Option<Result<Robust, NoFunnel>> {
+    let [mut within, mut beyond] = [None, None];
+    let mut look = |times: f64, within: &mut Option<_>, beyond: &mut Option<_>| {
+        let found = at(times)?;
+        let place = if keeps_limits(&found) { within } else { beyond };
+        *place = Some((times, found));
+        Some(())
+    };
+    let mut times = 1.0;
+    for _ in 0..DOUBLED {
+        look(times, &mut within, &mut beyond)?;
+        times *= match (&within, &beyond) {
+            (Some(_), Some(_)) => break,
+            (Some(_), None) => 2.0,
+            _ => 0.5,
+        };
+    }
+    for _ in 0..HALVED {
+        let (Some((low, _)), Some((high, _))) = (&within, &beyond) else { break };
+        let between = 0.5 * (low + high);
+        look(between, &mut within, &mut beyond)?;
+    }
+    match (within, beyond) {
+        (Some((_, Ok(robust))), beyond) => {
+            Some(Ok(Robust { binding: beyond.map(|(times, found)| Binding::of(times, &found)), ..robust }))
+        }
+        (_, beyond) => beyond.map(|(_, found)| found),
+    }
+}
+
+/// Whether there is a funnel, and no limit acts in it.
+fn keeps_limits(found: &Result<Robust, NoFunnel>) -> bool {
+    found.as_ref().is_ok_and(|found| found.limits.iter().all(|limit| limit.verdict.proved().is_some()))
 }
 
 fn bounds(
@@ -143,6 +228,24 @@ fn course(system: &dyn TrackingLoop, funnel: &Funnel, progress: Progress<'_>) ->
     Some(Course { slabs: funnel.pieces.par_iter().map(slab).collect::<Option<_>>()?, spent: count })
 }
 
+impl Binding {
+    /// What `found` lacks, under so many times the torques.
+    fn of(times: f64, found: &Result<Robust, NoFunnel>) -> Self {
+        let limits = found.as_ref().map_or(&[][..], |found| &found.limits);
+        let open = limits.iter().find_map(|limit| match &limit.verdict {
+            Verdict::Undecided(Undecided { at, .. }) => Some((limit, at)),
+            _ => None,
+        });
+        match (open, found) {
+            (Some((limit, at)), _) => {
+                Self { times, joint: Some(limit.joint), key: Some(limit.key), at: at.clone() }
+            }
+            (None, Err(none)) => Self { times, joint: None, key: None, at: none.at.clone() },
+            (None, Ok(_)) => Self { times, joint: None, key: None, at: String::new() },
+        }
+    }
+}
+
 impl Robust {
     fn new(scenario: &Scenario, n: usize, funnel: &Funnel, course: &Course) -> Self {
         let extents = funnel.extents();
@@ -158,6 +261,8 @@ impl Robust {
         };
         let [velocity, deflection, torque] = peaks(course, n);
         Self {
+            times: 1.0,
+            binding: None,
             error: error.to_vec(),
             velocity_error: velocity_error.to_vec(),
             room: ROOM,

@@ -8,6 +8,7 @@ use crate::files::number::{NONE, engineering, short, significant};
 use crate::prove::along::{Along, Limit};
 use crate::prove::engine::certificate::{LoopSide, Norm, StructureName};
 use crate::prove::engine::verdict::Verdict;
+use crate::prove::robust::Binding;
 use crate::prove::standing::outside_of_proofs;
 use crate::prove::summary::{BlockSummary, FunnelSummary, ProofSummary, WithinSummary, WitnessSummary};
 use crate::robot::JointKind;
@@ -254,7 +255,8 @@ fn funnel(found: &FunnelSummary, summary: &ProofSummary) -> Vec<String> {
     let (links, motors) = found.error.split_at(found.error.len() / 2);
     let mut lines = vec![
         format!(
-            "funnel       all along the run from its start, with every torque and every robot asked about: |q̃_l| ≤ {} {rad}, |q̃_m| ≤ {} {rad}",
+            "funnel       all along the run from its start, with {} and every robot asked about: |q̃_l| ≤ {} {rad}, |q̃_m| ≤ {} {rad}",
+            torques(found.times),
             list(links),
             list(motors)
         ),
@@ -275,7 +277,31 @@ fn funnel(found: &FunnelSummary, summary: &ProofSummary) -> Vec<String> {
         ),
     ];
     lines.extend(of_limits(&found.limits, summary));
+    lines.extend(found.binding.as_ref().map(binding));
+    if found.binding.is_none() && found.times > 1.0 {
+        lines.push("funnel       larger torques were not tried: no limit was in the way".to_owned());
+    }
     lines
+}
+
+/// Under which torques a funnel is; the number is exact.
+fn torques(times: f64) -> String {
+    if times.total_cmp(&1.0).is_eq() {
+        "every torque".to_owned()
+    } else {
+        format!("every torque up to {times} times those")
+    }
+}
+
+/// What is in the way of larger torques.
+fn binding(binding: &Binding) -> String {
+    let Binding { times, joint, key, at } = binding;
+    match (joint, key) {
+        (Some(joint), Some(key)) => {
+            format!("funnel       under {times} times those torques {key} of joint {}: {at}", joint + 1)
+        }
+        _ => format!("funnel       under {times} times those torques none was found: {at}"),
+    }
 }
 
 /// What is known of limits.

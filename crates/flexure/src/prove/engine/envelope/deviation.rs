@@ -69,6 +69,16 @@ impl Spread {
         }
     }
 
+    /// All torques times `factor`, the tolerances as they are.
+    pub fn with_torques_times(&self, factor: f64) -> Self {
+        let times = |values: &[Interval]| values.iter().map(|&x| x * Interval::point(factor)).collect();
+        Self {
+            motor_torque: times(&self.motor_torque),
+            link_torque: times(&self.link_torque),
+            ..self.clone()
+        }
+    }
+
     /// Every tolerance that is not 0, with its key in robot files and its joint, from 0, and nothing beside it.
     pub fn one_by_one(&self) -> Vec<(&'static str, usize, Self)> {
         let zero = || vec![Interval::ZERO; self.motor_torque.len()];
