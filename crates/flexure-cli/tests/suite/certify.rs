@@ -174,6 +174,9 @@ fn torques_grow_up_to_limits() {
     };
     let ratio = largest("0.01") / largest("0.08");
     assert!((7.6..8.4).contains(&ratio), "{ratio}");
+    // Of errors of half a radian at the start there is no funnel, however small the torques are.
+    let outcome = folder.run(&["certify", "two-link-tanh", "--up-to-limits", "--disturbance", "0.1"]);
+    assert_eq!(outcome.code, Some(3), "{outcome:?}");
 }
 
 /// A rate of any two solutions while velocity errors keep to a bound, in the file, in the lines and in `--json`; and a link metric that
@@ -211,7 +214,8 @@ fn bad_options_are_told_apart() {
     folder.scenario("motor.toml", &[(motor, &hardening(motor))]);
     folder.scenario("phi.toml", &[("\"tanh\"", "\"tahn\"")]);
     folder.scenario("metric.toml", &[("[55.0, 30.0]", "[55.0, -30.0]")]);
-    let cases: [(&[&str], &str); 27] = [
+    folder.jumping("jumping.toml");
+    let cases: [(&[&str], &str); 30] = [
         (&["two-link-tanh", "--error-box", "0"], "empty"),
         (&["two-link-tanh", "--error-box", "-1"], "empty"),
         (&["two-link-tanh", "--error-box", "nan"], "magnitude"),
@@ -230,6 +234,10 @@ fn bad_options_are_told_apart() {
         (&["two-link-tanh", "--link-disturbance", "nan"], "magnitude"),
         (&["two-link-tanh", "--link-disturbance", "inf"], "magnitude"),
         (&["two-link-tanh", "--up-to-limits"], "not which torques"),
+        // What has no funnel at all is refused: nothing would be decided.
+        (&["hardening.toml", "--velocity-error", "5", "--link-disturbance", "0.1"], "constant metric"),
+        (&["jumping.toml", "--link-disturbance", "0.1"], "third derivative"),
+        (&["jumping.toml", "--up-to-limits", "--disturbance", "0.1"], "third derivative"),
         (&["two-link-tanh", "--up-to-limits", "--disturbance", "0"], "not which torques"),
         (&["two-link-tanh", "--velocity-error", "-1"], "must be >= 0"),
         (&["two-link-tanh", "--velocity-error", "1,2,3"], "1 or 4 numbers"),

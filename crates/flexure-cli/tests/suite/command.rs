@@ -119,6 +119,13 @@ impl Place {
         self.write(name, altered(SCENARIO, changes))
     }
 
+    /// The scenario with a reference whose third derivative jumps.
+    pub fn jumping(&self, name: &str) -> &Self {
+        let quintic = "[reference]\nkind = \"quintic\"\nfrom = [0.0, 0.0]\nto = [0.5, 0.5]\nstart = 0.0\nduration = 1.0\n";
+        let (from, to) = (SCENARIO.find("[reference]").unwrap(), SCENARIO.find("[controller]").unwrap());
+        self.write(name, format!("{}{quintic}{}", &SCENARIO[..from], &SCENARIO[to..]))
+    }
+
     pub fn read(&self, name: &str) -> String {
         fs::read_to_string(self.path().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
     }

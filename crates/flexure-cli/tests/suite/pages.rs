@@ -133,12 +133,7 @@ fn a_page_of_a_run_has_a_place_of_its_own() {
 #[test]
 fn what_has_no_picture_has_a_page_that_says_why() {
     let place = Place::new();
-    // The third derivative of a quintic jumps.
-    let quintic =
-        "[reference]\nkind = \"quintic\"\nfrom = [0.0, 0.0]\nto = [0.5, 0.5]\nstart = 0.0\nduration = 1.0\n";
-    let scenario = crate::command::SCENARIO;
-    let (from, to) = (scenario.find("[reference]").unwrap(), scenario.find("[controller]").unwrap());
-    place.write("quintic.toml", format!("{}{quintic}{}", &scenario[..from], &scenario[to..]));
+    place.jumping("quintic.toml");
     let outcome = place.run(&["certify", "quintic.toml", "--out", "c.json", "--page", "pages"]);
     assert_eq!(place.names("pages"), ["quintic.certify.html"], "{outcome:?}");
     assert!(

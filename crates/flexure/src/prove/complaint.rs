@@ -110,13 +110,14 @@ impl Proof {
         Some((scenario.robot.places.problem(&place, "undecided", message, help), false))
     }
 
-    /// What to say where torques on the links were named and no funnel was found.
+    /// What to say where a funnel was asked for and none was found.
     fn no_funnel(&self, scenario: &Scenario) -> Option<(Problem, bool)> {
-        let Some(Err(open)) = self.robust.as_ref().filter(|_| self.link_disturbance) else { return None };
-        let message =
-            format!("{}: under the disturbance of the links nothing is decided: {}", scenario.name, open.at);
-        let help =
-            format!("the certificate is about links without disturbance; name a smaller one, or {ASK_LESS}");
+        let Some(Err(open)) = self.robust.as_ref().filter(|_| self.needs_funnel) else { return None };
+        let message = format!(
+            "{}: nothing is decided of errors under the torques asked about: {}",
+            scenario.name, open.at
+        );
+        let help = format!("the rates hold without torques on the links; name smaller ones, or {ASK_LESS}");
         Some((scenario.places.problem("controller", "undecided", message, help), false))
     }
 

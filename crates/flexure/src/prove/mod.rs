@@ -2,6 +2,7 @@
 
 pub mod along;
 mod asked_rate;
+mod assumptions;
 mod closed_loop;
 mod complaint;
 pub mod confirmation;

@@ -9,6 +9,7 @@ use crate::files::{Problem, Problems};
 use crate::progress::{Progress, unwatched};
 use crate::prove::along::{Along, along, start_level, suitable, uneven_metric};
 use crate::prove::asked_rate::at_rate;
+use crate::prove::assumptions::beyond_the_model;
 use crate::prove::confirmation::{Confirmation, confirm};
 use crate::prove::decay::Decay;
 use crate::prove::decimals::{gains, robot};
@@ -24,7 +25,7 @@ use crate::prove::sampling::{Sampled, sample};
 use crate::prove::subject::subject;
 use crate::prove::verified::certify;
 use crate::prove::within::{Open, Within, spread, within};
-use crate::scenario::{self, Scenario};
+use crate::scenario::Scenario;
 use crate::{laws, robot};
 
 /// What to prove of a scenario.
@@ -106,8 +107,8 @@ pub struct Proof {
     pub start: Option<f64>,
     /// What holds of every robot within the tolerances of the robot file, if it has some, or why nothing was shown.
     pub within: Option<Result<Within, Open>>,
-    /// Whether torques on the links were named.
-    pub link_disturbance: bool,
+    /// Whether it asks for what only a funnel can say.
+    pub needs_funnel: bool,
     /// How far the motion can be from its reference, by a funnel, if disturbances or tolerances were named; or why there is none.
     pub robust: Option<Result<Robust, NoFunnel>>,
     /// Bounds along the reference inside the tube of W, if a disturbance of the motors or tolerances were named and there is no funnel.
@@ -199,65 +200,6 @@ fn unstretched(scenario: &Scenario, phi: CertifiedPhi) -> Problem {
     scenario.places.problem("controller.phi", "unsupported", message, help)
 }
 
-/// What the scenario has and a certificate does not speak of.
-fn beyond_the_model(scenario: &Scenario) -> Vec<String> {
-    let mut notes = Vec::new();
-    if scenario.hold == scenario::Hold::ZeroOrder {
-        let period = scenario.control_period;
-        notes.push(format!("continuous time: the torque of this scenario is held for {period} s"));
-    }
-    for option in scenario.plant.options() {
-        notes.push(format!("the model of the law: plant.{option} of this scenario is left out"));
-    }
-    for imperfection in &scenario.imperfections {
-        notes.push(format!("the ideal loop: {} of this scenario is left out", imperfection.kind()));
-    }
-    if scenario.estimator.is_some() {
-        notes.push("true states: the estimator of this scenario is left out".to_owned());
-    }
-    if scenario.guard.is_some() {
-        notes.push(
-            "the torque of the law: while the guard of this scenario limits or stops, nothing is said"
-                .to_owned(),
-        );
-    }
-    let robot = &scenario.robot;
-    notes.extend(tolerances(robot));
-    for (i, joint) in robot.joints.iter().enumerate() {
-        let (lower, upper) = (robot.limits.lower[i], robot.limits.upper[i]);
-        if joint.kind == robot::JointKind::Prismatic && lower.is_finite() && upper.is_finite() {
-            notes
-                .push(format!("{} slides between {lower} and {upper} m: nothing is said beyond", joint.name));
-        }
-    }
-    notes
-}
-
-/// What is to be said of a robot with tolerances.
-fn tolerances(robot: &robot::Robot) -> Vec<String> {
-    if robot.tolerances.are_none() {
-        return Vec::new();
-    }
-    let mut notes = vec![
-        "rates, region, structures and tube are those of the numbers of the robot file: its tolerances are no part of the \
-         certificate"
-            .to_owned(),
-    ];
-    for (key, values) in robot.tolerances.named() {
-        let without = robot.joints.iter().zip(values).filter(|(_, tolerance)| **tolerance == 0.0);
-        let without: Vec<&str> = without.map(|(joint, _)| &*joint.name).collect();
-        if !without.is_empty() {
-            let joints =
-                if without.len() == values.len() { "all joints".to_owned() } else { without.join(", ") };
-            notes.push(format!("{key} of {joints} is taken as it stands: it has no tolerance"));
-        }
-    }
-    notes.push(
-        "the links' masses, lengths and inertias are taken as they stand: they have no tolerances".to_owned(),
-    );
-    notes
-}
-
 /// Whether a sliding joint starts outside its travel.
 fn outside_travel(scenario: &Scenario) -> bool {
     let robot = &scenario.robot;
@@ -323,6 +265,10 @@ pub fn prove_watched(
     let started = Clock::now();
     let start = start_level(scenario).ok().filter(|_| !outside_travel(scenario));
     let problem = problem(scenario, question, start)?;
+    let needs_funnel = question.link_disturbance.is_some() || question.up_to_limits;
+    if needs_funnel {
+        suitable(scenario)?;
+    }
     if watched(0.0).is_break() {
         return Err(Problems::interrupted());
     }
@@ -340,16 +286,15 @@ pub fn prove_watched(
     let budget = slabs(scenario.robot.joint_count());
     let watched = &watched;
     let between = |from: f64, to: f64| move |fraction: f64| watched(from + (to - from) * fraction);
-    let on_links = question.link_disturbance.is_some();
-    let (within, begun) = match verdict.proved().filter(|_| has_tolerances && !on_links) {
+    let (within, begun) = match verdict.proved().filter(|_| has_tolerances && !needs_funnel) {
         None => (None, RATES),
         Some(certificate) => {
             let found = within(scenario, certificate, start, budget / SHARE, &between(RATES, WITHIN))?;
             (found, WITHIN)
         }
     };
-    let feels = question.disturbance.is_some() || on_links || has_tolerances;
-    let (robust, begun) = match verdict.proved().filter(|_| feels && !uneven && suitable(scenario).is_ok()) {
+    let feels = question.disturbance.is_some() || needs_funnel || has_tolerances;
+    let (robust, begun) = match verdict.proved().filter(|_| feels && suitable(scenario).is_ok()) {
         Some(_) if !is_broken_off() => {
             let number = |torques: &Option<Vec<f64>>| {
                 torques.as_ref().map(|all| all.iter().map(|&d| Number::decimal(d)).collect::<Vec<_>>())
@@ -363,7 +308,7 @@ pub fn prove_watched(
     };
     // Where the robot need not be that of the file, the level is that of all robots that it may be.
     let level = match &within {
-        _ if on_links || matches!(robust, Some(Ok(_))) => None,
+        _ if needs_funnel || matches!(robust, Some(Ok(_))) => None,
         _ if !has_tolerances => verdict.proved().and_then(|certificate| level_of_the_run(certificate, start)),
         Some(Ok(within)) => Some(Number::above(within.level)),
         _ => None,
@@ -388,7 +333,7 @@ pub fn prove_watched(
         confirmation,
         start,
         within,
-        link_disturbance: on_links,
+        needs_funnel,
         robust,
         along,
         paper_rate: paper_rate(&scenario.robot, gains, &problem, sampled.largest_inertia),

@@ -18,7 +18,7 @@ use crate::prove::along::{Exceeding, Limit, Peaks, beyond, enclosed, limits, pea
 use crate::prove::engine::envelope::Course;
 use crate::prove::engine::envelope::closed_loop::TrackingLoop;
 use crate::prove::engine::envelope::deviation::Spread;
-use crate::prove::engine::envelope::funnel::{Funnel, FunnelRequest, Open};
+use crate::prove::engine::envelope::funnel::{Funnel, FunnelRequest, Open, Piece};
 use crate::prove::engine::envelope::slab::Slab;
 use crate::prove::engine::verdict::{Undecided, Verdict};
 use crate::scenario::Scenario;
@@ -109,7 +109,8 @@ pub fn robust(
 }
 
 /// The bounds under the largest torques under which no limit of the robot acts: torques of `spread` times a number, tolerances as they are.
-/// The robot's controller may then limit torques and speeds as its file says: what is bounded is the motion of that loop, too.
+/// A limiter at exactly those limits then never acts: what is bounded is the motion of the loop with it, too. One with smaller limits of its
+/// own, or of the rate of torques, is not looked at.
 /// None where `progress` breaks it off.
 ///
 /// # Errors
@@ -220,7 +221,7 @@ fn no_funnel(open: &Open) -> NoFunnel {
 fn course(system: &dyn TrackingLoop, funnel: &Funnel, progress: Progress<'_>) -> Option<Course> {
     let (done, count) = (AtomicUsize::new(0), funnel.pieces.len());
     let goes_on = || progress(done.load(Ordering::Relaxed) as f64 / count.max(1) as f64).is_continue();
-    let slab = |piece: &crate::prove::engine::envelope::funnel::Piece| {
+    let slab = |piece: &Piece| {
         let slab = Slab::of(system, Arc::new(piece.passage.clone()), piece.time, &goes_on);
         done.fetch_add(1, Ordering::Relaxed);
         slab
@@ -231,18 +232,17 @@ fn course(system: &dyn TrackingLoop, funnel: &Funnel, progress: Progress<'_>) ->
 impl Binding {
     /// What `found` lacks, under so many times the torques.
     fn of(times: f64, found: &Result<Robust, NoFunnel>) -> Self {
-        let limits = found.as_ref().map_or(&[][..], |found| &found.limits);
-        let open = limits.iter().find_map(|limit| match &limit.verdict {
-            Verdict::Undecided(Undecided { at, .. }) => Some((limit, at)),
-            _ => None,
-        });
-        match (open, found) {
-            (Some((limit, at)), _) => {
-                Self { times, joint: Some(limit.joint), key: Some(limit.key), at: at.clone() }
+        let of = |limit: &Limit| match &limit.verdict {
+            Verdict::Undecided(Undecided { at, .. }) => {
+                Some((Some(limit.joint), Some(limit.key), at.clone()))
             }
-            (None, Err(none)) => Self { times, joint: None, key: None, at: none.at.clone() },
-            (None, Ok(_)) => Self { times, joint: None, key: None, at: String::new() },
-        }
+            _ => None,
+        };
+        let (joint, key, at) = match found {
+            Err(none) => (None, None, none.at.clone()),
+            Ok(found) => found.limits.iter().find_map(of).unwrap_or_default(),
+        };
+        Self { times, joint, key, at }
     }
 }
 

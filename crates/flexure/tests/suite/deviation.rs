@@ -1,10 +1,10 @@
 //! From what differences of the numbers do to W to a rate and a level: against closed forms, and instant by instant.
 
 use flexure::core::scalar::Interval;
-use flexure::prove::engine::envelope::deviation::{Bound, Deviation, Spread};
+use flexure::prove::engine::envelope::deviation::{Bound, Deviation};
 
 use crate::along::slabs::enclosed;
-use crate::within::{IDENTIFIED, proof, scenario, tolerant};
+use crate::within::{IDENTIFIED, proof, scenario, spread, tolerant};
 
 /// Without slopes A = β, and ν = |η| / β at λ = β/2; a slope from one block to another leaves μ = β − γ/2, one on its own block β − γ.
 #[test]
@@ -37,16 +37,7 @@ fn the_whole_is_the_worst_of_its_instants() {
     // They come in the order of the errors.
     let rates: Vec<_> =
         certificate.blocks.iter().map(|block| Interval::point(block.convergence.bounds().lo())).collect();
-    let points = |values: &[f64]| values.iter().map(|&x| Interval::point(x)).collect::<Vec<_>>();
-    let tolerances = &scenario.robot.tolerances;
-    let spread = Spread {
-        stiffness: points(&tolerances.stiffness),
-        motor_inertia: points(&tolerances.motor_inertia),
-        link_damping: points(&tolerances.link_damping),
-        motor_damping: points(&tolerances.motor_damping),
-        motor_torque: points(&[0.0; 2]),
-        link_torque: points(&[0.0; 2]),
-    };
+    let spread = spread(&scenario.robot.tolerances, [[0.0; 2]; 2]);
     let at = |k: u32| {
         let time = Interval::point(scenario.duration * f64::from(k) / 128.0);
         let deviation =

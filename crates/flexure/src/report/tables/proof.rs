@@ -255,8 +255,8 @@ fn funnel(found: &FunnelSummary, summary: &ProofSummary) -> Vec<String> {
     let (links, motors) = found.error.split_at(found.error.len() / 2);
     let mut lines = vec![
         format!(
-            "funnel       all along the run from its start, with {} and every robot asked about: |q̃_l| ≤ {} {rad}, |q̃_m| ≤ {} {rad}",
-            torques(found.times),
+            "funnel       in the ideal loop, all along the run from its start, {}: |q̃_l| ≤ {} {rad}, |q̃_m| ≤ {} {rad}",
+            under(found.times),
             list(links),
             list(motors)
         ),
@@ -284,13 +284,11 @@ fn funnel(found: &FunnelSummary, summary: &ProofSummary) -> Vec<String> {
     lines
 }
 
-/// Under which torques a funnel is; the number is exact.
-fn torques(times: f64) -> String {
-    if times.total_cmp(&1.0).is_eq() {
-        "every torque".to_owned()
-    } else {
-        format!("every torque up to {times} times those")
-    }
+/// Under which torques, and of which robots, a funnel is; the number is exact.
+fn under(times: f64) -> String {
+    let torques =
+        if times.total_cmp(&1.0).is_eq() { String::new() } else { format!(" up to {times} times those") };
+    format!("under every torque{torques} and for every robot asked about, with the links of the file")
 }
 
 /// What is in the way of larger torques.
@@ -336,7 +334,9 @@ fn limit(limit: &Limit, kinds: &[JointKind]) -> Option<String> {
     let (joint, key, unit) =
         (limit.joint + 1, limit.key, Unit::of_key(limit.key).unwrap_or(units::NONE).of(kind).plain);
     let verdict = match &limit.verdict {
-        Verdict::Proved(bound) => format!("never reached, at most {} {unit}", short(*bound, 3)),
+        Verdict::Proved(bound) => {
+            format!("never reached in the ideal loop, at most {} {unit}", short(*bound, 3))
+        }
         Verdict::Refuted(state) => {
             format!("exceeded: {} {unit} at t = {} s", short(state.value, 3), short(state.t, 4))
         }

@@ -5,7 +5,6 @@ use flexure::core::model::Motion;
 use flexure::core::scalar::{Interval, Scalar as _};
 use flexure::linalg::Dense;
 use flexure::progress::unwatched;
-use flexure::prove::engine::envelope::deviation::Spread;
 use flexure::prove::engine::envelope::funnel::{Funnel, FunnelRequest};
 use flexure::scenario::{Scenario, load_scenario};
 
@@ -13,7 +12,7 @@ use crate::along::floats;
 use crate::along::slabs::enclosed;
 use crate::common::Random;
 use crate::within::motions::{along, later, rates};
-use crate::within::{Arm, Numbers, drawn, tolerant};
+use crate::within::{Arm, Numbers, drawn, spread, tolerant};
 
 /// Parts of K, M_m, D_l and D_m that robots are off by, and torques on links and motors [N m].
 const PARTS: [f64; 4] = [0.01, 0.01, 0.03, 0.03];
@@ -29,16 +28,7 @@ const SLABS: usize = 300;
 
 fn arm() -> (Scenario, Arm, Funnel) {
     let scenario = tolerant(load_scenario("two-link-hardware").expect("built in"), PARTS);
-    let point = |values: &[f64]| values.iter().map(|&x| Interval::point(x)).collect::<Vec<_>>();
-    let tolerances = &scenario.robot.tolerances;
-    let spread = Spread {
-        stiffness: point(&tolerances.stiffness),
-        motor_inertia: point(&tolerances.motor_inertia),
-        link_damping: point(&tolerances.link_damping),
-        motor_damping: point(&tolerances.motor_damping),
-        motor_torque: point(&ON_MOTORS),
-        link_torque: point(&ON_LINKS),
-    };
+    let spread = spread(&scenario.robot.tolerances, [ON_MOTORS, ON_LINKS]);
     let start = vec![Interval::ZERO; 8];
     let request = FunnelRequest { spread, duration: DURATION, start, slabs: SLABS, room: 1.0 };
     let found = Funnel::along(&enclosed(&scenario), &request, &unwatched).expect("nobody breaks it off");

@@ -3,9 +3,9 @@
 use flexure::core::linalg::Vector;
 use flexure::core::model::{Links as _, Motion};
 use flexure::core::scalar::Interval;
-use flexure::prove::engine::envelope::deviation::{Deviation, Spread};
+use flexure::prove::engine::envelope::deviation::Deviation;
 
-use super::{Arm, UNKNOWN, difference, drawn, scenario, tolerant};
+use super::{Arm, UNKNOWN, difference, drawn, scenario, spread, tolerant};
 use crate::along::floats;
 use crate::along::slabs::enclosed;
 use crate::common::Random;
@@ -46,15 +46,7 @@ fn what_differences_add_is_bounded_and_tight() {
         let scenario = tolerant(scenario(), parts);
         let (arm, system) = (floats::arm(&scenario), enclosed(&scenario));
         let tolerances = &scenario.robot.tolerances;
-        let points = |values: &[f64]| values.iter().map(|&x| Interval::point(x)).collect::<Vec<_>>();
-        let spread = Spread {
-            stiffness: points(&tolerances.stiffness),
-            motor_inertia: points(&tolerances.motor_inertia),
-            link_damping: points(&tolerances.link_damping),
-            motor_damping: points(&tolerances.motor_damping),
-            motor_torque: points(&torque),
-            link_torque: points(&[0.0; 2]),
-        };
+        let spread = spread(tolerances, [torque, [0.0; 2]]);
         for (level, start) in [(1e-9, 4.5), (1e-4, 0.0)] {
             // Of errors in all blocks, and in one alone.
             let mut tightest = [0.0_f64; 4];

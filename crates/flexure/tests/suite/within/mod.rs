@@ -9,6 +9,8 @@ use std::fs;
 use flexure::core::linalg::Vector;
 use flexure::core::model::{Links as _, Motion};
 use flexure::core::robots::PlanarTwoLink;
+use flexure::core::scalar::Interval;
+use flexure::prove::engine::envelope::deviation::Spread;
 use flexure::prove::question::{Proof, Question, prove};
 use flexure::prove::within::Within;
 use flexure::robot::Tolerances;
@@ -116,6 +118,19 @@ fn difference(arm: &Arm, off: &Numbers, x: &Motion<f64, 2>, u_m: &Vector<f64, 2>
         real / (mass + inertia[i]) - known / mass
     });
     [a_l, a_m]
+}
+
+/// What `tolerances` and unknown torques on motors and links leave open.
+pub fn spread(tolerances: &Tolerances, [on_motors, on_links]: [[f64; 2]; 2]) -> Spread {
+    let points = |values: &[f64]| values.iter().map(|&x| Interval::point(x)).collect();
+    Spread {
+        stiffness: points(&tolerances.stiffness),
+        motor_inertia: points(&tolerances.motor_inertia),
+        link_damping: points(&tolerances.link_damping),
+        motor_damping: points(&tolerances.motor_damping),
+        motor_torque: points(&on_motors),
+        link_torque: points(&on_links),
+    }
 }
 
 /// Numbers that are off by as much as may be, or a random part of that, and a torque on the motors of at most `torque`.
