@@ -117,7 +117,7 @@ impl Proof {
             "{}: nothing is decided of errors under the torques asked about: {}",
             scenario.name, open.at
         );
-        let help = format!("the rates hold without torques on the links; name smaller ones, or {ASK_LESS}");
+        let help = format!("the rates hold without such torques; {ASK_LESS}, or ask about smaller ones");
         Some((scenario.places.problem("controller", "undecided", message, help), false))
     }
 

@@ -84,7 +84,7 @@ const ROOM: f64 = 1.2;
 const FAR: f64 = 1e3;
 
 /// How often the torques are doubled or halved at most, to a funnel in which no limit acts and one in which one may.
-const DOUBLED: usize = 12;
+const DOUBLED: usize = 8;
 
 /// How often what lies between is halved then: to within 3 %.
 const HALVED: usize = 5;
@@ -159,7 +159,11 @@ fn largest(mut at: impl FnMut(f64) -> Option<Result<Robust, NoFunnel>>) -> Optio
         (Some((_, Ok(robust))), beyond) => {
             Some(Ok(Robust { binding: beyond.map(|(times, found)| Binding::of(times, &found)), ..robust }))
         }
-        (_, beyond) => beyond.map(|(_, found)| found),
+        (_, beyond) => beyond.map(|(times, found)| {
+            found.map_err(|none| NoFunnel {
+                at: format!("under {times} times those torques, the smallest that were tried, {}", none.at),
+            })
+        }),
     }
 }
 
