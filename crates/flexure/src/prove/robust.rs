@@ -70,12 +70,9 @@ pub struct NoFunnel {
     pub at: String,
 }
 
-/// Length of a slab to begin with in s.
+/// Length of a slab in s where nothing asks for shorter ones, and how many there are at least.
 const SLAB: f64 = 0.02;
-
-/// Fewest and most slabs.
-const FEWEST: usize = 64;
-const MOST: usize = 4000;
+const FEWEST: f64 = 64.0;
 
 /// Errors so much larger than the funnel's are to come back into it.
 const ROOM: f64 = 1.2;
@@ -179,32 +176,20 @@ fn bounds(
     progress: Progress<'_>,
 ) -> Option<Result<Robust, NoFunnel>> {
     let duration = scenario.bounds(scenario.duration).hi();
-    let first = slabs(duration);
-    let request = |slabs: usize| FunnelRequest {
+    let request = FunnelRequest {
         spread: spread.clone(),
         duration,
         start: start_errors(scenario, system).concat(),
-        slabs,
+        slab: SLAB.min(duration / FEWEST),
         room: ROOM,
     };
-    let mut found = Funnel::along(system, &request(first), &|fraction| progress(0.5 * FUNNEL * fraction))?;
-    if found.is_err() && 2 * first <= MOST {
-        found = Funnel::along(system, &request(2 * first), &|fraction| {
-            progress(0.5 * FUNNEL * (1.0 + fraction))
-        })?;
-    }
+    let found = Funnel::along(system, &request, &|fraction| progress(FUNNEL * fraction))?;
     let funnel = match found {
         Ok(funnel) => funnel,
         Err(open) => return Some(Err(no_funnel(&open))),
     };
     let course = course(system, &funnel, &|fraction| progress(FUNNEL + (1.0 - FUNNEL) * fraction))?;
     Some(Ok(Robust::new(scenario, system.joints(), &funnel, &course)))
-}
-
-/// Number of slabs to begin with for a run of `duration` s.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to small numbers")]
-fn slabs(duration: f64) -> usize {
-    (duration / SLAB).ceil().clamp(FEWEST as f64, MOST as f64) as usize
 }
 
 fn no_funnel(open: &Open) -> NoFunnel {

@@ -5,7 +5,8 @@ mod motions;
 use flexure::core::scalar::{Interval, Scalar};
 use flexure::progress::unwatched;
 use flexure::prove::engine::envelope::deviation::Spread;
-use flexure::prove::engine::envelope::funnel::{Funnel, FunnelRequest, holds};
+use flexure::prove::engine::envelope::funnel::{Funnel, FunnelRequest};
+use flexure::prove::engine::envelope::inequality::holds;
 use flexure::scenario::load_scenario;
 
 use crate::along::slabs::enclosed;
@@ -21,7 +22,7 @@ fn request(link: f64, motor: f64, spring: f64) -> FunnelRequest {
         motor_torque: point(motor),
         link_torque: point(link),
     };
-    FunnelRequest { spread, duration: 20.0, start: vec![Interval::ZERO; 8], slabs: 1000, room: 1.0 }
+    FunnelRequest { spread, duration: 20.0, start: vec![Interval::ZERO; 8], slab: 0.02, room: 1.0 }
 }
 
 /// Largest link error in rad.
@@ -54,7 +55,7 @@ fn torques_and_springs_move_links_by_millirads() {
 #[test]
 fn a_slab_that_is_not_so_is_refused() {
     let mut request = request(0.05, 0.0, 0.0);
-    (request.duration, request.slabs) = (1.0, 50);
+    request.duration = 1.0;
     let (funnel, _) = link_error(&request);
     let piece = &funnel.pieces[20];
     let [from, to] = [&piece.passage.0[0], &piece.passage.0[1]];

@@ -1,30 +1,25 @@
 //! A funnel: an ellipsoid of errors for every time of a run that no motion leaves, whatever the robot's numbers are within their
 //! tolerances and whatever torque its links and motors feel.
 //!
-//! With V = zᵀ X(t)⁻¹ z and y = X⁻¹ z, along ż = A z + Σ n w + δ
+//! It goes slab of time by slab of time ([`front`]). [`recursion`] suggests ellipsoids and multipliers in floats; [`inequality`] checks them in
+//! intervals. A, n and the bounds are those of all times of the slab and of all errors between its ends ([`Flow`]). Each slab's ellipsoids
+//! begin with one that holds the last of the slab before.
 //!
-//! V̇ = −yᵀ Ẋ y + 2 yᵀ (A X y + Σ n w + δ),
-//!
-//! and 2 yᵀ n w ≤ α + (D²/α) (yᵀ n)² + τ (yᵀ n)² + (cᵀ X y)²/τ for |w| ≤ D + |c·z|, where α = α yᵀ X y on the surface V = 1. So no
-//! motion leaves {V ≤ 1} if
-//!
-//! Ẋ − A X − X Aᵀ − Σ α X − Σ (D²/α + τ) n nᵀ − Σ X c cᵀ X / τ ≻ 0
-//!
-//! at all times. Where A, n and the bounds are those of larger errors too, V̇ ≤ −Σ α (V − 1) there: they come back. X is linear in time over each slab, and this concave in X: its ends are enough. [`recursion`] suggests ellipsoids and
-//! multipliers in floats; here they are checked in intervals. A, n and the bounds are those of all times of the slab and of all errors
-//! between its ends ([`Flow`]).
-//!
+//! [`front`]: super::front
 //! [`recursion`]: super::recursion
+//! [`inequality`]: super::inequality
 
 use flexure_core::scalar::{Interval, Scalar};
 
-use crate::linalg::{Dense, Symmetric, lower_inverse};
+use crate::linalg::{Dense, Symmetric};
 use crate::progress::Progress;
 use crate::prove::engine::envelope::closed_loop::TrackingLoop;
 use crate::prove::engine::envelope::deviation::Spread;
-use crate::prove::engine::envelope::flow::{Channel, Flow};
-use crate::prove::engine::envelope::recursion::{Multipliers, drives, joined, next};
-use crate::prove::engine::envelope::shape::{Passage, Shape, congruent};
+use crate::prove::engine::envelope::flow::Flow;
+use crate::prove::engine::envelope::front::{Front, ROOM};
+use crate::prove::engine::envelope::pace::Pace;
+use crate::prove::engine::envelope::recursion::Multipliers;
+use crate::prove::engine::envelope::shape::{Passage, Shape};
 use crate::prove::engine::envelope::tube::{ErrorTube, Tube};
 
 /// What a funnel is asked for.
@@ -36,8 +31,8 @@ pub struct FunnelRequest {
     pub duration: f64,
     /// The errors where it begins.
     pub start: Vec<Interval>,
-    /// Number of slabs.
-    pub slabs: usize,
+    /// Length of a slab in s where nothing asks for shorter ones.
+    pub slab: f64,
     /// Errors up to so many times those of the funnel are to come back into it, 1 or more.
     pub room: f64,
 }
@@ -54,7 +49,7 @@ pub struct Funnel {
 pub struct Piece {
     /// Times in s.
     pub time: Interval,
-    /// Ellipsoids at times that are evenly spaced, from the first to the last.
+    /// Ellipsoids at times that are evenly spaced, from the first, which holds the last of the piece before, to the last.
     pub passage: Passage,
     /// How errors move there.
     pub flow: Flow,
@@ -63,6 +58,20 @@ pub struct Piece {
 }
 
 impl Piece {
+    /// The part of what drives the errors that is left open at the middle of its times.
+    fn at_once(
+        &self,
+        system: &dyn TrackingLoop,
+        request: &FunnelRequest,
+        goes_on: &dyn Fn() -> bool,
+    ) -> Option<f64> {
+        let middle = Interval::point(self.time.midpoint());
+        let wide = Passage(self.passage.0.iter().map(|shape| shape.times(request.room)).collect());
+        let flow = Flow::over(system, &request.spread, &wide, middle, goes_on)?;
+        let best = Multipliers::best(&flow, self.end(), Some(&self.multipliers));
+        Some(best.map_or(1.0, |(multipliers, _)| multipliers.open_part(&flow)))
+    }
+
     /// The ellipsoid at its end.
     fn end(&self) -> &Shape {
         &self.passage.0[self.passage.0.len() - 1]
@@ -78,6 +87,13 @@ pub struct Open {
     pub error: Vec<f64>,
 }
 
+impl Open {
+    /// At the beginning of the slab `time`, where errors were not shown to stay in `shape`.
+    pub fn of(shape: &Shape, time: Interval) -> Self {
+        Self { time: time.lo(), error: shape.extents()[..shape.size() / 4].to_vec() }
+    }
+}
+
 /// What W is at least where a run begins, in J: rounding is more.
 const LEAST: f64 = 1e-14;
 
@@ -85,17 +101,11 @@ const LEAST: f64 = 1e-14;
 const PART: f64 = 0.01;
 const LOOKED: usize = 8;
 
-/// How often a slab is tried, with wider and wider ellipsoids.
-const TRIED: usize = 24;
+/// The first ellipsoid is tried so often, wider and wider.
+const FIRST_TRIED: usize = 24;
 
-/// Parts of a slab over which X is linear.
-const PARTS: usize = 4;
-
-/// How much wider than the last one an ellipsoid is taken to be.
-const ROOM: f64 = 1.01;
-
-/// Slack of an ellipsoid's growth [1/s], from the least on.
-const SLACK: [f64; 4] = [1e-3, 1e-2, 1e-1, 1.0];
+/// Slabs of a run at most.
+const MOST: usize = 40_000;
 
 impl Funnel {
     /// Over all of the run; none if `progress` breaks it off.
@@ -107,29 +117,34 @@ impl Funnel {
         request: &FunnelRequest,
         progress: Progress<'_>,
     ) -> Option<Result<Self, Open>> {
-        let count = request.slabs.max(1);
-        let cut = |i: usize| {
-            if i == count { request.duration } else { request.duration * (i as f64 / count as f64) }
-        };
-        let goes_on = |k: usize| move || progress(k as f64 / count as f64).is_continue();
-        let slab = |k: usize| Interval::new(cut(k), cut(k + 1)).unwrap_or(Interval::ENTIRE);
-        let first = match first(system, request, slab(0), &goes_on(0))? {
+        let mut pace = Pace::new(request.slab);
+        let mut time = pace.next(0.0, request.duration);
+        let goes_on = |time: Interval| move || progress(time.lo() / request.duration).is_continue();
+        let first = match first(system, request, time, &goes_on(time))? {
             Ok(first) => first,
             Err(open) => return Some(Err(open)),
         };
-        let mut pieces: Vec<Piece> = Vec::with_capacity(count);
-        let mut at = Front { shape: first, grown: ROOM, multipliers: None };
-        for k in 0..count {
-            match at.piece(system, request, slab(k), &goes_on(k))? {
-                Ok(piece) => {
+        let mut pieces: Vec<Piece> = Vec::new();
+        let mut at = Front { shape: first, multipliers: None, still: None };
+        while time.lo() < request.duration {
+            if pieces.len() == MOST {
+                return Some(Err(Open::of(&at.shape, time)));
+            }
+            match at.piece(system, request, time, &goes_on(time))? {
+                Ok((piece, still)) => {
+                    pace.saw(piece.multipliers.open_part(&piece.flow), || {
+                        piece.at_once(system, request, &goes_on(time))
+                    })?;
                     at = Front {
                         shape: piece.end().clone(),
-                        grown: ROOM,
                         multipliers: Some(piece.multipliers.clone()),
+                        still,
                     };
+                    time = pace.next(time.hi(), request.duration);
                     pieces.push(piece);
                 }
-                Err(open) => return Some(Err(open)),
+                Err(open) if !pace.shorter() => return Some(Err(open)),
+                Err(_) => time = pace.next(time.lo(), request.duration),
             }
         }
         Some(Ok(Self { pieces }))
@@ -175,7 +190,7 @@ fn first(
         return Some(Err(Open { time: time.lo(), error }));
     };
     let beginning = Interval::point(time.lo());
-    for _ in 0..TRIED {
+    for _ in 0..FIRST_TRIED {
         let passage = Passage(vec![guess.times(request.room)]);
         let flow = Flow::over(system, &request.spread, &passage, beginning, goes_on)?;
         let Some((_, stays)) = Multipliers::best(&flow, &guess, None) else { break };
@@ -185,7 +200,7 @@ fn first(
         }
         guess = found.times(ROOM);
     }
-    Some(Err(Open { time: time.lo(), error: guess.extents()[..size / 4].to_vec() }))
+    Some(Err(Open::of(&guess, time)))
 }
 
 /// The errors that a funnel has room for where it begins, if nothing drives it there: a part of what drives it at other times.
@@ -211,104 +226,4 @@ fn least(system: &dyn TrackingLoop, request: &FunnelRequest, goes_on: &dyn Fn() 
 /// The ellipsoid with these half axes along the errors.
 fn diagonal(axes: &[f64]) -> Shape {
     Shape { lower: Dense::from_fn(axes.len(), axes.len(), |i, j| if i == j { axes[i] } else { 0.0 }) }
-}
-
-/// Where the funnel has come to.
-struct Front {
-    shape: Shape,
-    /// By how much the next ellipsoid may be wider.
-    grown: f64,
-    multipliers: Option<Multipliers>,
-}
-
-impl Front {
-    /// The funnel over one more slab.
-    fn piece(
-        &self,
-        system: &dyn TrackingLoop,
-        request: &FunnelRequest,
-        time: Interval,
-        goes_on: &dyn Fn() -> bool,
-    ) -> Option<Result<Piece, Open>> {
-        let mut guess = self.shape.times(self.grown);
-        for _ in 0..TRIED {
-            let wide = [&self.shape, &guess].map(|shape| shape.times(request.room));
-            let flow = Flow::over(system, &request.spread, &Passage(wide.into()), time, goes_on)?;
-            let Some((multipliers, _)) = Multipliers::best(&flow, &self.shape, self.multipliers.as_ref())
-            else {
-                break;
-            };
-            let Some(passage) = verified(&flow, &multipliers, &self.shape, time) else { break };
-            if passage.0.iter().all(|shape| shape.lies_in(&guess)) {
-                return Some(Ok(Piece { time, passage, flow, multipliers }));
-            }
-            let all = passage.0.into_iter().map(Some).reduce(|a, b| joined(&a?, &b?));
-            let Some(all) = all.flatten() else { break };
-            guess = all.times(ROOM);
-        }
-        let error = guess.extents()[..guess.size() / 4].to_vec();
-        Some(Err(Open { time: time.lo(), error }))
-    }
-}
-
-/// Ellipsoids over the slab `time` with which the inequality holds, after one another.
-fn verified(flow: &Flow, with: &Multipliers, from: &Shape, time: Interval) -> Option<Passage> {
-    let parts = Interval::point(PARTS as f64);
-    let step = (Interval::point(time.hi()) - Interval::point(time.lo())) / parts;
-    let mut shapes = vec![from.clone()];
-    for _ in 0..PARTS {
-        let from = &shapes[shapes.len() - 1];
-        let suggested = |slack: &f64| next(flow, with, from, step.midpoint(), *slack);
-        let to = SLACK.iter().filter_map(suggested).find(|to| holds(flow, with, [from, to], step))?;
-        shapes.push(to);
-    }
-    Some(Passage(shapes))
-}
-
-/// Whether the inequality holds at both ends of a slab that lasts `step` s.
-pub fn holds(flow: &Flow, with: &Multipliers, ends: [&Shape; 2], step: Interval) -> bool {
-    let squares = ends.map(Shape::square);
-    let rate = squares[1].minus(&squares[0], Interval::ONE).map(|x| x / step);
-    let drives = drives(flow);
-    let positive = |x: &f64| *x >= 0.0 && x.is_finite();
-    let fit = with.alpha.len() == drives.len() && with.tau.len() == drives.len();
-    fit && with.alpha.iter().chain(&with.tau).all(positive)
-        && ends.iter().zip(&squares).all(|(end, square)| {
-            let left = residual(flow, with, &drives, &rate, square);
-            congruent(&lower_inverse(&end.lower), &left).smallest_pivot() > 0.0
-        })
-}
-
-/// Ẋ − A X − X Aᵀ − Σ α X − Σ (D²/α + τ) n nᵀ − Σ X c cᵀ X / τ.
-fn residual(
-    flow: &Flow,
-    with: &Multipliers,
-    drives: &[Channel],
-    rate: &Symmetric<Interval>,
-    x: &Symmetric<Interval>,
-) -> Symmetric<Interval> {
-    let n = x.size();
-    let point = Interval::point;
-    let moved = Dense::from_fn(n, n, |i, j| {
-        (0..n).fold(Interval::ZERO, |sum, k| sum + point(flow.matrix[(i, k)]) * x.at(k, j))
-    });
-    let growth = with.alpha.iter().fold(Interval::ZERO, |sum, &alpha| sum + point(alpha));
-    let mut left =
-        Symmetric::from_fn(n, |i, j| rate.at(i, j) - moved[(i, j)] - moved[(j, i)] - growth * x.at(i, j));
-    let mut less = |column: &[Interval], weight: Interval| {
-        let outer = |i: usize, j: usize| if i == j { column[i].square() } else { column[i] * column[j] };
-        left = Symmetric::from_fn(n, |i, j| left.at(i, j) - outer(i, j) * weight);
-    };
-    for ((drive, &alpha), &tau) in drives.iter().zip(&with.alpha).zip(&with.tau) {
-        let column: Vec<_> = drive.column.iter().map(|&x| point(x)).collect();
-        let constant =
-            if drive.size > 0.0 { point(drive.size).square() / point(alpha) } else { Interval::ZERO };
-        less(&column, constant + point(tau));
-        if let Some(slope) = &drive.slope {
-            let pulled =
-                (0..n).map(|i| (0..n).fold(Interval::ZERO, |sum, k| sum + x.at(i, k) * point(slope[k])));
-            less(&pulled.collect::<Vec<_>>(), point(tau).recip());
-        }
-    }
-    left
 }

@@ -6,7 +6,10 @@
 pub mod closed_loop;
 pub mod deviation;
 pub mod flow;
+mod front;
 pub mod funnel;
+pub mod inequality;
+mod pace;
 pub mod recursion;
 mod response;
 pub mod shape;

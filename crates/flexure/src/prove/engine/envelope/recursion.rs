@@ -91,6 +91,12 @@ impl Multipliers {
         Self { alpha, tau: tau.collect() }
     }
 
+    /// The part of Σ α that is for what the numbers of `flow` leave open.
+    pub fn open_part(&self, flow: &Flow) -> f64 {
+        let open: f64 = self.alpha[flow.channels.len()..].iter().sum();
+        if open > 0.0 { open / self.growth() } else { 0.0 }
+    }
+
     /// Σ α.
     pub fn growth(&self) -> f64 {
         self.alpha.iter().sum()
@@ -214,6 +220,27 @@ pub fn next(flow: &Flow, with: &Multipliers, from: &Shape, step: f64, slack: f64
         more = &more + &parts(&forward, |x| x.max(0.0));
     }
     None
+}
+
+/// The ellipsoid that stays as it is where `flow` stands, with `slack` [1/s] more growth than there is; found from `near` on.
+pub fn staying(flow: &Flow, with: &Multipliers, near: &Shape, slack: f64) -> Option<Shape> {
+    let scaled = Scaled::new(flow, near);
+    let unit = Dense::identity(near.size());
+    let mut x = unit.clone();
+    let steps = if scaled.drives.iter().any(|drive| drive.slope.is_some()) { STEPS } else { 1 };
+    for _ in 0..steps {
+        let matrix = &scaled.effective(with, &x) + &unit.scaled(0.5 * slack);
+        x = lyapunov(&matrix, &scaled.source(with))?;
+    }
+    shaped(near, &(&x + &unit.scaled(UNDRIVEN)))
+}
+
+/// By how much `a` has to be wider in every direction to hold `b`, about.
+pub fn covering(a: &Shape, b: &Shape) -> f64 {
+    let half = &lower_inverse(&a.lower) * &b.lower;
+    let mut square = &half * &half.transposed();
+    eigenvectors(Leading::whole(&mut square));
+    (0..a.size()).map(|i| square[(i, i)]).fold(0.0, f64::max).sqrt()
 }
 
 /// An ellipsoid that holds both, about.

@@ -1,0 +1,68 @@
+//! The inequality that a funnel rests on, in intervals.
+//!
+//! With V = zᵀ X(t)⁻¹ z and y = X⁻¹ z, along ż = A z + Σ n w + δ
+//!
+//! V̇ = −yᵀ Ẋ y + 2 yᵀ (A X y + Σ n w + δ),
+//!
+//! and 2 yᵀ n w ≤ α + (D²/α) (yᵀ n)² + τ (yᵀ n)² + (cᵀ X y)²/τ for |w| ≤ D + |c·z|, where α = α yᵀ X y on the surface V = 1. So no
+//! motion leaves {V ≤ 1} if
+//!
+//! Ẋ − A X − X Aᵀ − Σ α X − Σ (D²/α + τ) n nᵀ − Σ X c cᵀ X / τ ≻ 0
+//!
+//! at all times. Where A, n and the bounds are those of larger errors too, V̇ ≤ −Σ α (V − 1) there: they come back. X is linear in time
+//! between two ellipsoids, and this concave in X: both are enough.
+
+use flexure_core::scalar::{Interval, Scalar};
+
+use crate::linalg::{Dense, Symmetric, lower_inverse};
+use crate::prove::engine::envelope::flow::{Channel, Flow};
+use crate::prove::engine::envelope::recursion::{Multipliers, drives};
+use crate::prove::engine::envelope::shape::{Shape, congruent};
+
+/// Whether it holds from one ellipsoid to the other, `step` s later.
+pub fn holds(flow: &Flow, with: &Multipliers, ends: [&Shape; 2], step: Interval) -> bool {
+    let squares = ends.map(Shape::square);
+    let rate = squares[1].minus(&squares[0], Interval::ONE).map(|x| x / step);
+    let drives = drives(flow);
+    let positive = |x: &f64| *x >= 0.0 && x.is_finite();
+    let fit = with.alpha.len() == drives.len() && with.tau.len() == drives.len();
+    fit && with.alpha.iter().chain(&with.tau).all(positive)
+        && ends.iter().zip(&squares).all(|(end, square)| {
+            let left = residual(flow, with, &drives, &rate, square);
+            congruent(&lower_inverse(&end.lower), &left).smallest_pivot() > 0.0
+        })
+}
+
+/// Ẋ − A X − X Aᵀ − Σ α X − Σ (D²/α + τ) n nᵀ − Σ X c cᵀ X / τ.
+fn residual(
+    flow: &Flow,
+    with: &Multipliers,
+    drives: &[Channel],
+    rate: &Symmetric<Interval>,
+    x: &Symmetric<Interval>,
+) -> Symmetric<Interval> {
+    let n = x.size();
+    let point = Interval::point;
+    let moved = Dense::from_fn(n, n, |i, j| {
+        (0..n).fold(Interval::ZERO, |sum, k| sum + point(flow.matrix[(i, k)]) * x.at(k, j))
+    });
+    let growth = with.alpha.iter().fold(Interval::ZERO, |sum, &alpha| sum + point(alpha));
+    let mut left =
+        Symmetric::from_fn(n, |i, j| rate.at(i, j) - moved[(i, j)] - moved[(j, i)] - growth * x.at(i, j));
+    let mut less = |column: &[Interval], weight: Interval| {
+        let outer = |i: usize, j: usize| if i == j { column[i].square() } else { column[i] * column[j] };
+        left = Symmetric::from_fn(n, |i, j| left.at(i, j) - outer(i, j) * weight);
+    };
+    for ((drive, &alpha), &tau) in drives.iter().zip(&with.alpha).zip(&with.tau) {
+        let column: Vec<_> = drive.column.iter().map(|&x| point(x)).collect();
+        let constant =
+            if drive.size > 0.0 { point(drive.size).square() / point(alpha) } else { Interval::ZERO };
+        less(&column, constant + point(tau));
+        if let Some(slope) = &drive.slope {
+            let pulled =
+                (0..n).map(|i| (0..n).fold(Interval::ZERO, |sum, k| sum + x.at(i, k) * point(slope[k])));
+            less(&pulled.collect::<Vec<_>>(), point(tau).recip());
+        }
+    }
+    left
+}
