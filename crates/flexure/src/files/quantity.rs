@@ -160,6 +160,10 @@ pub(crate) const INERTIA_TOLERANCE: Quantity =
     Quantity::non_negative("largest difference of the motor inertia, either way", units::INERTIA);
 pub(crate) const DAMPING_TOLERANCE: Quantity =
     Quantity::non_negative("largest difference of the damping, either way", units::DAMPING);
+pub(crate) const MASS_TOLERANCE: Quantity = Quantity::non_negative(
+    "largest difference of the mass that the joint carries up to the next ones, either way, as a part of it",
+    units::NONE,
+);
 pub(crate) const GEAR_RATIO: Quantity = Quantity::nonzero(
     "gear ratio, motor turns per joint turn; negative if they turn in opposite senses",
     units::NONE,

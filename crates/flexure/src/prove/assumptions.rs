@@ -57,7 +57,8 @@ fn tolerances(robot: &robot::Robot) -> Vec<String> {
         }
     }
     notes.push(
-        "the links' masses, lengths and inertias are taken as they stand: they have no tolerances".to_owned(),
+        "the links' lengths, centres of mass and the directions of their inertias are taken as they stand: they have no tolerances"
+            .to_owned(),
     );
     notes
 }

@@ -9,6 +9,7 @@ use crate::prove::engine::certificate::Certificate;
 use crate::prove::engine::direct::{Flow, StateBox, VcbcLoop, full_turn, vcbc};
 use crate::prove::engine::envelope::closed_loop::{Enclosed, TrackingLoop};
 use crate::prove::engine::number::Number;
+use crate::robot::links::FromFile as _;
 use crate::robot::sized::{OF_THE_KIND, fjr, sized};
 use crate::robot::{JointKind, Robot};
 use crate::scenario::Scenario;
@@ -22,10 +23,15 @@ pub(crate) fn along_reference(scenario: &Scenario) -> Result<Box<dyn TrackingLoo
     Ok(sized!(robot, L, N => {
         let enclosed =
             fjr::<_, L<Interval>, N>(robot, &robot.enclosed, |x| robot.bounds(x), &Interval::midpoint);
+        let alone = (0..robot.joint_count()).map(|link| {
+            let only = robot.enclosed.only(link);
+            L::<Interval>::from_file(&only, robot.gravity.map(|x| robot.bounds(x)), &Interval::midpoint)
+        });
+        let alone = alone.collect::<Option<_>>().expect(OF_THE_KIND);
         let reference = feasible::enclosed_reference::<N>(scenario)?;
         let [breaks, kinks] = [reference.breaks(), reference.kinks()];
         let law = law_over(gains, |x| scenario.bounds(x));
-        Box::new(Enclosed { robot: enclosed.expect(OF_THE_KIND), law, reference, breaks, kinks })
+        Box::new(Enclosed { robot: enclosed.expect(OF_THE_KIND), alone, law, reference, breaks, kinks })
     }))
 }
 

@@ -114,10 +114,12 @@ impl Proof {
     fn no_funnel(&self, scenario: &Scenario) -> Option<(Problem, bool)> {
         let Some(Err(open)) = self.robust.as_ref().filter(|_| self.needs_funnel) else { return None };
         let message = format!(
-            "{}: nothing is decided of errors under the torques asked about: {}",
+            "{}: nothing is decided of errors under these torques and tolerances: {}",
             scenario.name, open.at
         );
-        let help = format!("the rates hold without such torques; {ASK_LESS}, or ask about smaller ones");
+        let help = format!(
+            "the rates hold without torques, of the numbers of the file; {ASK_LESS}, or ask about smaller torques or tolerances"
+        );
         Some((scenario.places.problem("controller", "undecided", message, help), false))
     }
 

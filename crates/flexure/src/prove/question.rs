@@ -265,7 +265,11 @@ pub fn prove_watched(
     let started = Clock::now();
     let start = start_level(scenario).ok().filter(|_| !outside_travel(scenario));
     let problem = problem(scenario, question, start)?;
-    let needs_funnel = question.link_disturbance.is_some() || question.up_to_limits;
+    let uneven = uneven_metric(scenario).is_some();
+    let has_tolerances = !scenario.robot.tolerances.are_none() && !uneven;
+    // W says nothing of torques on the links, and masses that are off are such.
+    let has_masses = has_tolerances && !scenario.robot.tolerances.masses_are_none();
+    let needs_funnel = question.link_disturbance.is_some() || question.up_to_limits || has_masses;
     if needs_funnel {
         suitable(scenario)?;
     }
@@ -281,8 +285,6 @@ pub fn prove_watched(
         (verdict, _) => verdict,
     };
     let _ = watched(RATES);
-    let uneven = uneven_metric(scenario).is_some();
-    let has_tolerances = !scenario.robot.tolerances.are_none() && !uneven;
     let budget = slabs(scenario.robot.joint_count());
     let watched = &watched;
     let between = |from: f64, to: f64| move |fraction: f64| watched(from + (to - from) * fraction);

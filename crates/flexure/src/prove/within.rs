@@ -108,6 +108,7 @@ pub(crate) fn spread(
         motor_inertia: enclosed(&tolerances.motor_inertia),
         link_damping: enclosed(&tolerances.link_damping),
         motor_damping: enclosed(&tolerances.motor_damping),
+        link_mass: enclosed(&tolerances.link_mass),
         motor_torque: torque(motor_torque),
         link_torque: torque(link_torque),
     }
@@ -126,6 +127,10 @@ pub fn within(
     progress: Progress<'_>,
 ) -> Result<Option<Result<Within, Open>>, Problems> {
     let system = enclosed(scenario)?;
+    if !scenario.robot.tolerances.masses_are_none() {
+        let at = "masses have tolerances: of those only a funnel says something".to_owned();
+        return Ok(Some(Err(Open { at, slabs: 0, unbounded: false, closer: None })));
+    }
     let disturbance = certificate.tube.as_ref().map(|tube| &*tube.disturbance);
     let search = Search {
         system: &*system,

@@ -1,4 +1,4 @@
-//! `[tolerances]` of a robot file: how far springs, motors and dampers may be from the numbers of the file.
+//! `[tolerances]` of a robot file: how far springs, motors, dampers and the links' masses may be from the numbers of the file.
 
 use crate::files::field::{Field, Joints};
 use crate::files::quantity::{self, Quantity};
@@ -16,16 +16,24 @@ pub struct Tolerances {
     pub link_damping: Vec<f64>,
     /// Of the motor damping D_m [N m s/rad].
     pub motor_damping: Vec<f64>,
+    /// Of the mass of what each joint carries up to the next ones, its inertia in proportion: as a part of it, < 1.
+    pub link_mass: Vec<f64>,
 }
 
-/// Keys of the table: those of `[joints]` that they are about.
-pub(crate) const KEYS: &[&str] = &["stiffness", "motor_inertia", "link_damping", "motor_damping"];
+/// Keys of the table: those of `[joints]` that they are about, and the masses of `[links]`.
+const KEYS: &[&str] = &["stiffness", "motor_inertia", "link_damping", "motor_damping", "link_mass"];
 
 impl Tolerances {
     /// None at all, of so many joints.
     pub fn none(joints: usize) -> Self {
         let none = || vec![0.0; joints];
-        Self { stiffness: none(), motor_inertia: none(), link_damping: none(), motor_damping: none() }
+        Self {
+            stiffness: none(),
+            motor_inertia: none(),
+            link_damping: none(),
+            motor_damping: none(),
+            link_mass: none(),
+        }
     }
 
     /// Whether every number is taken as it stands.
@@ -33,13 +41,19 @@ impl Tolerances {
         self.named().iter().all(|(_, values)| values.iter().all(|&x| x == 0.0))
     }
 
+    /// Whether the masses of all links are taken as they stand.
+    pub fn masses_are_none(&self) -> bool {
+        self.link_mass.iter().all(|&part| part == 0.0)
+    }
+
     /// Each with its key.
-    pub fn named(&self) -> [(&'static str, &[f64]); 4] {
+    pub fn named(&self) -> [(&'static str, &[f64]); 5] {
         [
             ("stiffness", &self.stiffness),
             ("motor_inertia", &self.motor_inertia),
             ("link_damping", &self.link_damping),
             ("motor_damping", &self.motor_damping),
+            ("link_mass", &self.link_mass),
         ]
     }
 }
@@ -74,5 +88,7 @@ pub(crate) fn read(field: &Field<'_>, joints: &Joints, drives: Option<&Drives>) 
         values("motor_inertia", &quantity::INERTIA_TOLERANCE, drives.map(|drives| &*drives.motor_inertia));
     let link_damping = values("link_damping", &quantity::DAMPING_TOLERANCE, None);
     let motor_damping = values("motor_damping", &quantity::DAMPING_TOLERANCE, None);
-    sound.map(|()| Tolerances { stiffness, motor_inertia, link_damping, motor_damping })
+    let whole = joints.count.map(|count| vec![1.0; count]);
+    let link_mass = values("link_mass", &quantity::MASS_TOLERANCE, whole.as_deref());
+    sound.map(|()| Tolerances { stiffness, motor_inertia, link_damping, motor_damping, link_mass })
 }

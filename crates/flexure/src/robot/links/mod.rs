@@ -84,6 +84,26 @@ enum Bodies<'a, C> {
     Tree(&'a mut Vec<Body<C>>),
 }
 
+impl<C: Scalar> Links<C> {
+    /// The same links, all massless but `link`.
+    pub(crate) fn only(&self, link: usize) -> Self {
+        let mut links = self.clone();
+        match links.bodies() {
+            Bodies::Line(bodies) => {
+                for (_, body) in bodies.into_iter().enumerate().filter(|(i, _)| *i != link) {
+                    (*body.mass, *body.inertia) = (C::ZERO, C::ZERO);
+                }
+            }
+            Bodies::Tree(bodies) => {
+                for (_, body) in bodies.iter_mut().enumerate().filter(|(i, _)| *i != link) {
+                    (body.mass, body.inertia) = (C::ZERO, [[C::ZERO; 3]; 3]);
+                }
+            }
+        }
+        links
+    }
+}
+
 /// A moving joint by name, and what the file of the links says of its drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MovingJoint {

@@ -3,7 +3,7 @@
 use flexure::core::linalg::Vector;
 use flexure::core::model::{Fjr, Links as _};
 use flexure::core::robots::PlanarTwoLink;
-use flexure::core::scalar::Interval;
+use flexure::core::scalar::{Interval, Scalar as _};
 use flexure::feasible;
 use flexure::laws::{AnyShaping, law_over};
 use flexure::prove::engine::envelope::closed_loop::Enclosed;
@@ -41,8 +41,15 @@ pub fn enclosed(scenario: &Scenario) -> Arm {
     };
     let reference = feasible::enclosed_reference(scenario).unwrap();
     let [breaks, kinks] = [reference.breaks(), reference.kinks()];
+    let alone = |link: usize| {
+        let only = |values: [Interval; 2]| {
+            std::array::from_fn(|i| if i == link { values[i] } else { Interval::ZERO })
+        };
+        PlanarTwoLink::new(only(mass), length[0], com, only(inertia))
+    };
     Enclosed {
         robot,
+        alone: vec![alone(0), alone(1)],
         law: law_over(scenario.vcbc().unwrap(), |x| scenario.bounds(x)),
         reference,
         breaks,

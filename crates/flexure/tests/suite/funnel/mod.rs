@@ -19,6 +19,7 @@ fn request(link: f64, motor: f64, spring: f64) -> FunnelRequest {
         motor_inertia: point(0.0),
         link_damping: point(0.0),
         motor_damping: point(0.0),
+        link_mass: point(0.0),
         motor_torque: point(motor),
         link_torque: point(link),
     };

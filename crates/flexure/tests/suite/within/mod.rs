@@ -63,6 +63,7 @@ pub fn tolerant(mut scenario: Scenario, parts: [f64; 4]) -> Scenario {
         motor_inertia: part(&robot.motor_inertia, parts[1]),
         link_damping: part(&robot.link_damping, parts[2]),
         motor_damping: part(&robot.motor_damping, parts[3]),
+        link_mass: vec![0.0; 2],
     };
     scenario
 }
@@ -128,6 +129,7 @@ pub fn spread(tolerances: &Tolerances, [on_motors, on_links]: [[f64; 2]; 2]) -> 
         motor_inertia: points(&tolerances.motor_inertia),
         link_damping: points(&tolerances.link_damping),
         motor_damping: points(&tolerances.motor_damping),
+        link_mass: points(&tolerances.link_mass),
         motor_torque: points(&on_motors),
         link_torque: points(&on_links),
     }
@@ -135,7 +137,7 @@ pub fn spread(tolerances: &Tolerances, [on_motors, on_links]: [[f64; 2]; 2]) -> 
 
 /// Numbers that are off by as much as may be, or a random part of that, and a torque on the motors of at most `torque`.
 pub fn drawn(tolerances: &Tolerances, torque: [f64; 2], r: &mut Random) -> Numbers {
-    let [k, m, d_l, d_m] = tolerances.named().map(|(_, values)| [values[0], values[1]]);
+    let [k, m, d_l, d_m, _] = tolerances.named().map(|(_, values)| [values[0], values[1]]);
     [k, m, d_l, d_m, torque, [0.0; 2]].map(|most| {
         Vector(most.map(|most| if r.below(3) == 0 { most * r.next() } else { most.copysign(r.next()) }))
     })

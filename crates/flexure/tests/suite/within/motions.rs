@@ -2,6 +2,7 @@
 
 use flexure::core::linalg::Vector;
 use flexure::core::model::{Links as _, Motion};
+use flexure::core::robots::PlanarTwoLink;
 
 use super::{
     Arm, IDENTIFIED, Numbers, UNKNOWN, difference, displaced, drawn, scenario, tolerant, within_with,
@@ -22,6 +23,22 @@ pub fn rates(arm: &Arm, off: &Numbers, t: f64, x: &Motion<f64, 2>) -> [Vector<f6
     let on_motors = command.u_m - robot.motor_damping.diag_mul(&x.v_m) - spring;
     let a_m = robot.motor_inertia.map(f64::recip).diag_mul(&on_motors) + da_m;
     [x.v_l, x.v_m, a_l, a_m]
+}
+
+/// As [`rates`], of an arm with other links, too.
+pub fn rates_with(
+    links: &PlanarTwoLink<f64>,
+    arm: &Arm,
+    off: &Numbers,
+    t: f64,
+    x: &Motion<f64, 2>,
+) -> [Vector<f64, 2>; 4] {
+    let [stiffness, _, link_damping, _, _, on_link] = off;
+    let spring = (arm.robot.stiffness + *stiffness).diag_mul(&x.deflection());
+    let damper = (arm.robot.link_damping + *link_damping).diag_mul(&x.v_l);
+    let a_l = links.forward_dynamics(&x.q_l, &x.v_l, &(spring - damper + *on_link));
+    let [v_l, v_m, _, a_m] = rates(arm, off, t, x);
+    [v_l, v_m, a_l, a_m]
 }
 
 /// `x` a time `h` later at these rates.
@@ -80,14 +97,18 @@ fn moved(
     let mut t = 0.0;
     while t < end {
         each(t, &x);
-        x = later(arm, off, t, &x, h);
+        x = later(|t, x| rates(arm, off, t, x), t, &x, h);
         t += h;
     }
 }
 
-/// The arm a time `h` after `t`.
-pub fn later(arm: &Arm, off: &Numbers, t: f64, x: &Motion<f64, 2>, h: f64) -> Motion<f64, 2> {
-    let rate = |t: f64, x: &Motion<f64, 2>| rates(arm, off, t, x);
+/// A motion a time `h` after `t`, by its rates.
+pub fn later(
+    rate: impl Fn(f64, &Motion<f64, 2>) -> [Vector<f64, 2>; 4],
+    t: f64,
+    x: &Motion<f64, 2>,
+    h: f64,
+) -> Motion<f64, 2> {
     let k1 = rate(t, x);
     let k2 = rate(t + 0.5 * h, &along(x, &k1, 0.5 * h));
     let k3 = rate(t + 0.5 * h, &along(x, &k2, 0.5 * h));

@@ -5,7 +5,7 @@ use flexure_core::control::{Command, Input, Metric, Shaping, Vcbc};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, MassFactor, Motion};
 use flexure_core::reference::Reference;
-use flexure_core::scalar::{Interval, Jet, Scalar};
+use flexure_core::scalar::{Interval, Jet, Over, Scalar};
 
 use crate::linalg::{Dense, Symmetric};
 
@@ -73,6 +73,9 @@ pub trait TrackingLoop: Sync {
     fn inverse_mass(&self, q_l: &[Interval]) -> Symmetric<Interval>;
     /// C_l [N m s/rad], of Christoffel symbols, at `q_l` in rad and `v_l` [rad/s].
     fn coriolis(&self, q_l: &[Interval], v_l: &[Interval]) -> Dense<Interval>;
+    /// The torque [N m] that each link alone, all others massless, takes to move as the links do at `x`: M_i q̈_l + C_i q̇_l + g_i, a list
+    /// for each link i.
+    fn loads(&self, x: &Place) -> Vec<Vec<Slope>>;
     /// s_lᵀ M_l s_l in J at `q_l` in rad.
     fn link_energy(&self, q_l: &[Interval], s_l: &[Interval]) -> Interval;
     /// The diagonals of Π_l, Π_m [N m/rad] and M_m [kg m²].
@@ -88,6 +91,8 @@ pub trait TrackingLoop: Sync {
 pub struct Enclosed<L, Pl, Pm, R, const N: usize> {
     /// The robot.
     pub robot: Fjr<Interval, L, N>,
+    /// The links of the robot, each with all others massless.
+    pub alone: Vec<L>,
     /// The law.
     pub law: Vcbc<Interval, Pl, Pm, N>,
     /// The reference in rad.
@@ -156,6 +161,15 @@ where
         let (q, v) = (vector(q_l), vector(v_l));
         let column = |j| self.list(&self.robot.links.inertial_torque(&q, &v, &unit(j), &Vector::ZERO));
         Dense::from_columns(&(0..self.joints()).map(column).collect::<Vec<_>>())
+    }
+
+    fn loads(&self, x: &Place) -> Vec<Vec<Slope>> {
+        let robot = &self.robot;
+        let [q_l, q_m, v_l] = [&x.q_l, &x.q_m, &x.v_l].map(|values| vector(values));
+        let pulls =
+            |i: usize| (q_m[i] - q_l[i]).scale(robot.stiffness[i]) - v_l[i].scale(robot.link_damping[i]);
+        let a_l = robot.links.forward_dynamics(&q_l, &v_l, &Vector::from_fn(pulls));
+        self.alone.iter().map(|link| self.list(&link.inverse_dynamics(&q_l, &v_l, &v_l, &a_l))).collect()
     }
 
     fn link_energy(&self, q_l: &[Interval], s_l: &[Interval]) -> Interval {

@@ -49,6 +49,8 @@ pub struct Spread {
     pub link_damping: Vec<Interval>,
     /// Of D_m [N m s/rad].
     pub motor_damping: Vec<Interval>,
+    /// Of mass and inertia of each link, as a part of both, less than 1.
+    pub link_mass: Vec<Interval>,
     /// Unknown torque on the motors [N m].
     pub motor_torque: Vec<Interval>,
     /// Unknown torque on the links [N m].
@@ -64,9 +66,15 @@ impl Spread {
             motor_inertia: times(&self.motor_inertia),
             link_damping: times(&self.link_damping),
             motor_damping: times(&self.motor_damping),
+            link_mass: times(&self.link_mass),
             motor_torque: self.motor_torque.clone(),
             link_torque: self.link_torque.clone(),
         }
+    }
+
+    /// Whether the links may be heavier or lighter than the model's.
+    pub fn has_masses(&self) -> bool {
+        self.link_mass.iter().any(|part| part.magnitude() > 0.0)
     }
 
     /// All torques times `factor`, the tolerances as they are.
@@ -96,6 +104,7 @@ impl Spread {
             .chain(of("motor_inertia", |one| &mut one.motor_inertia))
             .chain(of("link_damping", |one| &mut one.link_damping))
             .chain(of("motor_damping", |one| &mut one.motor_damping))
+            .chain(of("link_mass", |one| &mut one.link_mass))
             .collect()
     }
 }

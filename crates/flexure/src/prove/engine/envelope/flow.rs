@@ -11,15 +11,18 @@
 //!
 //! where primes are the numbers of that robot and, with the accelerations that the model has at this state and torque,
 //!
-//! d_l = (K' − K) ζ − (D'_l − D_l) q̇_l + unknown torque,
+//! d_l = (K' − K) ζ − (D'_l − D_l) q̇_l − Σ μ_i (M_i q̈_l + C_i q̇_l + g_i) + unknown torque,
 //! d_m = −(K' − K) ζ − (D'_m − D_m) q̇_m − (M'_m − M_m) q̈_m + unknown torque.
+//!
+//! for links i with masses that are by a part μ_i off: M'_l = M_l + Σ μ_i M_i. With |μ_i| ≤ μ all these are between (1 − μ) M_l and (1 + μ) M_l, so that
+//! M'_l⁻¹ is M_l⁻¹ / (1 − μ²) and at most μ / (1 − μ²) times M_l⁻¹ either way.
 //!
 //! [`Flow`] has numbers for A, for the columns that torques enter by, and bounds for all that is left.
 
 use flexure_core::scalar::{Interval, Jet, Over, Scalar};
 
 use crate::linalg::{Dense, Symmetric};
-use crate::prove::engine::envelope::closed_loop::{Slope, TrackingLoop};
+use crate::prove::engine::envelope::closed_loop::{Place, Slope, TrackingLoop};
 use crate::prove::engine::envelope::deviation::Spread;
 use crate::prove::engine::envelope::response::responses;
 use crate::prove::engine::envelope::slab::{Views, Way, differences};
@@ -64,7 +67,7 @@ impl Flow {
         goes_on: &dyn Fn() -> bool,
     ) -> Option<Self> {
         let way = Way::new(system, tube, &system.reference(time), time, goes_on);
-        let seen = Seen::new(system, &way)?;
+        let seen = Seen::new(system, spread, &way)?;
         let errors = tube.errors();
         let mut flow = Self {
             matrix: Dense::zeros(errors.len(), errors.len()),
@@ -123,15 +126,19 @@ fn radius(x: Interval) -> f64 {
 /// What the loop does over a slab and a tube.
 struct Seen {
     n: usize,
-    /// Link velocities, deflections, motor velocities, torques that accelerate the motors.
+    /// Link velocities, deflections, motor velocities, torques that accelerate the motors, and the loads of each link if masses are not known.
     all: Views,
+    /// M_l⁻¹.
     inverse_mass: Symmetric<Interval>,
+    /// M'_l⁻¹.
+    mobility: Symmetric<Interval>,
+    /// With it.
     responses: [Dense<Interval>; 2],
     q_l: Vec<Interval>,
 }
 
 impl Seen {
-    fn new(system: &dyn TrackingLoop, way: &Way<'_>) -> Option<Self> {
+    fn new(system: &dyn TrackingLoop, spread: &Spread, way: &Way<'_>) -> Option<Self> {
         let n = system.joints();
         let (q_m, v_m) = way.motors(system)?;
         let drive = system.drive();
@@ -144,13 +151,19 @@ impl Seen {
                 torque[i] - deflection[i].scale(drive.stiffness[i]) - u_m[i].scale(drive.motor_damping[i])
             });
             let accelerates = accelerates.collect();
-            [v_l, deflection, u_m, accelerates].concat()
+            let loads = if spread.has_masses() {
+                system.loads(&Place { q_l, q_m: x_m, v_l: v_l.clone(), v_m: u_m.clone() }).concat()
+            } else {
+                Vec::new()
+            };
+            [v_l, deflection, u_m, accelerates, loads].concat()
         })?;
         let q_l = way.links(system);
         let inverse_mass = system.inverse_mass(&q_l);
+        let mobility = mobility(&inverse_mass, &spread.link_mass);
         let ranges = |part: usize| &all.ranges[part * n..(part + 1) * n];
-        let responses = responses(system, way, &inverse_mass, [&q_m.ranges, ranges(0), ranges(2)]);
-        Some(Self { n, all, inverse_mass, responses, q_l })
+        let responses = responses(system, way, &mobility, [&q_m.ranges, ranges(0), ranges(2)]);
+        Some(Self { n, all, inverse_mass, mobility, responses, q_l })
     }
 
     /// A over slab and tube; `errors` is the box of the tube.
@@ -216,7 +229,31 @@ impl Seen {
                 seen(3, i, spread.motor_inertia[i] / drive.motor_inertia[i], on_motor(i)),
             ]
         };
-        (0..n).flat_map(of_joint).collect()
+        let mut forces: Vec<_> = (0..n).flat_map(of_joint).collect();
+        if spread.has_masses() {
+            forces.extend(self.masses(spread));
+        }
+        forces
+    }
+
+    /// What masses that are off do: one number a link, which the load on the reference goes with, and how else it may be, joint by joint.
+    fn masses(&self, spread: &Spread) -> Vec<Force> {
+        let n = self.n;
+        let load = |i: usize, j: usize| 4 * n + i * n + j;
+        let middle =
+            |i: usize, j: usize| Interval::point(self.all.track[load(i, j)].coefficient(0).midpoint());
+        let columns: Vec<_> = (0..n).map(|j| self.link_column(j)).collect();
+        let of_link = |i: usize| {
+            let entry = |row| (0..n).fold(Interval::ZERO, |sum, j| sum + columns[j][row] * middle(i, j));
+            Force { column: (0..4 * n).map(entry).collect(), size: spread.link_mass[i], slope: None }
+        };
+        let beside = |j: usize| {
+            let left =
+                |i: usize| (self.all.ranges[load(i, j)] - middle(i, j)) * both_ways(spread.link_mass[i]);
+            let size = (0..n).map(left).fold(Interval::ZERO, |sum, left| sum + left);
+            Force { column: columns[j].clone(), size, slope: None }
+        };
+        (0..n).map(of_link).chain((0..n).map(beside)).collect()
     }
 
     /// By what a torque on link `i` enters.
@@ -225,11 +262,25 @@ impl Seen {
         let entry = |row: usize| match row / n {
             0 => Interval::ZERO,
             1 => -self.responses[0][(row % n, i)],
-            2 => self.inverse_mass.at(row % n, i),
+            2 => self.mobility.at(row % n, i),
             _ => self.responses[1][(row % n, i)],
         };
         (0..4 * n).map(entry).collect()
     }
+}
+
+/// M'_l⁻¹ from M_l⁻¹, masses being off by `parts` at most.
+fn mobility(inverse_mass: &Symmetric<Interval>, parts: &[Interval]) -> Symmetric<Interval> {
+    let most = Interval::point(parts.iter().map(|part| part.magnitude()).fold(0.0, f64::max));
+    let middle = (Interval::ONE - most.square()).recip();
+    Symmetric::from_fn(inverse_mass.size(), |i, j| {
+        let size = if i == j {
+            inverse_mass.at(i, i)
+        } else {
+            (inverse_mass.at(i, i) * inverse_mass.at(j, j)).sqrt()
+        };
+        middle * (inverse_mass.at(i, j) + both_ways(most) * Interval::point(size.magnitude()))
+    })
 }
 
 /// From −`x` to `x`.
