@@ -131,6 +131,12 @@ fn other_links(scenario: &Scenario, masses: [f64; 2], r: &mut Random) -> (Planar
     (PlanarTwoLink::new(times(links.mass), links.length[0], links.com, times(links.inertia)), parts)
 }
 
+/// |C z|.
+fn length(slopes: &[Vec<f64>], z: &[f64; 8]) -> f64 {
+    let square = |slope: &Vec<f64>| slope.iter().zip(z).map(|(c, z)| c * z).sum::<f64>().powi(2);
+    slopes.iter().map(square).sum::<f64>().sqrt()
+}
+
 /// What goes through the channels of joint `i` of an arm that is off by `off`.
 fn driving(arm: &Arm, off: &Numbers, t: f64, x: &Motion<f64, 2>, i: usize) -> [f64; CHANNELS] {
     let [stiffness, inertia, link_damping, motor_damping, motor, link] = off;
@@ -167,28 +173,29 @@ fn flows(case: &'static Case, samples: usize) -> (f64, [f64; CHANNELS]) {
         let flow = &piece.flow;
         let mut expected: [f64; 8] =
             std::array::from_fn(|i| (0..8).map(|j| flow.matrix[(i, j)] * z[j]).sum::<f64>());
-        let (of_joints, of_masses) = flow.channels.split_at(2 * CHANNELS);
-        assert_eq!(of_masses.len(), if case.masses == [0.0; 2] { 0 } else { 4 });
+        let (of_joints, others) = flow.channels.split_at(2 * CHANNELS);
         for joint in 0..2 {
             for (k, w) in driving(&arm, &off, t, &x, joint).into_iter().enumerate() {
                 let channel = &of_joints[joint * CHANNELS + k];
-                let slope = channel.slope.as_ref();
-                let along: f64 = slope.map_or(0.0, |c| c.iter().zip(&z).map(|(c, z)| c * z).sum());
-                let bound = channel.size + along.abs();
+                let bound = channel.size + length(&channel.slopes, &z);
                 assert!(w.abs() <= bound * (1.0 + 1e-9), "channel {k} of joint {joint}: {w} beyond {bound}");
                 fullest[k] = fullest[k].max(w.abs() / bound);
-                for (x, n) in expected.iter_mut().zip(&channel.column) {
+                for (x, n) in expected.iter_mut().zip(&channel.columns[0]) {
                     *x += n * w;
                 }
             }
         }
-        // Masses are one number a link; how loads differ from those on the reference is not told apart.
+        // Masses are one number a link. How loads differ from those on the reference, and what inverse masses leave open, is not told apart.
+        let loads = if case.masses == [0.0; 2] { 0 } else { 2 };
+        assert_eq!(others.len(), 2 * loads + 2);
         let mut open = flow.rest.clone();
-        for (k, channel) in of_masses.iter().enumerate() {
-            for i in 0..8 {
-                match heavier.get(k) {
-                    Some(part) => expected[i] -= part * channel.column[i],
-                    None => open[i] += channel.size * channel.column[i].abs(),
+        for (k, channel) in others.iter().enumerate() {
+            let bound = channel.size + length(&channel.slopes, &z);
+            for (column, i) in channel.columns.iter().flat_map(|column| (0..8).map(move |i| (column, i))) {
+                if k < loads {
+                    expected[i] -= heavier[k] * column[i];
+                } else {
+                    open[i] += bound * column[i].abs();
                 }
             }
         }
@@ -241,7 +248,7 @@ fn farthest(funnelled: &Funnelled, times: f64, runs: usize) -> [[f64; 2]; 2] {
                     // Torques on links come last in the numbers, those on motors before.
                     let torque = &mut off[5 - side][joint];
                     if pushed == 1 {
-                        let column = &piece.flow.channels[joint * CHANNELS + side].column;
+                        let column = &piece.flow.channels[joint * CHANNELS + side].columns[0];
                         let n = std::array::from_fn(|i| column[i]);
                         let outwards = product(&piece.passage.0[0].lower, &errors(arm, t, &x), &n);
                         *torque = most.copysign(outwards);

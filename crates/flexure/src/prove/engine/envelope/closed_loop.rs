@@ -71,11 +71,14 @@ pub trait TrackingLoop: Sync {
     fn command(&self, x: &Place, q_ld: &[[Slope; 5]]) -> Answer;
     /// M_l⁻¹ [1/(kg m²)] at `q_l` in rad.
     fn inverse_mass(&self, q_l: &[Interval]) -> Symmetric<Interval>;
+    /// The lower triangle of M_l⁻¹ [1/(kg m²)], row by row, with its derivatives at `q_l` in rad.
+    fn mobility(&self, q_l: &[Slope]) -> Vec<Slope>;
     /// C_l [N m s/rad], of Christoffel symbols, at `q_l` in rad and `v_l` [rad/s].
     fn coriolis(&self, q_l: &[Interval], v_l: &[Interval]) -> Dense<Interval>;
-    /// The torque [N m] that each link alone, all others massless, takes to move as the links do at `x`: M_i q̈_l + C_i q̇_l + g_i, a list
-    /// for each link i.
-    fn loads(&self, x: &Place) -> Vec<Vec<Slope>>;
+    /// The torque [N m] that each link alone, all others massless, takes where the links are at `q_l` in rad, move at `v_l` [rad/s] and speed up as the
+    /// errors ask for, q̇_lr = q̇_ld − φ_l: M_i q̈_lr + C_i q̇_l + g_i, a list for each link i. `q_ld` are Taylor coefficients of the
+    /// reference in rad/sᵏ.
+    fn loads(&self, q_l: &[Slope], v_l: &[Slope], q_ld: &[[Slope; 5]]) -> Vec<Vec<Slope>>;
     /// s_lᵀ M_l s_l in J at `q_l` in rad.
     fn link_energy(&self, q_l: &[Interval], s_l: &[Interval]) -> Interval;
     /// The diagonals of Π_l, Π_m [N m/rad] and M_m [kg m²].
@@ -157,19 +160,31 @@ where
         })
     }
 
+    fn mobility(&self, q_l: &[Slope]) -> Vec<Slope> {
+        let factor = self.robot.links.factor(&vector::<Slope, N>(q_l));
+        let unit = |j: usize| Vector::from_fn(|i| if i == j { Slope::ONE } else { Slope::ZERO });
+        let columns: Vec<Vector<Slope, N>> = (0..self.joints()).map(|j| factor.solve(&unit(j))).collect();
+        (0..self.joints()).flat_map(|i| columns.iter().take(i + 1).map(move |column| column[i])).collect()
+    }
+
     fn coriolis(&self, q_l: &[Interval], v_l: &[Interval]) -> Dense<Interval> {
         let (q, v) = (vector(q_l), vector(v_l));
         let column = |j| self.list(&self.robot.links.inertial_torque(&q, &v, &unit(j), &Vector::ZERO));
         Dense::from_columns(&(0..self.joints()).map(column).collect::<Vec<_>>())
     }
 
-    fn loads(&self, x: &Place) -> Vec<Vec<Slope>> {
-        let robot = &self.robot;
-        let [q_l, q_m, v_l] = [&x.q_l, &x.q_m, &x.v_l].map(|values| vector(values));
-        let pulls =
-            |i: usize| (q_m[i] - q_l[i]).scale(robot.stiffness[i]) - v_l[i].scale(robot.link_damping[i]);
-        let a_l = robot.links.forward_dynamics(&q_l, &v_l, &Vector::from_fn(pulls));
-        self.alone.iter().map(|link| self.list(&link.inverse_dynamics(&q_l, &v_l, &v_l, &a_l))).collect()
+    fn loads(&self, q_l: &[Slope], v_l: &[Slope], q_ld: &[[Slope; 5]]) -> Vec<Vec<Slope>> {
+        let error = |i: usize| match q_ld.get(i) {
+            Some(jet) => Jet::new([q_l[i] - jet[0], v_l[i] - jet[1]]),
+            None => Jet::<Slope, 2>::ZERO,
+        };
+        let approach = self.law.link.shaping.eval(&Vector::from_fn(error));
+        let asked = |i: usize| {
+            let desired = q_ld.get(i).map_or(Slope::ZERO, |jet| jet[2].scale(Interval::from_f64(2.0)));
+            desired - approach[i].coefficient(1)
+        };
+        let ([q_l, v_l], a_lr) = ([q_l, v_l].map(|values| vector(values)), Vector::from_fn(asked));
+        self.alone.iter().map(|link| self.list(&link.inverse_dynamics(&q_l, &v_l, &v_l, &a_lr))).collect()
     }
 
     fn link_energy(&self, q_l: &[Interval], s_l: &[Interval]) -> Interval {

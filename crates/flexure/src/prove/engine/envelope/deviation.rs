@@ -220,7 +220,8 @@ impl Deviation {
         let on_links: Vec<_> = (0..n).map(on_link).collect();
         let of_motors: Vec<_> = (0..n).map(of_motor).collect();
         let ranges = |part: usize| all.ranges[part * n..(part + 1) * n].to_vec();
-        let responses = responses(system, &way, tube.inverse_mass(), [&q_m.ranges, &ranges(0), &ranges(2)]);
+        let inverse_mass = |j: usize, i: usize| tube.inverse_mass().at(j, i);
+        let responses = responses(system, &way, &inverse_mass, [&q_m.ranges, &ranges(0), &ranges(2)]);
         let through = |response: &Dense<Interval>, j: usize| {
             (0..n).fold(Affine::ZERO, |sum, i| sum.plus(on_links[i].times(response[(j, i)])))
         };

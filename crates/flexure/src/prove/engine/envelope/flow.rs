@@ -14,16 +14,22 @@
 //! d_l = (K' − K) ζ − (D'_l − D_l) q̇_l − Σ μ_i (M_i q̈_l + C_i q̇_l + g_i) + unknown torque,
 //! d_m = −(K' − K) ζ − (D'_m − D_m) q̇_m − (M'_m − M_m) q̈_m + unknown torque.
 //!
-//! for links i with masses that are by a part μ_i off: M'_l = M_l + Σ μ_i M_i. With |μ_i| ≤ μ all these are between (1 − μ) M_l and (1 + μ) M_l, so that
-//! M'_l⁻¹ is M_l⁻¹ / (1 − μ²) and at most μ / (1 − μ²) times M_l⁻¹ either way.
+//! for links i with masses that are by a part μ_i off: M'_l = M_l + Σ μ_i M_i. What M_l q̈_l of this has of the errors, M_l ṡ_l above, goes together with
+//! M'_l⁻¹: with B what accelerations of the links enter by and F z = M_l ṡ_l,
+//!
+//! ż = … + M_l⁻¹ F z in the rows of s_l + B (M'_l⁻¹ − M_l⁻¹) F z + B M'_l⁻¹ d'_l,
+//!
+//! where d'_l has loads M_i q̈_lr + C_i q̇_l + g_i with the acceleration that the errors ask for, q̇_lr = q̇_ld − φ_l. Inverse masses are known about a number
+//! N = L Lᵀ as L (c + E) Lᵀ with ‖E‖ ≤ r ([`Masses`]): the E are causes of their own, of n numbers each, that grow with the errors.
 //!
 //! [`Flow`] has numbers for A, for the columns that torques enter by, and bounds for all that is left.
 
 use flexure_core::scalar::{Interval, Jet, Over, Scalar};
 
 use crate::linalg::{Dense, Symmetric};
-use crate::prove::engine::envelope::closed_loop::{Place, Slope, TrackingLoop};
+use crate::prove::engine::envelope::closed_loop::{Slope, TrackingLoop};
 use crate::prove::engine::envelope::deviation::Spread;
+use crate::prove::engine::envelope::masses::Masses;
 use crate::prove::engine::envelope::response::responses;
 use crate::prove::engine::envelope::slab::{Views, Way, differences};
 use crate::prove::engine::envelope::tube::Tube;
@@ -39,22 +45,25 @@ pub struct Flow {
     pub rest: Vec<f64>,
 }
 
-/// n w, with |w| at most |w_0| + |c·z|.
+/// Σ n_k w_k, with |w| at most |w_0| + |C z|.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
-    /// n.
-    pub column: Vec<f64>,
+    /// n_k: one for each number of w.
+    pub columns: Vec<Vec<f64>>,
     /// |w_0|, from above.
     pub size: f64,
-    /// c; none if w does not depend on the errors.
-    pub slope: Option<Vec<f64>>,
+    /// Rows of C; none if w does not depend on the errors.
+    pub slopes: Vec<Vec<f64>>,
+    /// Whether numbers leave it open, and not the robot.
+    pub is_open: bool,
 }
 
-/// A column over slab and tube, and what goes through it.
+/// Columns over slab and tube, and what goes through them.
 struct Force {
-    column: Vec<Interval>,
+    columns: Vec<Vec<Interval>>,
     size: Interval,
-    slope: Option<Vec<Interval>>,
+    slopes: Vec<Vec<Interval>>,
+    is_open: bool,
 }
 
 impl Flow {
@@ -67,8 +76,8 @@ impl Flow {
         goes_on: &dyn Fn() -> bool,
     ) -> Option<Self> {
         let way = Way::new(system, tube, &system.reference(time), time, goes_on);
-        let seen = Seen::new(system, spread, &way)?;
         let errors = tube.errors();
+        let seen = Seen::new(system, spread, &way)?;
         let mut flow = Self {
             matrix: Dense::zeros(errors.len(), errors.len()),
             channels: Vec::new(),
@@ -95,27 +104,39 @@ impl Flow {
 
     /// One more channel, if anything goes through it.
     fn add(&mut self, force: &Force, tube: &dyn Tube, errors: &[Interval]) {
-        let point = |values: &[Interval]| values.iter().map(|x| x.midpoint()).collect::<Vec<f64>>();
-        let mut size = Interval::point(force.size.magnitude());
-        let mut all = size;
-        if let Some(slope) = &force.slope {
-            all += Interval::point(tube.reach(slope).magnitude());
-            for (c, error) in slope.iter().zip(errors) {
-                size += Interval::point(radius(*c)) * Interval::point(error.magnitude());
-            }
-        }
+        let point = |rows: &[Vec<Interval>]| -> Vec<Vec<f64>> {
+            rows.iter().map(|row| row.iter().map(|x| x.midpoint()).collect()).collect()
+        };
+        let left = |slope: &Vec<Interval>| {
+            slope.iter().zip(errors).fold(Interval::ZERO, |sum, (c, error)| {
+                sum + Interval::point(radius(*c)) * Interval::point(error.magnitude())
+            })
+        };
+        let size = Interval::point(force.size.magnitude()) + norm(force.slopes.iter().map(left));
+        let all = Interval::point(force.size.magnitude())
+            + norm(force.slopes.iter().map(|slope| Interval::point(tube.reach(slope).magnitude())));
         if all.magnitude() == 0.0 {
             return;
         }
-        for (rest, n) in self.rest.iter_mut().zip(&force.column) {
-            *rest = (Interval::point(*rest) + Interval::point(radius(*n)) * all).hi();
+        for column in &force.columns {
+            for (rest, n) in self.rest.iter_mut().zip(column) {
+                *rest = (Interval::point(*rest) + Interval::point(radius(*n)) * all).hi();
+            }
         }
+        let slopes = point(&force.slopes);
+        let depends = slopes.iter().flatten().any(|&c| c != 0.0);
         self.channels.push(Channel {
-            column: point(&force.column),
+            columns: point(&force.columns),
             size: size.hi(),
-            slope: force.slope.as_deref().map(point).filter(|slope| slope.iter().any(|&c| c != 0.0)),
+            slopes: if depends { slopes } else { Vec::new() },
+            is_open: force.is_open,
         });
     }
+}
+
+/// The length of a vector.
+fn norm(entries: impl Iterator<Item = Interval>) -> Interval {
+    entries.fold(Interval::ZERO, |sum, x| sum + x.square()).sqrt()
 }
 
 /// How far the ends of `x` are from its middle, from above.
@@ -126,15 +147,14 @@ fn radius(x: Interval) -> f64 {
 /// What the loop does over a slab and a tube.
 struct Seen {
     n: usize,
-    /// Link velocities, deflections, motor velocities, torques that accelerate the motors, and the loads of each link if masses are not known.
+    /// Link velocities, deflections, motor velocities, torques that accelerate the motors, the lower triangle of M_l⁻¹, and the loads of each
+    /// link if masses are not known.
     all: Views,
-    /// M_l⁻¹.
-    inverse_mass: Symmetric<Interval>,
-    /// M'_l⁻¹.
-    mobility: Symmetric<Interval>,
-    /// With it.
-    responses: [Dense<Interval>; 2],
-    q_l: Vec<Interval>,
+    masses: Masses,
+    /// F: torques on the links by the errors, before M_l⁻¹.
+    torques: Dense<Interval>,
+    /// B L, column by column.
+    accelerated: Vec<Vec<Interval>>,
 }
 
 impl Seen {
@@ -151,55 +171,80 @@ impl Seen {
                 torque[i] - deflection[i].scale(drive.stiffness[i]) - u_m[i].scale(drive.motor_damping[i])
             });
             let accelerates = accelerates.collect();
-            let loads = if spread.has_masses() {
-                system.loads(&Place { q_l, q_m: x_m, v_l: v_l.clone(), v_m: u_m.clone() }).concat()
-            } else {
-                Vec::new()
-            };
-            [v_l, deflection, u_m, accelerates, loads].concat()
+            let mobility = system.mobility(&q_l);
+            let loads =
+                if spread.has_masses() { system.loads(&q_l, &v_l, &seed.q_ld).concat() } else { Vec::new() };
+            [v_l, deflection, u_m, accelerates, mobility, loads].concat()
         })?;
         let q_l = way.links(system);
-        let inverse_mass = system.inverse_mass(&q_l);
-        let mobility = mobility(&inverse_mass, &spread.link_mass);
         let ranges = |part: usize| &all.ranges[part * n..(part + 1) * n];
-        let responses = responses(system, way, &mobility, [&q_m.ranges, ranges(0), ranges(2)]);
-        Some(Self { n, all, inverse_mass, mobility, responses, q_l })
+        let natural = system.inverse_mass(&q_l);
+        let inverse_mass = Symmetric::from_fn(n, |i, j| {
+            let (x, natural) = (all.ranges[4 * n + entry(i, j)], natural.at(i, j));
+            x.intersection(natural).unwrap_or(natural)
+        });
+        let masses = Masses::new(&inverse_mass, &spread.link_mass);
+        let root = |i: usize, k: usize| Interval::point(masses.root[(i, k)]);
+        let [desired, asked] = responses(system, way, &root, [&q_m.ranges, ranges(0), ranges(2)]);
+        let accelerated = |k: usize| {
+            let entry = |row: usize| match row / n {
+                0 => Interval::ZERO,
+                1 => -desired[(row % n, k)],
+                2 => root(row % n, k),
+                _ => asked[(row % n, k)],
+            };
+            (0..4 * n).map(entry).collect()
+        };
+        let accelerated = (0..n).map(accelerated).collect();
+        let torques = torques(system, &system.coriolis(&q_l, ranges(0)));
+        Some(Self { n, all, masses, torques, accelerated })
     }
 
-    /// A over slab and tube; `errors` is the box of the tube.
+    /// A over slab and tube, with numbers for the inverse masses; `errors` is the box of the tube.
     fn matrix(&self, system: &dyn TrackingLoop, errors: &[Interval]) -> Dense<Interval> {
         let n = self.n;
-        let [metric_l, metric_m, inertia] = system.metrics();
-        let ([damping_l, damping_m], drive) = (system.damping(), system.drive());
-        let coriolis = system.coriolis(&self.q_l, &self.all.ranges[..n]);
+        let [_, metric_m, inertia] = system.metrics();
+        let ([_, damping_m], drive) = (system.damping(), system.drive());
         let approach_l = slopes(&errors[..n], &|e| system.approach(e));
         let approach_m = slopes(&errors[n..2 * n], &|e| system.approach_m(e));
         let diagonal = |i: usize, j: usize, x: Interval| if i == j { x } else { Interval::ZERO };
-        // Torques on the links by the errors, before M⁻¹.
-        let torque = |i: usize, block: usize, j: usize| match block {
-            0 => diagonal(i, j, -metric_l[i]),
-            1 => diagonal(i, j, drive.stiffness[i]),
-            2 => -(coriolis[(i, j)] + diagonal(i, j, damping_l[i])),
-            _ => Interval::ZERO,
+        let rooted: Vec<_> = (0..n).map(|k| self.rooted(k)).collect();
+        let over_links = |columns: &dyn Fn(usize) -> Interval, column: usize| {
+            (0..n).fold(Interval::ZERO, |sum, k| sum + columns(k) * rooted[k][column])
         };
         Dense::from_fn(4 * n, 4 * n, |row, column| {
             let ((block, i), (of, j)) = ((row / n, row % n), (column / n, column % n));
-            match (block, of) {
+            let itself = match (block, of) {
                 (0, 0) => -approach_l[(i, j)],
                 (0, 2) | (1, 3) => diagonal(i, j, Interval::ONE),
                 (1, 1) => -approach_m[(i, j)],
                 (1, 2) => diagonal(i, j, -drive.stiffness[i] / metric_m[i]),
-                (2, _) => {
-                    (0..n).fold(Interval::ZERO, |sum, k| sum + self.inverse_mass.at(i, k) * torque(k, of, j))
-                }
+                (2, _) => over_links(&|k| Interval::point(self.masses.root[(i, k)]), column),
                 (3, 1) => diagonal(i, j, -metric_m[i] / inertia[i]),
                 (3, 3) => diagonal(i, j, -damping_m[i] / inertia[i]),
                 _ => Interval::ZERO,
+            };
+            let more = self.masses.more.middle;
+            if more.magnitude() == 0.0 {
+                itself
+            } else {
+                itself + more * over_links(&|k| self.accelerated[k][row], column)
             }
         })
     }
 
-    /// What drives the errors.
+    /// Row `k` of Lᵀ F.
+    fn rooted(&self, k: usize) -> Vec<Interval> {
+        let n = self.n;
+        let entry = |column: usize| {
+            (k..n).fold(Interval::ZERO, |sum, i| {
+                sum + Interval::point(self.masses.root[(i, k)]) * self.torques[(i, column)]
+            })
+        };
+        (0..4 * n).map(entry).collect()
+    }
+
+    /// What drives the errors: joint by joint, then what masses that are off do, then what inverse masses leave open.
     fn forces(&self, system: &dyn TrackingLoop, spread: &Spread) -> Vec<Force> {
         let (n, drive) = (self.n, system.drive());
         let on_link = |i: usize| self.link_column(i);
@@ -212,17 +257,17 @@ impl Seen {
         let seen = |part: usize, i: usize, tolerance: Interval, column: Vec<Interval>| {
             let k = part * n + i;
             Force {
-                column,
+                columns: vec![column],
                 size: self.all.track[k].coefficient(0) * tolerance,
-                slope: Some(self.all.gradients.row(k).iter().map(|&g| g * tolerance).collect()),
+                slopes: vec![self.all.gradients.row(k).iter().map(|&g| g * tolerance).collect()],
+                is_open: false,
             }
         };
-        let unknown = |size: Interval, column: Vec<Interval>| Force { column, size, slope: None };
         let of_joint = |i: usize| {
             let between = on_link(i).iter().zip(on_motor(i)).map(|(&a, b)| a - b).collect();
             [
-                unknown(spread.link_torque[i], on_link(i)),
-                unknown(spread.motor_torque[i], on_motor(i)),
+                Force::unknown(spread.link_torque[i], on_link(i)),
+                Force::unknown(spread.motor_torque[i], on_motor(i)),
                 seen(1, i, spread.stiffness[i], between),
                 seen(0, i, spread.link_damping[i], on_link(i)),
                 seen(2, i, spread.motor_damping[i], on_motor(i)),
@@ -231,55 +276,116 @@ impl Seen {
         };
         let mut forces: Vec<_> = (0..n).flat_map(of_joint).collect();
         if spread.has_masses() {
-            forces.extend(self.masses(spread));
+            forces.extend(self.loads(spread));
         }
+        forces.extend(self.open_masses(spread));
         forces
     }
 
+    /// The load of link `i` on joint `j`, among all.
+    fn load(&self, i: usize, j: usize) -> usize {
+        4 * self.n + entry(self.n, 0) + i * self.n + j
+    }
+
     /// What masses that are off do: one number a link, which the load on the reference goes with, and how else it may be, joint by joint.
-    fn masses(&self, spread: &Spread) -> Vec<Force> {
+    fn loads(&self, spread: &Spread) -> Vec<Force> {
         let n = self.n;
-        let load = |i: usize, j: usize| 4 * n + i * n + j;
         let middle =
-            |i: usize, j: usize| Interval::point(self.all.track[load(i, j)].coefficient(0).midpoint());
+            |i: usize, j: usize| Interval::point(self.all.track[self.load(i, j)].coefficient(0).midpoint());
         let columns: Vec<_> = (0..n).map(|j| self.link_column(j)).collect();
         let of_link = |i: usize| {
             let entry = |row| (0..n).fold(Interval::ZERO, |sum, j| sum + columns[j][row] * middle(i, j));
-            Force { column: (0..4 * n).map(entry).collect(), size: spread.link_mass[i], slope: None }
+            Force::unknown(spread.link_mass[i], (0..4 * n).map(entry).collect())
         };
         let beside = |j: usize| {
             let left =
-                |i: usize| (self.all.ranges[load(i, j)] - middle(i, j)) * both_ways(spread.link_mass[i]);
+                |i: usize| (self.all.ranges[self.load(i, j)] - middle(i, j)) * both_ways(spread.link_mass[i]);
             let size = (0..n).map(left).fold(Interval::ZERO, |sum, left| sum + left);
-            Force { column: columns[j].clone(), size, slope: None }
+            Force::unknown(size, columns[j].clone())
         };
         (0..n).map(of_link).chain((0..n).map(beside)).collect()
     }
 
-    /// By what a torque on link `i` enters.
-    fn link_column(&self, i: usize) -> Vec<Interval> {
+    /// What numbers for the inverse masses leave open: of the model's, in the rows of s_l, and of the robot's, over the model's.
+    fn open_masses(&self, spread: &Spread) -> [Force; 2] {
         let n = self.n;
-        let entry = |row: usize| match row / n {
-            0 => Interval::ZERO,
-            1 => -self.responses[0][(row % n, i)],
-            2 => self.mobility.at(row % n, i),
-            _ => self.responses[1][(row % n, i)],
+        let times = |factor: Interval| {
+            (0..n).map(|k| self.rooted(k).into_iter().map(|x| x * factor).collect()).collect::<Vec<Vec<_>>>()
         };
-        (0..4 * n).map(entry).collect()
+        let in_place = |k: usize| {
+            let entry = |row: usize| {
+                if row / n == 2 { Interval::point(self.masses.root[(row % n, k)]) } else { Interval::ZERO }
+            };
+            (0..4 * n).map(entry).collect()
+        };
+        // |d'_l|, joint by joint.
+        let felt = |j: usize| {
+            let of = |part: usize, tolerance: Interval| {
+                Interval::point(self.all.ranges[part * n + j].magnitude()) * tolerance
+            };
+            let heavy = |i: usize| {
+                Interval::point(self.all.ranges[self.load(i, j)].magnitude()) * spread.link_mass[i]
+            };
+            let loads = if spread.has_masses() { n } else { 0 };
+            (0..loads).map(heavy).fold(
+                spread.link_torque[j] + of(1, spread.stiffness[j]) + of(0, spread.link_damping[j]),
+                |sum, load| sum + load,
+            )
+        };
+        let rooted = |k: usize| {
+            (k..n).fold(Interval::ZERO, |sum, j| {
+                sum + Interval::point(self.masses.root[(j, k)].abs()) * felt(j)
+            })
+        };
+        [
+            Force {
+                columns: (0..n).map(in_place).collect(),
+                size: Interval::ZERO,
+                slopes: times(self.masses.model),
+                is_open: true,
+            },
+            Force {
+                columns: self.accelerated.clone(),
+                size: self.masses.robot.radius * norm((0..n).map(rooted)),
+                slopes: times(self.masses.more.radius),
+                is_open: !spread.has_masses(),
+            },
+        ]
+    }
+
+    /// By what a torque on link `j` enters: c B L Lᵀ.
+    fn link_column(&self, j: usize) -> Vec<Interval> {
+        let entry = |row: usize| {
+            let through = |k: usize| self.accelerated[k][row] * Interval::point(self.masses.root[(j, k)]);
+            self.masses.robot.middle * (0..=j).map(through).fold(Interval::ZERO, |sum, x| sum + x)
+        };
+        (0..4 * self.n).map(entry).collect()
     }
 }
 
-/// M'_l⁻¹ from M_l⁻¹, masses being off by `parts` at most.
-fn mobility(inverse_mass: &Symmetric<Interval>, parts: &[Interval]) -> Symmetric<Interval> {
-    let most = Interval::point(parts.iter().map(|part| part.magnitude()).fold(0.0, f64::max));
-    let middle = (Interval::ONE - most.square()).recip();
-    Symmetric::from_fn(inverse_mass.size(), |i, j| {
-        let size = if i == j {
-            inverse_mass.at(i, i)
-        } else {
-            (inverse_mass.at(i, i) * inverse_mass.at(j, j)).sqrt()
-        };
-        middle * (inverse_mass.at(i, j) + both_ways(most) * Interval::point(size.magnitude()))
+impl Force {
+    /// Of at most `size`, whatever the errors.
+    fn unknown(size: Interval, column: Vec<Interval>) -> Self {
+        Self { columns: vec![column], size, slopes: Vec::new(), is_open: false }
+    }
+}
+
+/// Where entry (i, j) of a lower triangle is, row by row, `j` ≤ `i`.
+fn entry(i: usize, j: usize) -> usize {
+    i * (i + 1) / 2 + j
+}
+
+/// F over slab and tube.
+fn torques(system: &dyn TrackingLoop, coriolis: &Dense<Interval>) -> Dense<Interval> {
+    let n = system.joints();
+    let [metric, ..] = system.metrics();
+    let ([damping, _], drive) = (system.damping(), system.drive());
+    let diagonal = |i: usize, j: usize, x: Interval| if i == j { x } else { Interval::ZERO };
+    Dense::from_fn(n, 4 * n, |i, column| match (column / n, column % n) {
+        (0, j) => diagonal(i, j, -metric[i]),
+        (1, j) => diagonal(i, j, drive.stiffness[i]),
+        (2, j) => -(coriolis[(i, j)] + diagonal(i, j, damping[i])),
+        _ => Interval::ZERO,
     })
 }
 

@@ -69,7 +69,7 @@ impl Piece {
         let wide = Passage(self.passage.0.iter().map(|shape| shape.times(request.room)).collect());
         let flow = Flow::over(system, &request.spread, &wide, middle, goes_on)?;
         let best = Multipliers::best(&flow, self.end(), Some(&self.multipliers));
-        Some(best.map_or(1.0, |(multipliers, _)| multipliers.open_part(&flow)))
+        Some(best.map_or(1.0, |(multipliers, _)| multipliers.open))
     }
 
     /// The ellipsoid at its end.
@@ -132,9 +132,7 @@ impl Funnel {
             }
             match at.piece(system, request, time, &goes_on(time))? {
                 Ok((piece, still)) => {
-                    pace.saw(piece.multipliers.open_part(&piece.flow), || {
-                        piece.at_once(system, request, &goes_on(time))
-                    })?;
+                    pace.saw(piece.multipliers.open, || piece.at_once(system, request, &goes_on(time)))?;
                     at = Front {
                         shape: piece.end().clone(),
                         multipliers: Some(piece.multipliers.clone()),

@@ -4,7 +4,7 @@
 //!
 //! V̇ = −yᵀ Ẋ y + 2 yᵀ (A X y + Σ n w + δ),
 //!
-//! and 2 yᵀ n w ≤ α + (D²/α) (yᵀ n)² + τ (yᵀ n)² + (cᵀ X y)²/τ for |w| ≤ D + |c·z|, where α = α yᵀ X y on the surface V = 1. So no
+//! and 2 yᵀ n w ≤ α + (D²/α) (yᵀ n)² + τ (yᵀ n)² + (cᵀ X y)²/τ for |w| ≤ D + |c·z|, sums over the numbers of w where it has several, where α = α yᵀ X y on the surface V = 1. So no
 //! motion leaves {V ≤ 1} if
 //!
 //! Ẋ − A X − X Aᵀ − Σ α X − Σ (D²/α + τ) n nᵀ − Σ X c cᵀ X / τ ≻ 0
@@ -54,11 +54,12 @@ fn residual(
         left = Symmetric::from_fn(n, |i, j| left.at(i, j) - outer(i, j) * weight);
     };
     for ((drive, &alpha), &tau) in drives.iter().zip(&with.alpha).zip(&with.tau) {
-        let column: Vec<_> = drive.column.iter().map(|&x| point(x)).collect();
         let constant =
             if drive.size > 0.0 { point(drive.size).square() / point(alpha) } else { Interval::ZERO };
-        less(&column, constant + point(tau));
-        if let Some(slope) = &drive.slope {
+        for column in &drive.columns {
+            less(&column.iter().map(|&x| point(x)).collect::<Vec<_>>(), constant + point(tau));
+        }
+        for slope in &drive.slopes {
             let pulled =
                 (0..n).map(|i| (0..n).fold(Interval::ZERO, |sum, k| sum + x.at(i, k) * point(slope[k])));
             less(&pulled.collect::<Vec<_>>(), point(tau).recip());

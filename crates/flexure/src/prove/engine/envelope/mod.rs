@@ -9,6 +9,7 @@ pub mod flow;
 mod front;
 pub mod funnel;
 pub mod inequality;
+mod masses;
 mod pace;
 pub mod recursion;
 mod response;

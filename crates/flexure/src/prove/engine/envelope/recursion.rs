@@ -1,6 +1,6 @@
 //! Ellipsoids that follow a flow, in floats: they suggest, and never prove.
 //!
-//! Ẋ = A X + X Aᵀ + Σ α X + Σ (D²/α + τ) n nᵀ + Σ X c cᵀ X / τ, sums over what drives the errors. The multipliers α and τ are free; they
+//! Ẋ = A X + X Aᵀ + Σ α X + Σ (D²/α + τ) n nᵀ + Σ X c cᵀ X / τ, sums over what drives the errors and over the numbers of each. The multipliers α and τ are free; they
 //! are taken where the link errors of the X that stays are least: with S from the adjoint equation the derivatives of tr(E X Eᵀ) by them
 //! are zero at α = D √(nᵀ S n / tr(S X)) and τ = √(cᵀ X S X c / nᵀ S n). Kurzhanski & Vályi, *Ellipsoidal Calculus for Estimation and
 //! Control* (1997), chapter 3; Boyd et al., *Linear Matrix Inequalities in System and Control Theory* (1994), section 6.1.
@@ -16,6 +16,8 @@ pub struct Multipliers {
     pub alpha: Vec<f64>,
     /// τ, above 0; 0 where nothing depends on the errors.
     pub tau: Vec<f64>,
+    /// Of what the ellipsoid grows by, the part that is for what numbers leave open.
+    pub open: f64,
 }
 
 /// Multipliers are found by so many fixed-point steps.
@@ -83,18 +85,12 @@ impl Multipliers {
         let share = FIRST / scaled.drives.len().max(1) as f64;
         let of = |value: fn(&Channel) -> f64| scaled.drives.iter().map(value).collect::<Vec<_>>();
         let alpha = of(|drive| if drive.size > 0.0 { 1.0 } else { 0.0 }).iter().map(|x| x * share).collect();
-        let length = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let tau = scaled
-            .drives
-            .iter()
-            .map(|drive| drive.slope.as_ref().map_or(0.0, |slope| length(slope) / length(&drive.column)));
-        Self { alpha, tau: tau.collect() }
-    }
-
-    /// The part of Σ α that is for what the numbers of `flow` leave open.
-    pub fn open_part(&self, flow: &Flow) -> f64 {
-        let open: f64 = self.alpha[flow.channels.len()..].iter().sum();
-        if open > 0.0 { open / self.growth() } else { 0.0 }
+        let length = |rows: &[Vec<f64>]| rows.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
+        let ratio = |drive: &Channel| {
+            if drive.slopes.is_empty() { 0.0 } else { length(&drive.slopes) / length(&drive.columns) }
+        };
+        let tau = scaled.drives.iter().map(ratio);
+        Self { alpha, tau: tau.collect(), open: 1.0 }
     }
 
     /// Σ α.
@@ -108,7 +104,7 @@ pub fn drives(flow: &Flow) -> Vec<Channel> {
     let n = flow.rest.len();
     let open = flow.rest.iter().enumerate().filter(|(_, rest)| **rest > 0.0).map(|(i, &size)| {
         let column = (0..n).map(|k| if k == i { 1.0 } else { 0.0 }).collect();
-        Channel { column, size, slope: None }
+        Channel { columns: vec![column], size, slopes: Vec::new(), is_open: true }
     });
     flow.channels.iter().cloned().chain(open).collect()
 }
@@ -121,9 +117,10 @@ impl Scaled {
             |column: &[f64]| (0..n).map(|i| (0..=i).map(|k| inverse[(i, k)] * column[k]).sum()).collect();
         let seen = |row: &[f64]| (0..n).map(|j| (j..n).map(|k| row[k] * lower[(k, j)]).sum()).collect();
         let scaled = |drive: Channel| Channel {
-            column: through(&drive.column),
+            columns: drive.columns.iter().map(|column| through(column)).collect(),
             size: drive.size,
-            slope: drive.slope.as_deref().map(seen),
+            is_open: drive.is_open,
+            slopes: drive.slopes.iter().map(|slope| seen(slope)).collect(),
         };
         Self {
             matrix: &(&inverse * &flow.matrix) * lower,
@@ -138,11 +135,12 @@ impl Scaled {
         let growth = 0.5 * with.growth();
         let mut matrix = Dense::from_fn(n, n, |i, j| self.matrix[(i, j)] + if i == j { growth } else { 0.0 });
         for (drive, tau) in self.drives.iter().zip(&with.tau) {
-            let Some(slope) = &drive.slope else { continue };
-            let pulled = times(x, slope);
-            for i in 0..n {
-                for j in 0..n {
-                    matrix[(i, j)] += 0.5 * pulled[i] * slope[j] / tau;
+            for slope in &drive.slopes {
+                let pulled = times(x, slope);
+                for i in 0..n {
+                    for j in 0..n {
+                        matrix[(i, j)] += 0.5 * pulled[i] * slope[j] / tau;
+                    }
                 }
             }
         }
@@ -155,9 +153,11 @@ impl Scaled {
         let mut source = Dense::zeros(n, n);
         for (k, drive) in self.drives.iter().enumerate() {
             let weight = weight(drive.size, with.alpha[k], with.tau[k]);
-            for i in 0..n {
-                for j in 0..n {
-                    source[(i, j)] += weight * drive.column[i] * drive.column[j];
+            for column in &drive.columns {
+                for i in 0..n {
+                    for j in 0..n {
+                        source[(i, j)] += weight * column[i] * column[j];
+                    }
                 }
             }
         }
@@ -176,18 +176,22 @@ impl Scaled {
         let on_the_way = |before: f64, now: f64| {
             if now > 0.0 { before.powf(1.0 - part) * now.powf(part) } else { before }
         };
+        // By what is known and by what is left open [1/s]: α, and √(nᵀ S n · cᵀ X S X c) over tr(S X).
+        let mut grows = [0.0, 0.0];
         let one = |(k, drive): (usize, &Channel)| {
-            let felt = dot(&drive.column, &times(adjoint, &drive.column));
+            let seen = |v: &[f64]| dot(v, &times(adjoint, v));
+            let felt: f64 = drive.columns.iter().map(|column| seen(column)).sum();
             let alpha = drive.size * (felt / trace).sqrt();
-            let tau = drive.slope.as_ref().map_or(0.0, |slope| {
-                let pulled = times(x, slope);
-                (dot(&pulled, &times(adjoint, &pulled)) / felt).sqrt()
-            });
+            let pulled: f64 = drive.slopes.iter().map(|slope| seen(&times(x, slope))).sum();
+            let tau = if drive.slopes.is_empty() { 0.0 } else { (pulled / felt).sqrt() };
+            grows[usize::from(drive.is_open)] += alpha + (felt * pulled).sqrt() / trace;
             (on_the_way(before.alpha[k], alpha), on_the_way(before.tau[k], tau))
         };
         let (alpha, tau): (Vec<f64>, Vec<f64>) = self.drives.iter().enumerate().map(one).unzip();
         let finite = alpha.iter().chain(&tau).all(|x| x.is_finite());
-        finite.then_some(Multipliers { alpha, tau })
+        let [known, open] = grows;
+        let open = if open > 0.0 { open / (open + known) } else { 0.0 };
+        finite.then_some(Multipliers { alpha, tau, open })
     }
 }
 
@@ -227,7 +231,7 @@ pub fn staying(flow: &Flow, with: &Multipliers, near: &Shape, slack: f64) -> Opt
     let scaled = Scaled::new(flow, near);
     let unit = Dense::identity(near.size());
     let mut x = unit.clone();
-    let steps = if scaled.drives.iter().any(|drive| drive.slope.is_some()) { STEPS } else { 1 };
+    let steps = if scaled.drives.iter().any(|drive| !drive.slopes.is_empty()) { STEPS } else { 1 };
     for _ in 0..steps {
         let matrix = &scaled.effective(with, &x) + &unit.scaled(0.5 * slack);
         x = lyapunov(&matrix, &scaled.source(with))?;

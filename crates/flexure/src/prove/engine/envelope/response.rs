@@ -2,17 +2,16 @@
 
 use flexure_core::scalar::{Interval, Jet, Scalar};
 
-use crate::linalg::{Dense, Symmetric};
+use crate::linalg::Dense;
 use crate::prove::engine::envelope::closed_loop::{Place, Slope, TrackingLoop};
 use crate::prove::engine::envelope::slab::{View, Way};
 
-/// By how much a torque on each link [N m] moves, by its acceleration, the rates of q_md and of q̇_mr: ∂q_md/∂q̇_l M_l⁻¹ and
-/// ∂q̇_mr/∂q̇_l M_l⁻¹ over slab and tube, a column per link. `inverse_mass` is
-/// M_l⁻¹ [1/(kg m²)] there; positions of the motors in rad, velocities of links and motors [rad/s] are as given.
+/// By how much accelerations of the links move the rates of q_md and of q̇_mr: ∂q_md/∂q̇_l A and ∂q̇_mr/∂q̇_l A over slab and tube, where
+/// `accelerations` are the entries of A: M_l⁻¹ of torques on the links, a column per link. Positions of the motors in rad, velocities of links and motors [rad/s] are as given.
 pub(super) fn responses(
     system: &dyn TrackingLoop,
     way: &Way<'_>,
-    inverse_mass: &Symmetric<Interval>,
+    accelerations: &dyn Fn(usize, usize) -> Interval,
     [q_m, v_l, v_m]: [&[Interval]; 3],
 ) -> [Dense<Interval>; 2] {
     let n = system.joints();
@@ -23,7 +22,7 @@ pub(super) fn responses(
         .map(|i| {
             let moved = |(j, (&v, natural)): (usize, (&Interval, &Slope))| {
                 let natural = natural.coefficient(0);
-                Jet::new([v.intersection(natural).unwrap_or(v), inverse_mass.at(i, j), Interval::ZERO])
+                Jet::new([v.intersection(natural).unwrap_or(v), accelerations(j, i), Interval::ZERO])
             };
             let v_l = v_l.iter().zip(&natural).enumerate().map(moved).collect();
             let place = Place { q_l: q_l.clone(), q_m: constant(q_m), v_l, v_m: constant(v_m) };
