@@ -157,6 +157,39 @@ fn torques_on_links_give_a_funnel() {
     assert!(json["funnel"]["verdict"] == "undecided" && json["along"].is_null(), "{json}");
 }
 
+/// Links that are a tenth heavier or lighter have a funnel, and W says nothing of them.
+#[test]
+fn masses_that_are_off_give_a_funnel() {
+    let folder = Place::new();
+    let robot = include_str!("../../../../robots/two-link-plausible.toml");
+    let scenario = include_str!("../../../../scenarios/two-link-hardware.toml");
+    folder.write("arm.toml", scenario.replacen("\"two-link-plausible\"", "\"heavy.toml\"", 1));
+    let with = |masses: &str| {
+        folder.write("heavy.toml", format!("{robot}\n[tolerances]\nlink_mass = {masses}\n"));
+        folder.run(&["certify", "arm.toml", "--set", "duration=5", "--json"])
+    };
+    let largest = |masses: &str| {
+        let found = with(masses).json();
+        assert_eq!(found["funnel"]["verdict"], "proved", "{found}");
+        assert!(found["within"].is_null(), "{found}");
+        found["funnel"]["error"].as_array().unwrap()[0].as_f64().unwrap()
+    };
+    let (small, large) = (largest("0.01"), largest("0.1"));
+    assert!(3.0 * small < large && large < 0.005, "{small} {large}");
+    for (masses, place) in [
+        ("1.0", "tolerances.link_mass is 1 for a link_mass of 1 (joint 1), must be less"),
+        ("[0.1, 1e400]", "link_mass"),
+        ("-0.1", "tolerances.link_mass"),
+        ("[0.1, 0.1, 0.1]", "tolerances.link_mass"),
+        ("\"10 %\"", "tolerances.link_mass"),
+        ("[0.1, nan]", "link_mass"),
+    ] {
+        let outcome = with(masses);
+        assert_eq!(outcome.code, Some(2), "{masses}: {outcome:?}");
+        assert!(outcome.stdout.contains(place) || outcome.stderr.contains(place), "{masses}: {outcome:?}");
+    }
+}
+
 /// The largest torques under which no limit acts do not depend on how they are named, and the limit that is in the way is named.
 #[test]
 fn torques_grow_up_to_limits() {

@@ -196,3 +196,34 @@ pub(crate) fn read(field: &Field<'_>, base: &Base) -> (Option<Assembled>, Option
 pub(crate) fn per_joint(robot: &str, count: Option<usize>) -> Joints {
     Joints { count, robot: robot.to_owned() }
 }
+
+#[cfg(test)]
+mod tests {
+    use flexure_core::linalg::Vector;
+    use flexure_core::robots::{self, Tree};
+
+    use super::{FromFile, Links};
+    use crate::robot::{Robot, load_robot};
+
+    /// The links each alone take what all of them take together, and none of it beyond their own joint.
+    #[test]
+    fn links_alone_make_up_the_robot() {
+        alone::<Tree<f64, 7>, 7>(&load_robot("panda").expect("built in"));
+        alone::<robots::PlanarTwoLink<f64>, 2>(&load_robot("two-link-plausible").expect("built in"));
+    }
+
+    fn alone<L: FromFile<f64, N>, const N: usize>(robot: &Robot) {
+        let made = |links: &Links| L::from_file(links, robot.gravity, &|x| x).expect("of this kind");
+        let spread = |seed: f64| Vector::<f64, N>::from_fn(|i| (seed + 1.7 * i as f64).sin());
+        let [q, v, v_r, a_r] = [0.3, 1.1, 2.9, 4.2].map(spread);
+        let torque = |links: &Links| made(links).inverse_dynamics(&q, &v, &v_r, &a_r);
+        let each: Vec<_> = (0..N).map(|link| torque(&robot.links.only(link))).collect();
+        let (all, sum) = (torque(&robot.links), each.iter().fold(Vector::ZERO, |sum, &one| sum + one));
+        for i in 0..N {
+            // Sums of N torques of about the size of `all`.
+            assert!((sum[i] - all[i]).abs() < 1e-12 * (1.0 + all[i].abs()), "{sum:?} {all:?}");
+            // A chain: what a joint carries begins with its own link.
+            assert!(each[..i].iter().all(|one| one[i].abs() < 1e-12), "{each:?}");
+        }
+    }
+}

@@ -183,7 +183,7 @@ where
             let desired = q_ld.get(i).map_or(Slope::ZERO, |jet| jet[2].scale(Interval::from_f64(2.0)));
             desired - approach[i].coefficient(1)
         };
-        let ([q_l, v_l], a_lr) = ([q_l, v_l].map(|values| vector(values)), Vector::from_fn(asked));
+        let ([q_l, v_l], a_lr) = ([q_l, v_l].map(vector), Vector::from_fn(asked));
         self.alone.iter().map(|link| self.list(&link.inverse_dynamics(&q_l, &v_l, &v_l, &a_lr))).collect()
     }
 

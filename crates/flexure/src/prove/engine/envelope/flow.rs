@@ -20,18 +20,17 @@
 //! ż = … + M_l⁻¹ F z in the rows of s_l + B (M'_l⁻¹ − M_l⁻¹) F z + B M'_l⁻¹ d'_l,
 //!
 //! where d'_l has loads M_i q̈_lr + C_i q̇_l + g_i with the acceleration that the errors ask for, q̇_lr = q̇_ld − φ_l. Inverse masses are known about a number
-//! N = L Lᵀ as L (c + E) Lᵀ with ‖E‖ ≤ r ([`Masses`]): the E are causes of their own, of n numbers each, that grow with the errors.
+//! N = L Lᵀ as L (c + E) Lᵀ with ‖E‖ ≤ r (`masses.rs`): the E are causes of their own, of n numbers each, that grow with the errors.
 //!
 //! [`Flow`] has numbers for A, for the columns that torques enter by, and bounds for all that is left.
 
-use flexure_core::scalar::{Interval, Jet, Over, Scalar};
+use flexure_core::scalar::{Interval, Scalar};
 
-use crate::linalg::{Dense, Symmetric};
-use crate::prove::engine::envelope::closed_loop::{Slope, TrackingLoop};
+use crate::linalg::Dense;
+use crate::prove::engine::envelope::closed_loop::TrackingLoop;
 use crate::prove::engine::envelope::deviation::Spread;
-use crate::prove::engine::envelope::masses::Masses;
-use crate::prove::engine::envelope::response::responses;
-use crate::prove::engine::envelope::slab::{Views, Way, differences};
+use crate::prove::engine::envelope::seen::{Force, Seen, norm};
+use crate::prove::engine::envelope::slab::Way;
 use crate::prove::engine::envelope::tube::Tube;
 
 /// ż = A z + Σ n w + δ at all times of a slab and all errors of a tube, one n for each [`Channel`].
@@ -56,14 +55,6 @@ pub struct Channel {
     pub slopes: Vec<Vec<f64>>,
     /// Whether numbers leave it open, and not the robot.
     pub is_open: bool,
-}
-
-/// Columns over slab and tube, and what goes through them.
-struct Force {
-    columns: Vec<Vec<Interval>>,
-    size: Interval,
-    slopes: Vec<Vec<Interval>>,
-    is_open: bool,
 }
 
 impl Flow {
@@ -134,274 +125,7 @@ impl Flow {
     }
 }
 
-/// The length of a vector.
-fn norm(entries: impl Iterator<Item = Interval>) -> Interval {
-    entries.fold(Interval::ZERO, |sum, x| sum + x.square()).sqrt()
-}
-
 /// How far the ends of `x` are from its middle, from above.
 fn radius(x: Interval) -> f64 {
     (x - Interval::point(x.midpoint())).magnitude()
-}
-
-/// What the loop does over a slab and a tube.
-struct Seen {
-    n: usize,
-    /// Link velocities, deflections, motor velocities, torques that accelerate the motors, the lower triangle of M_l⁻¹, and the loads of each
-    /// link if masses are not known.
-    all: Views,
-    masses: Masses,
-    /// F: torques on the links by the errors, before M_l⁻¹.
-    torques: Dense<Interval>,
-    /// B L, column by column.
-    accelerated: Vec<Vec<Interval>>,
-}
-
-impl Seen {
-    fn new(system: &dyn TrackingLoop, spread: &Spread, way: &Way<'_>) -> Option<Self> {
-        let n = system.joints();
-        let (q_m, v_m) = way.motors(system)?;
-        let drive = system.drive();
-        let all = way.along(&|seed| {
-            let (x_m, u_m) = (q_m.at(seed), v_m.at(seed));
-            let (q_l, v_l) = seed.links(system);
-            let deflection = differences(&x_m, &q_l);
-            let torque = seed.answer(system, &x_m, &u_m).u_m;
-            let accelerates = (0..n).map(|i| {
-                torque[i] - deflection[i].scale(drive.stiffness[i]) - u_m[i].scale(drive.motor_damping[i])
-            });
-            let accelerates = accelerates.collect();
-            let mobility = system.mobility(&q_l);
-            let loads =
-                if spread.has_masses() { system.loads(&q_l, &v_l, &seed.q_ld).concat() } else { Vec::new() };
-            [v_l, deflection, u_m, accelerates, mobility, loads].concat()
-        })?;
-        let q_l = way.links(system);
-        let ranges = |part: usize| &all.ranges[part * n..(part + 1) * n];
-        let natural = system.inverse_mass(&q_l);
-        let inverse_mass = Symmetric::from_fn(n, |i, j| {
-            let (x, natural) = (all.ranges[4 * n + entry(i, j)], natural.at(i, j));
-            x.intersection(natural).unwrap_or(natural)
-        });
-        let masses = Masses::new(&inverse_mass, &spread.link_mass);
-        let root = |i: usize, k: usize| Interval::point(masses.root[(i, k)]);
-        let [desired, asked] = responses(system, way, &root, [&q_m.ranges, ranges(0), ranges(2)]);
-        let accelerated = |k: usize| {
-            let entry = |row: usize| match row / n {
-                0 => Interval::ZERO,
-                1 => -desired[(row % n, k)],
-                2 => root(row % n, k),
-                _ => asked[(row % n, k)],
-            };
-            (0..4 * n).map(entry).collect()
-        };
-        let accelerated = (0..n).map(accelerated).collect();
-        let torques = torques(system, &system.coriolis(&q_l, ranges(0)));
-        Some(Self { n, all, masses, torques, accelerated })
-    }
-
-    /// A over slab and tube, with numbers for the inverse masses; `errors` is the box of the tube.
-    fn matrix(&self, system: &dyn TrackingLoop, errors: &[Interval]) -> Dense<Interval> {
-        let n = self.n;
-        let [_, metric_m, inertia] = system.metrics();
-        let ([_, damping_m], drive) = (system.damping(), system.drive());
-        let approach_l = slopes(&errors[..n], &|e| system.approach(e));
-        let approach_m = slopes(&errors[n..2 * n], &|e| system.approach_m(e));
-        let diagonal = |i: usize, j: usize, x: Interval| if i == j { x } else { Interval::ZERO };
-        let rooted: Vec<_> = (0..n).map(|k| self.rooted(k)).collect();
-        let over_links = |columns: &dyn Fn(usize) -> Interval, column: usize| {
-            (0..n).fold(Interval::ZERO, |sum, k| sum + columns(k) * rooted[k][column])
-        };
-        Dense::from_fn(4 * n, 4 * n, |row, column| {
-            let ((block, i), (of, j)) = ((row / n, row % n), (column / n, column % n));
-            let itself = match (block, of) {
-                (0, 0) => -approach_l[(i, j)],
-                (0, 2) | (1, 3) => diagonal(i, j, Interval::ONE),
-                (1, 1) => -approach_m[(i, j)],
-                (1, 2) => diagonal(i, j, -drive.stiffness[i] / metric_m[i]),
-                (2, _) => over_links(&|k| Interval::point(self.masses.root[(i, k)]), column),
-                (3, 1) => diagonal(i, j, -metric_m[i] / inertia[i]),
-                (3, 3) => diagonal(i, j, -damping_m[i] / inertia[i]),
-                _ => Interval::ZERO,
-            };
-            let more = self.masses.more.middle;
-            if more.magnitude() == 0.0 {
-                itself
-            } else {
-                itself + more * over_links(&|k| self.accelerated[k][row], column)
-            }
-        })
-    }
-
-    /// Row `k` of Lᵀ F.
-    fn rooted(&self, k: usize) -> Vec<Interval> {
-        let n = self.n;
-        let entry = |column: usize| {
-            (k..n).fold(Interval::ZERO, |sum, i| {
-                sum + Interval::point(self.masses.root[(i, k)]) * self.torques[(i, column)]
-            })
-        };
-        (0..4 * n).map(entry).collect()
-    }
-
-    /// What drives the errors: joint by joint, then what masses that are off do, then what inverse masses leave open.
-    fn forces(&self, system: &dyn TrackingLoop, spread: &Spread) -> Vec<Force> {
-        let (n, drive) = (self.n, system.drive());
-        let on_link = |i: usize| self.link_column(i);
-        let on_motor = |i: usize| {
-            let inverse = (drive.motor_inertia[i] + both_ways(spread.motor_inertia[i])).recip();
-            (0..4 * n)
-                .map(move |row| if row == 3 * n + i { inverse } else { Interval::ZERO })
-                .collect::<Vec<_>>()
-        };
-        let seen = |part: usize, i: usize, tolerance: Interval, column: Vec<Interval>| {
-            let k = part * n + i;
-            Force {
-                columns: vec![column],
-                size: self.all.track[k].coefficient(0) * tolerance,
-                slopes: vec![self.all.gradients.row(k).iter().map(|&g| g * tolerance).collect()],
-                is_open: false,
-            }
-        };
-        let of_joint = |i: usize| {
-            let between = on_link(i).iter().zip(on_motor(i)).map(|(&a, b)| a - b).collect();
-            [
-                Force::unknown(spread.link_torque[i], on_link(i)),
-                Force::unknown(spread.motor_torque[i], on_motor(i)),
-                seen(1, i, spread.stiffness[i], between),
-                seen(0, i, spread.link_damping[i], on_link(i)),
-                seen(2, i, spread.motor_damping[i], on_motor(i)),
-                seen(3, i, spread.motor_inertia[i] / drive.motor_inertia[i], on_motor(i)),
-            ]
-        };
-        let mut forces: Vec<_> = (0..n).flat_map(of_joint).collect();
-        if spread.has_masses() {
-            forces.extend(self.loads(spread));
-        }
-        forces.extend(self.open_masses(spread));
-        forces
-    }
-
-    /// The load of link `i` on joint `j`, among all.
-    fn load(&self, i: usize, j: usize) -> usize {
-        4 * self.n + entry(self.n, 0) + i * self.n + j
-    }
-
-    /// What masses that are off do: one number a link, which the load on the reference goes with, and how else it may be, joint by joint.
-    fn loads(&self, spread: &Spread) -> Vec<Force> {
-        let n = self.n;
-        let middle =
-            |i: usize, j: usize| Interval::point(self.all.track[self.load(i, j)].coefficient(0).midpoint());
-        let columns: Vec<_> = (0..n).map(|j| self.link_column(j)).collect();
-        let of_link = |i: usize| {
-            let entry = |row| (0..n).fold(Interval::ZERO, |sum, j| sum + columns[j][row] * middle(i, j));
-            Force::unknown(spread.link_mass[i], (0..4 * n).map(entry).collect())
-        };
-        let beside = |j: usize| {
-            let left =
-                |i: usize| (self.all.ranges[self.load(i, j)] - middle(i, j)) * both_ways(spread.link_mass[i]);
-            let size = (0..n).map(left).fold(Interval::ZERO, |sum, left| sum + left);
-            Force::unknown(size, columns[j].clone())
-        };
-        (0..n).map(of_link).chain((0..n).map(beside)).collect()
-    }
-
-    /// What numbers for the inverse masses leave open: of the model's, in the rows of s_l, and of the robot's, over the model's.
-    fn open_masses(&self, spread: &Spread) -> [Force; 2] {
-        let n = self.n;
-        let times = |factor: Interval| {
-            (0..n).map(|k| self.rooted(k).into_iter().map(|x| x * factor).collect()).collect::<Vec<Vec<_>>>()
-        };
-        let in_place = |k: usize| {
-            let entry = |row: usize| {
-                if row / n == 2 { Interval::point(self.masses.root[(row % n, k)]) } else { Interval::ZERO }
-            };
-            (0..4 * n).map(entry).collect()
-        };
-        // |d'_l|, joint by joint.
-        let felt = |j: usize| {
-            let of = |part: usize, tolerance: Interval| {
-                Interval::point(self.all.ranges[part * n + j].magnitude()) * tolerance
-            };
-            let heavy = |i: usize| {
-                Interval::point(self.all.ranges[self.load(i, j)].magnitude()) * spread.link_mass[i]
-            };
-            let loads = if spread.has_masses() { n } else { 0 };
-            (0..loads).map(heavy).fold(
-                spread.link_torque[j] + of(1, spread.stiffness[j]) + of(0, spread.link_damping[j]),
-                |sum, load| sum + load,
-            )
-        };
-        let rooted = |k: usize| {
-            (k..n).fold(Interval::ZERO, |sum, j| {
-                sum + Interval::point(self.masses.root[(j, k)].abs()) * felt(j)
-            })
-        };
-        [
-            Force {
-                columns: (0..n).map(in_place).collect(),
-                size: Interval::ZERO,
-                slopes: times(self.masses.model),
-                is_open: true,
-            },
-            Force {
-                columns: self.accelerated.clone(),
-                size: self.masses.robot.radius * norm((0..n).map(rooted)),
-                slopes: times(self.masses.more.radius),
-                is_open: !spread.has_masses(),
-            },
-        ]
-    }
-
-    /// By what a torque on link `j` enters: c B L Lᵀ.
-    fn link_column(&self, j: usize) -> Vec<Interval> {
-        let entry = |row: usize| {
-            let through = |k: usize| self.accelerated[k][row] * Interval::point(self.masses.root[(j, k)]);
-            self.masses.robot.middle * (0..=j).map(through).fold(Interval::ZERO, |sum, x| sum + x)
-        };
-        (0..4 * self.n).map(entry).collect()
-    }
-}
-
-impl Force {
-    /// Of at most `size`, whatever the errors.
-    fn unknown(size: Interval, column: Vec<Interval>) -> Self {
-        Self { columns: vec![column], size, slopes: Vec::new(), is_open: false }
-    }
-}
-
-/// Where entry (i, j) of a lower triangle is, row by row, `j` ≤ `i`.
-fn entry(i: usize, j: usize) -> usize {
-    i * (i + 1) / 2 + j
-}
-
-/// F over slab and tube.
-fn torques(system: &dyn TrackingLoop, coriolis: &Dense<Interval>) -> Dense<Interval> {
-    let n = system.joints();
-    let [metric, ..] = system.metrics();
-    let ([damping, _], drive) = (system.damping(), system.drive());
-    let diagonal = |i: usize, j: usize, x: Interval| if i == j { x } else { Interval::ZERO };
-    Dense::from_fn(n, 4 * n, |i, column| match (column / n, column % n) {
-        (0, j) => diagonal(i, j, -metric[i]),
-        (1, j) => diagonal(i, j, drive.stiffness[i]),
-        (2, j) => -(coriolis[(i, j)] + diagonal(i, j, damping[i])),
-        _ => Interval::ZERO,
-    })
-}
-
-/// From −`x` to `x`.
-fn both_ways(x: Interval) -> Interval {
-    (-x).hull(x)
-}
-
-/// The slopes of `f` between 0 and any point of the box `e`: by the mean value theorem.
-fn slopes(e: &[Interval], f: &dyn Fn(&[Slope]) -> Vec<Slope>) -> Dense<Interval> {
-    let column = |j: usize| {
-        let seeded = |(i, &e): (usize, &Interval)| {
-            Jet::new([e, if i == j { Interval::ONE } else { Interval::ZERO }, Interval::ZERO])
-        };
-        let e: Vec<_> = e.iter().enumerate().map(seeded).collect();
-        f(&e).iter().map(|x| x.coefficient(1)).collect::<Vec<_>>()
-    };
-    Dense::from_columns(&(0..e.len()).map(column).collect::<Vec<_>>())
 }

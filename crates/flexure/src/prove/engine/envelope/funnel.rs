@@ -1,11 +1,10 @@
 //! A funnel: an ellipsoid of errors for every time of a run that no motion leaves, whatever the robot's numbers are within their
 //! tolerances and whatever torque its links and motors feel.
 //!
-//! It goes slab of time by slab of time ([`front`]). [`recursion`] suggests ellipsoids and multipliers in floats; [`inequality`] checks them in
+//! It goes slab of time by slab of time (`front.rs`). [`recursion`] suggests ellipsoids and multipliers in floats; [`inequality`] checks them in
 //! intervals. A, n and the bounds are those of all times of the slab and of all errors between its ends ([`Flow`]). Each slab's ellipsoids
 //! begin with one that holds the last of the slab before.
 //!
-//! [`front`]: super::front
 //! [`recursion`]: super::recursion
 //! [`inequality`]: super::inequality
 

@@ -13,6 +13,7 @@ mod masses;
 mod pace;
 pub mod recursion;
 mod response;
+mod seen;
 pub mod shape;
 pub mod slab;
 pub mod tube;
