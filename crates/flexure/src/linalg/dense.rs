@@ -40,6 +40,14 @@ impl<T> Dense<T> {
         self.entries.chunks_exact(self.columns.max(1))
     }
 
+    /// The matrix of `f` of each entry.
+    pub fn map<U>(&self, f: impl FnMut(T) -> U) -> Dense<U>
+    where
+        T: Copy,
+    {
+        Dense { columns: self.columns, entries: self.entries.iter().copied().map(f).collect() }
+    }
+
     /// All entries, row by row.
     pub fn entries_mut(&mut self) -> &mut [T] {
         &mut self.entries

@@ -7,6 +7,7 @@ use flexure::progress::unwatched;
 use flexure::prove::engine::envelope::deviation::Spread;
 use flexure::prove::engine::envelope::funnel::{Funnel, FunnelRequest};
 use flexure::prove::engine::envelope::inequality::holds;
+use flexure::prove::engine::envelope::shape::part;
 use flexure::scenario::load_scenario;
 
 use crate::along::slabs::enclosed;
@@ -60,9 +61,8 @@ fn a_slab_that_is_not_so_is_refused() {
     let (funnel, _) = link_error(&request);
     let piece = &funnel.pieces[20];
     let [from, to] = [&piece.passage.0[0], &piece.passage.0[1]];
-    let parts = (piece.passage.0.len() - 1) as f64;
-    let step = (Interval::point(piece.time.hi()) - Interval::point(piece.time.lo())) / Interval::point(parts);
-    let so = |flow: &_, from: &_, to: &_| holds(flow, &piece.multipliers, [from, to], step);
+    let time = part(piece.time, 0, piece.passage.0.len() - 1);
+    let so = |flow: &_, from: &_, to: &_| holds(flow, &piece.multipliers, [from, to], time);
     assert!(so(&piece.flow, from, to));
     assert!(!so(&piece.flow, from, &to.times(0.99)), "a smaller end");
     let mut stronger = piece.flow.clone();
@@ -76,5 +76,5 @@ fn a_slab_that_is_not_so_is_refused() {
     assert!(!so(&reversed, from, to), "a spring that pushes");
     let mut fewer = piece.multipliers.clone();
     fewer.alpha.pop();
-    assert!(!holds(&piece.flow, &fewer, [from, to], step), "a multiplier less");
+    assert!(!holds(&piece.flow, &fewer, [from, to], time), "a multiplier less");
 }

@@ -6,6 +6,7 @@ use flexure::core::robots::PlanarTwoLink;
 use flexure::core::scalar::{Interval, Scalar as _};
 use flexure::linalg::Dense;
 use flexure::progress::unwatched;
+use flexure::prove::engine::envelope::flow::Channel;
 use flexure::prove::engine::envelope::funnel::{Funnel, FunnelRequest, Piece};
 use flexure::robot::{Links, Tolerances};
 use flexure::scenario::{Scenario, load_scenario};
@@ -171,16 +172,25 @@ fn flows(case: &'static Case, samples: usize) -> (f64, [f64; CHANNELS]) {
         let h = 1e-6;
         let [before, after] = [-h, h].map(|h| errors(&arm, t + h, &along(&x, &rates, h)));
         let flow = &piece.flow;
+        let matrix = flow.at(Interval::point(t));
         let mut expected: [f64; 8] =
-            std::array::from_fn(|i| (0..8).map(|j| flow.matrix[(i, j)] * z[j]).sum::<f64>());
+            std::array::from_fn(|i| (0..8).map(|j| matrix[(i, j)].midpoint() * z[j]).sum::<f64>());
         let (of_joints, others) = flow.channels.split_at(2 * CHANNELS);
+        let late = Interval::point(t - flow.time);
+        let columns = |channel: &Channel| {
+            channel
+                .at(late)
+                .into_iter()
+                .map(|n| n.iter().map(|x| x.midpoint()).collect::<Vec<_>>())
+                .collect::<Vec<_>>()
+        };
         for joint in 0..2 {
             for (k, w) in driving(&arm, &off, t, &x, joint).into_iter().enumerate() {
                 let channel = &of_joints[joint * CHANNELS + k];
                 let bound = channel.size + length(&channel.slopes, &z);
                 assert!(w.abs() <= bound * (1.0 + 1e-9), "channel {k} of joint {joint}: {w} beyond {bound}");
                 fullest[k] = fullest[k].max(w.abs() / bound);
-                for (x, n) in expected.iter_mut().zip(&channel.columns[0]) {
+                for (x, n) in expected.iter_mut().zip(&columns(channel)[0]) {
                     *x += n * w;
                 }
             }
@@ -191,7 +201,7 @@ fn flows(case: &'static Case, samples: usize) -> (f64, [f64; CHANNELS]) {
         let mut open = flow.rest.clone();
         for (k, channel) in others.iter().enumerate() {
             let bound = channel.size + length(&channel.slopes, &z);
-            for (column, i) in channel.columns.iter().flat_map(|column| (0..8).map(move |i| (column, i))) {
+            for (column, i) in columns(channel).iter().flat_map(|column| (0..8).map(move |i| (column, i))) {
                 if k < loads {
                     expected[i] -= heavier[k] * column[i];
                 } else {

@@ -7,7 +7,7 @@ use flexure_core::model::{Fjr, Links, MassFactor, Motion};
 use flexure_core::reference::Reference;
 use flexure_core::scalar::{Interval, Jet, Over, Scalar};
 
-use crate::linalg::{Dense, Symmetric};
+use crate::linalg::Symmetric;
 
 /// A number over a box as a series in one direction: its value, its first derivative and half its second.
 pub type Slope = Jet<Interval, 3>;
@@ -73,8 +73,8 @@ pub trait TrackingLoop: Sync {
     fn inverse_mass(&self, q_l: &[Interval]) -> Symmetric<Interval>;
     /// The lower triangle of M_l⁻¹ [1/(kg m²)], row by row, with its derivatives at `q_l` in rad.
     fn mobility(&self, q_l: &[Slope]) -> Vec<Slope>;
-    /// C_l [N m s/rad], of Christoffel symbols, at `q_l` in rad and `v_l` [rad/s].
-    fn coriolis(&self, q_l: &[Interval], v_l: &[Interval]) -> Dense<Interval>;
+    /// C_l [N m s/rad], of Christoffel symbols, row by row, with its derivatives at `q_l` in rad and `v_l` [rad/s].
+    fn coriolis(&self, q_l: &[Slope], v_l: &[Slope]) -> Vec<Slope>;
     /// The torque [N m] that each link alone, all others massless, takes where the links are at `q_l` in rad, move at `v_l` [rad/s] and speed up as the
     /// errors ask for, q̇_lr = q̇_ld − φ_l: M_i q̈_lr + C_i q̇_l + g_i, a list for each link i. `q_ld` are Taylor coefficients of the
     /// reference in rad/sᵏ.
@@ -162,15 +162,15 @@ where
 
     fn mobility(&self, q_l: &[Slope]) -> Vec<Slope> {
         let factor = self.robot.links.factor(&vector::<Slope, N>(q_l));
-        let unit = |j: usize| Vector::from_fn(|i| if i == j { Slope::ONE } else { Slope::ZERO });
         let columns: Vec<Vector<Slope, N>> = (0..self.joints()).map(|j| factor.solve(&unit(j))).collect();
         (0..self.joints()).flat_map(|i| columns.iter().take(i + 1).map(move |column| column[i])).collect()
     }
 
-    fn coriolis(&self, q_l: &[Interval], v_l: &[Interval]) -> Dense<Interval> {
-        let (q, v) = (vector(q_l), vector(v_l));
-        let column = |j| self.list(&self.robot.links.inertial_torque(&q, &v, &unit(j), &Vector::ZERO));
-        Dense::from_columns(&(0..self.joints()).map(column).collect::<Vec<_>>())
+    fn coriolis(&self, q_l: &[Slope], v_l: &[Slope]) -> Vec<Slope> {
+        let ([q, v], n) = ([q_l, v_l].map(vector::<Slope, N>), self.joints());
+        let column = |j| self.robot.links.inertial_torque(&q, &v, &unit(j), &Vector::ZERO);
+        let columns: Vec<Vector<Slope, N>> = (0..n).map(column).collect();
+        (0..n).flat_map(|i| columns.iter().map(move |column| column[i])).collect()
     }
 
     fn loads(&self, q_l: &[Slope], v_l: &[Slope], q_ld: &[[Slope; 5]]) -> Vec<Vec<Slope>> {
@@ -230,8 +230,8 @@ where
 }
 
 /// The unit vector of joint `j`.
-fn unit<const N: usize>(j: usize) -> Vector<Interval, N> {
-    Vector::from_fn(|i| if i == j { Interval::ONE } else { Interval::ZERO })
+fn unit<T: Scalar, const N: usize>(j: usize) -> Vector<T, N> {
+    Vector::from_fn(|i| if i == j { T::ONE } else { T::ZERO })
 }
 
 /// Per-joint numbers as a vector; zero for joints that only fill the capacity.

@@ -22,7 +22,9 @@
 //! where d'_l has loads M_i q̈_lr + C_i q̇_l + g_i with the acceleration that the errors ask for, q̇_lr = q̇_ld − φ_l. Inverse masses are known about a number
 //! N = L Lᵀ as L (c + E) Lᵀ with ‖E‖ ≤ r (`masses.rs`): the E are causes of their own, of n numbers each, that grow with the errors.
 //!
-//! [`Flow`] has numbers for A, for the columns that torques enter by, and bounds for all that is left.
+//! [`Flow`] has numbers for A and for how it changes with time, for the columns that torques enter by, and bounds for all that is left.
+
+use std::iter::repeat;
 
 use flexure_core::scalar::{Interval, Scalar};
 
@@ -33,22 +35,28 @@ use crate::prove::engine::envelope::seen::{Force, Seen, norm};
 use crate::prove::engine::envelope::slab::Way;
 use crate::prove::engine::envelope::tube::Tube;
 
-/// ż = A z + Σ n w + δ at all times of a slab and all errors of a tube, one n for each [`Channel`].
+/// ż = (A + (t − t_c) Ȧ) z + Σ n w + δ at all times t of a slab and all errors of a tube, one n for each [`Channel`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flow {
+    /// t_c in s: the middle of the slab.
+    pub time: f64,
     /// A.
     pub matrix: Dense<f64>,
+    /// Ȧ.
+    pub drift: Dense<f64>,
     /// By what the errors are driven.
     pub channels: Vec<Channel>,
     /// Bounds of |δ_i|: what the numbers of A and of the columns leave open.
     pub rest: Vec<f64>,
 }
 
-/// Σ n_k w_k, with |w| at most |w_0| + |C z|.
+/// Σ (n_k + (t − t_c) ṅ_k) w_k, with |w| at most |w_0| + |C z|.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
     /// n_k: one for each number of w.
     pub columns: Vec<Vec<f64>>,
+    /// ṅ_k; none if they do not change.
+    pub drifts: Vec<Vec<f64>>,
     /// |w_0|, from above.
     pub size: f64,
     /// Rows of C; none if w does not depend on the errors.
@@ -58,6 +66,15 @@ pub struct Channel {
 }
 
 impl Flow {
+    /// A + (t − t_c) Ȧ at the time `t` in s.
+    pub fn at(&self, t: Interval) -> Dense<Interval> {
+        let late = t - Interval::point(self.time);
+        let (rows, columns) = (self.rest.len(), self.matrix.columns());
+        Dense::from_fn(rows, columns, |i, j| {
+            Interval::point(self.matrix[(i, j)]) + Interval::point(self.drift[(i, j)]) * late
+        })
+    }
+
     /// Over `tube` and the times `time` in s, with what `spread` leaves open; none if it no longer `goes_on`.
     pub fn over(
         system: &dyn TrackingLoop,
@@ -69,32 +86,22 @@ impl Flow {
         let way = Way::new(system, tube, &system.reference(time), time, goes_on);
         let errors = tube.errors();
         let seen = Seen::new(system, spread, &way)?;
+        let matrices = seen.matrices(system, &errors);
         let mut flow = Self {
-            matrix: Dense::zeros(errors.len(), errors.len()),
+            time: time.midpoint(),
+            matrix: matrices[0].map(Interval::midpoint),
+            drift: matrices[1].map(Interval::midpoint),
             channels: Vec::new(),
-            rest: vec![0.0; errors.len()],
+            rest: left_of(&matrices, way.offset, &errors),
         };
-        flow.take(&seen.matrix(system, &errors), &errors);
         for force in seen.forces(system, spread) {
-            flow.add(&force, tube, &errors);
+            flow.add(&force, tube, &errors, way.offset);
         }
         Some(flow)
     }
 
-    /// A: the middles of `matrix`, and what they leave open of its product with `errors`.
-    fn take(&mut self, matrix: &Dense<Interval>, errors: &[Interval]) {
-        for (i, row) in matrix.rows().enumerate() {
-            let mut left = Interval::ZERO;
-            for (j, (entry, error)) in row.iter().zip(errors).enumerate() {
-                self.matrix[(i, j)] = entry.midpoint();
-                left += Interval::point(radius(*entry)) * Interval::point(error.magnitude());
-            }
-            self.rest[i] = left.hi();
-        }
-    }
-
-    /// One more channel, if anything goes through it.
-    fn add(&mut self, force: &Force, tube: &dyn Tube, errors: &[Interval]) {
+    /// One more channel, if anything goes through it, at times that are `late` after the middle.
+    fn add(&mut self, force: &Force, tube: &dyn Tube, errors: &[Interval], late: Interval) {
         let point = |rows: &[Vec<Interval>]| -> Vec<Vec<f64>> {
             rows.iter().map(|row| row.iter().map(|x| x.midpoint()).collect()).collect()
         };
@@ -109,20 +116,52 @@ impl Flow {
         if all.magnitude() == 0.0 {
             return;
         }
-        for column in &force.columns {
+        let late = Interval::point(late.magnitude());
+        for (column, late) in
+            force.columns.iter().zip(repeat(Interval::ONE)).chain(force.drifts.iter().zip(repeat(late)))
+        {
             for (rest, n) in self.rest.iter_mut().zip(column) {
-                *rest = (Interval::point(*rest) + Interval::point(radius(*n)) * all).hi();
+                *rest = (Interval::point(*rest) + Interval::point(radius(*n)) * late * all).hi();
             }
         }
         let slopes = point(&force.slopes);
         let depends = slopes.iter().flatten().any(|&c| c != 0.0);
         self.channels.push(Channel {
             columns: point(&force.columns),
+            drifts: point(&force.drifts),
             size: size.hi(),
             slopes: if depends { slopes } else { Vec::new() },
             is_open: force.is_open,
         });
     }
+}
+
+impl Channel {
+    /// The columns `late` s after the middle of the slab.
+    pub fn at(&self, late: Interval) -> Vec<Vec<Interval>> {
+        let still: Vec<Vec<_>> =
+            self.columns.iter().map(|n| n.iter().map(|&x| Interval::point(x)).collect()).collect();
+        if self.drifts.is_empty() {
+            return still;
+        }
+        let moved = |(n, drift): (Vec<Interval>, &Vec<f64>)| {
+            n.into_iter().zip(drift).map(|(x, &d)| x + Interval::point(d) * late).collect()
+        };
+        still.into_iter().zip(&self.drifts).map(moved).collect()
+    }
+}
+
+/// What the middles of A and Ȧ leave open of (A + (t − t_c) Ȧ) z, with t − t_c in `offset` and z in `errors`.
+fn left_of([matrix, drift]: &[Dense<Interval>; 2], offset: Interval, errors: &[Interval]) -> Vec<f64> {
+    let late = Interval::point(offset.magnitude());
+    let row = |(a, b): (&[Interval], &[Interval])| {
+        let left = a.iter().zip(b).zip(errors).fold(Interval::ZERO, |sum, ((&a, &b), error)| {
+            let wide = Interval::point(radius(a)) + Interval::point(radius(b)) * late;
+            sum + wide * Interval::point(error.magnitude())
+        });
+        left.hi()
+    };
+    matrix.rows().zip(drift.rows()).map(row).collect()
 }
 
 /// How far the ends of `x` are from its middle, from above.

@@ -11,7 +11,7 @@ use crate::prove::engine::envelope::flow::Flow;
 use crate::prove::engine::envelope::funnel::{FunnelRequest, Open, Piece};
 use crate::prove::engine::envelope::inequality::holds;
 use crate::prove::engine::envelope::recursion::{Multipliers, covering, joined, next, staying};
-use crate::prove::engine::envelope::shape::{Passage, Shape};
+use crate::prove::engine::envelope::shape::{Passage, Shape, part};
 
 /// A slab is tried so often, with wider and wider ellipsoids.
 const TRIED: usize = 8;
@@ -119,7 +119,7 @@ fn kept(
     time: Interval,
     slack: f64,
 ) -> Option<(Passage, Still)> {
-    let step = Interval::point(time.hi()) - Interval::point(time.lo());
+    let step = time.hi() - time.lo();
     let shape = staying(flow, with, from, slack)?;
     let wide = covering(&shape, from).max(1.0) * (1.0 + ROUNDING);
     let begin = shape.times(wide);
@@ -127,21 +127,20 @@ fn kept(
         return None;
     }
     COMES_DOWN.into_iter().find_map(|share| {
-        let end = shape.times((wide * (1.0 - 0.5 * share * slack * step.midpoint())).max(1.0));
-        holds(flow, with, [&begin, &end], step)
+        let end = shape.times((wide * (1.0 - 0.5 * share * slack * step)).max(1.0));
+        holds(flow, with, [&begin, &end], time)
             .then(|| (Passage(vec![begin.clone(), end]), Still { shape: shape.clone(), slack }))
     })
 }
 
 /// Ellipsoids over the slab `time` with which the inequality holds, after one another.
 fn verified(flow: &Flow, with: &Multipliers, from: &Shape, time: Interval) -> Option<Passage> {
-    let parts = Interval::point(PARTS as f64);
-    let step = (Interval::point(time.hi()) - Interval::point(time.lo())) / parts;
     let mut shapes = vec![from.clone()];
-    for _ in 0..PARTS {
+    for k in 0..PARTS {
         let from = &shapes[shapes.len() - 1];
-        let suggested = |slack: &f64| next(flow, with, from, step.midpoint(), *slack);
-        let to = SLACK.iter().filter_map(suggested).find(|to| holds(flow, with, [from, to], step))?;
+        let part = part(time, k, PARTS);
+        let suggested = |slack: &f64| next(flow, with, from, part, *slack);
+        let to = SLACK.iter().filter_map(suggested).find(|to| holds(flow, with, [from, to], part))?;
         shapes.push(to);
     }
     Some(Passage(shapes))

@@ -5,6 +5,8 @@
 //! are zero at α = D √(nᵀ S n / tr(S X)) and τ = √(cᵀ X S X c / nᵀ S n). Kurzhanski & Vályi, *Ellipsoidal Calculus for Estimation and
 //! Control* (1997), chapter 3; Boyd et al., *Linear Matrix Inequalities in System and Control Theory* (1994), section 6.1.
 
+use flexure_core::scalar::Interval;
+
 use crate::linalg::{Dense, Leading, Symmetric, cholesky, eigenvectors, lower_inverse, lyapunov};
 use crate::prove::engine::envelope::flow::{Channel, Flow};
 use crate::prove::engine::envelope::shape::Shape;
@@ -32,7 +34,7 @@ const FIRST: f64 = 1.0;
 /// X of directions that nothing drives, over that of the ellipsoid nearby.
 const UNDRIVEN: f64 = 1e-6;
 
-/// A flow in the coordinates of an ellipsoid, in which that is the unit ball.
+/// A flow at a time, in the coordinates of an ellipsoid, in which that is the unit ball.
 struct Scaled {
     matrix: Dense<f64>,
     drives: Vec<Channel>,
@@ -44,7 +46,12 @@ impl Multipliers {
     /// Where the link errors of the X that stays are least, and that X: of `flow` as it stands around an ellipsoid of about the size of
     /// `near`, from `start` on; none if nothing stays.
     pub fn best(flow: &Flow, near: &Shape, start: Option<&Self>) -> Option<(Self, Shape)> {
-        let scaled = Scaled::new(flow, near);
+        // Near what just stays the last ones may lead too far out.
+        Self::from(flow, near, start).or_else(|| start.and_then(|_| Self::from(flow, near, None)))
+    }
+
+    fn from(flow: &Flow, near: &Shape, start: Option<&Self>) -> Option<(Self, Shape)> {
+        let scaled = Scaled::new(flow, near, flow.time);
         let first = Self::first(&scaled);
         let mut found =
             start.filter(|start| start.alpha.len() == scaled.drives.len()).unwrap_or(&first).clone();
@@ -104,26 +111,31 @@ pub fn drives(flow: &Flow) -> Vec<Channel> {
     let n = flow.rest.len();
     let open = flow.rest.iter().enumerate().filter(|(_, rest)| **rest > 0.0).map(|(i, &size)| {
         let column = (0..n).map(|k| if k == i { 1.0 } else { 0.0 }).collect();
-        Channel { columns: vec![column], size, slopes: Vec::new(), is_open: true }
+        Channel { columns: vec![column], drifts: Vec::new(), size, slopes: Vec::new(), is_open: true }
     });
     flow.channels.iter().cloned().chain(open).collect()
 }
 
 impl Scaled {
-    fn new(flow: &Flow, shape: &Shape) -> Self {
+    /// At the time `t` in s.
+    fn new(flow: &Flow, shape: &Shape, t: f64) -> Self {
         let (lower, n) = (&shape.lower, shape.size());
+        let matrix = &flow.matrix + &flow.drift.scaled(t - flow.time);
         let inverse = lower_inverse(lower);
-        let through =
-            |column: &[f64]| (0..n).map(|i| (0..=i).map(|k| inverse[(i, k)] * column[k]).sum()).collect();
+        let late = Interval::point(t - flow.time);
+        let through = |column: &[Interval]| {
+            (0..n).map(|i| (0..=i).map(|k| inverse[(i, k)] * column[k].midpoint()).sum()).collect()
+        };
         let seen = |row: &[f64]| (0..n).map(|j| (j..n).map(|k| row[k] * lower[(k, j)]).sum()).collect();
         let scaled = |drive: Channel| Channel {
-            columns: drive.columns.iter().map(|column| through(column)).collect(),
+            columns: drive.at(late).iter().map(|column| through(column)).collect(),
+            drifts: Vec::new(),
             size: drive.size,
             is_open: drive.is_open,
             slopes: drive.slopes.iter().map(|slope| seen(slope)).collect(),
         };
         Self {
-            matrix: &(&inverse * &flow.matrix) * lower,
+            matrix: &(&inverse * &matrix) * lower,
             drives: drives(flow).into_iter().map(scaled).collect(),
             links: lower.slice(0..n / 4),
         }
@@ -198,29 +210,32 @@ impl Scaled {
 /// How often what an end of a step lacks is added.
 const ADDED: usize = 8;
 
-/// Where `flow` leads from `from` in `step` s, with `slack` [1/s] more than is needed; none where nothing comes of it.
+/// Where `flow` leads from `from` over `time`, with `slack` [1/s] more than is needed; none where nothing comes of it.
 ///
-/// With F = Ẋ of the unit ball, and 𝓛 how Ẋ depends on X, both ends of the step ask for Ẋ ≥ F and Ẋ − h 𝓛 Ẋ ≥ F. An implicit step has
-/// Ẋ − h 𝓛 Ẋ = F + E with E = 0; E grows by what the first asks for.
-pub fn next(flow: &Flow, with: &Multipliers, from: &Shape, step: f64, slack: f64) -> Option<Shape> {
-    let scaled = Scaled::new(flow, from);
+/// With F = Ẋ of the unit ball, and 𝓛 how Ẋ depends on X, each as they are at an end, the ends of the step ask for Ẋ ≥ F and Ẋ − h 𝓛 Ẋ ≥ F. An
+/// implicit step has Ẋ − h 𝓛 Ẋ = F + E with E = 0; E grows by what the first asks for.
+pub fn next(flow: &Flow, with: &Multipliers, from: &Shape, time: Interval, slack: f64) -> Option<Shape> {
+    let ends = [time.lo(), time.hi()];
+    let step = ends[1] - ends[0];
     let n = from.size();
     let unit = Dense::identity(n);
-    let matrix = scaled.effective(with, &unit);
-    let applied = |x: &Dense<f64>| {
-        let moved = &matrix * x;
+    let [begin, end] = ends.map(|t| Scaled::new(flow, from, t));
+    let [first, matrix] = [&begin, &end].map(|scaled| scaled.effective(with, &unit));
+    let applied = |matrix: &Dense<f64>, x: &Dense<f64>| {
+        let moved = matrix * x;
         &moved + &moved.transposed()
     };
     let shifted = &matrix.scaled(step) + &unit.scaled(-0.5);
-    let rate = &applied(&unit) + &scaled.source(with);
+    let least = &applied(&first, &unit) + &begin.source(with);
+    let rate = &applied(&matrix, &unit) + &end.source(with);
     let mut more = unit.scaled(slack);
     for _ in 0..ADDED {
         let found = lyapunov(&shifted, &(&rate + &more))?;
-        let missing = parts(&(&found + &rate.scaled(-1.0)), |x| (-x).max(0.0));
+        let missing = parts(&(&found + &least.scaled(-1.0)), |x| (-x).max(0.0));
         if (0..n).all(|i| missing[(i, i)] < 0.1 * slack) {
             return shaped(from, &(&unit + &(&found + &unit.scaled(slack)).scaled(step)));
         }
-        let forward = &missing + &applied(&missing).scaled(-step);
+        let forward = &missing + &applied(&matrix, &missing).scaled(-step);
         more = &more + &parts(&forward, |x| x.max(0.0));
     }
     None
@@ -228,7 +243,7 @@ pub fn next(flow: &Flow, with: &Multipliers, from: &Shape, step: f64, slack: f64
 
 /// The ellipsoid that stays as it is where `flow` stands, with `slack` [1/s] more growth than there is; found from `near` on.
 pub fn staying(flow: &Flow, with: &Multipliers, near: &Shape, slack: f64) -> Option<Shape> {
-    let scaled = Scaled::new(flow, near);
+    let scaled = Scaled::new(flow, near, flow.time);
     let unit = Dense::identity(near.size());
     let mut x = unit.clone();
     let steps = if scaled.drives.iter().any(|drive| !drive.slopes.is_empty()) { STEPS } else { 1 };

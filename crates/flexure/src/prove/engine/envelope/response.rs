@@ -7,7 +7,7 @@ use crate::prove::engine::envelope::closed_loop::{Place, Slope, TrackingLoop};
 use crate::prove::engine::envelope::slab::{View, Way};
 
 /// By how much accelerations of the links move the rates of q_md and of q̇_mr: ∂q_md/∂q̇_l A and ∂q̇_mr/∂q̇_l A over slab and tube, where
-/// `accelerations` are the entries of A: M_l⁻¹ of torques on the links, a column per link. Positions of the motors in rad, velocities of links and motors [rad/s] are as given.
+/// `accelerations` are the entries of A, a column per torque or whatever speeds links up. Positions of the motors in rad, velocities of links and motors [rad/s] are as given.
 pub(super) fn responses(
     system: &dyn TrackingLoop,
     way: &Way<'_>,

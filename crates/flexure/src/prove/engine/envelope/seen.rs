@@ -15,6 +15,8 @@ use crate::prove::engine::envelope::slab::{Views, Way, differences};
 pub(super) struct Force {
     /// n_k.
     pub columns: Vec<Vec<Interval>>,
+    /// ṅ_k; none if they do not change.
+    pub drifts: Vec<Vec<Interval>>,
     /// |w_0|.
     pub size: Interval,
     /// Rows of C.
@@ -26,14 +28,27 @@ pub(super) struct Force {
 /// What the loop does over a slab and a tube.
 pub(super) struct Seen {
     n: usize,
-    /// Link velocities, deflections, motor velocities, torques that accelerate the motors, the lower triangle of M_l⁻¹, and the loads of each
+    /// Link velocities, deflections, motor velocities, torques that accelerate the motors, the lower triangle of M_l⁻¹, C_l, and the loads of each
     /// link if masses are not known.
     all: Views,
     masses: Masses,
     /// F: torques on the links by the errors, before M_l⁻¹.
-    torques: Dense<Interval>,
+    torques: Torques,
+    /// t − t_c in s.
+    offset: Interval,
+    /// B, column by column.
+    through: Vec<Vec<Interval>>,
     /// B L, column by column.
-    accelerated: Vec<Vec<Interval>>,
+    rooted: Vec<Vec<Interval>>,
+}
+
+/// F(t) + what it is beside that, F(t) = F + (t − t_c) Ḟ.
+struct Torques {
+    middle: Dense<Interval>,
+    drift: Dense<Interval>,
+    beside: Dense<Interval>,
+    /// All of it, over slab and tube.
+    whole: Dense<Interval>,
 }
 
 impl Seen {
@@ -51,77 +66,94 @@ impl Seen {
                 torque[i] - deflection[i].scale(drive.stiffness[i]) - u_m[i].scale(drive.motor_damping[i])
             });
             let accelerates = accelerates.collect();
-            let mobility = system.mobility(&q_l);
+            let [mobility, coriolis] = [system.mobility(&q_l), system.coriolis(&q_l, &v_l)];
             let loads =
                 if spread.has_masses() { system.loads(&q_l, &v_l, &seed.q_ld).concat() } else { Vec::new() };
-            [v_l, deflection, u_m, accelerates, mobility, loads].concat()
+            [v_l, deflection, u_m, accelerates, mobility, coriolis, loads].concat()
         })?;
         let q_l = way.links(system);
         let ranges = |part: usize| &all.ranges[part * n..(part + 1) * n];
         let natural = system.inverse_mass(&q_l);
+        let first = 4 * n;
         let inverse_mass = Symmetric::from_fn(n, |i, j| {
-            let (x, natural) = (all.ranges[4 * n + entry(i, j)], natural.at(i, j));
+            let (x, natural) = (all.ranges[first + entry(i, j)], natural.at(i, j));
             x.intersection(natural).unwrap_or(natural)
         });
-        let masses = Masses::new(&inverse_mass, &spread.link_mass);
-        let root = |i: usize, k: usize| Interval::point(masses.root[(i, k)]);
-        let [desired, asked] = responses(system, way, &root, [&q_m.ranges, ranges(0), ranges(2)]);
-        let accelerated = |k: usize| {
+        let on_lines = Symmetric::from_fn(n, |i, j| all.line(first + entry(i, j)));
+        let beside = Symmetric::from_fn(n, |i, j| all.beside[first + entry(i, j)]);
+        let masses = Masses::new(&inverse_mass, &on_lines, &beside, &spread.link_mass);
+        let unit = |i: usize, k: usize| if i == k { Interval::ONE } else { Interval::ZERO };
+        let [desired, asked] = responses(system, way, &unit, [&q_m.ranges, ranges(0), ranges(2)]);
+        let through = |k: usize| {
             let entry = |row: usize| match row / n {
                 0 => Interval::ZERO,
                 1 => -desired[(row % n, k)],
-                2 => root(row % n, k),
+                2 => unit(row % n, k),
                 _ => asked[(row % n, k)],
             };
             (0..4 * n).map(entry).collect()
         };
-        let accelerated = (0..n).map(accelerated).collect();
-        let torques = torques(system, &system.coriolis(&q_l, ranges(0)));
-        Some(Self { n, all, masses, torques, accelerated })
+        let through: Vec<_> = (0..n).map(through).collect();
+        let rooted = (0..n).map(|k| combined(&through, |m| Interval::point(masses.root[(m, k)]))).collect();
+        let torques = Torques::new(system, &all);
+        Some(Self { n, all, masses, torques, offset: way.offset, through, rooted })
     }
 
-    /// A over slab and tube, with numbers for the inverse masses; `errors` is the box of the tube.
-    pub fn matrix(&self, system: &dyn TrackingLoop, errors: &[Interval]) -> Dense<Interval> {
+    /// A at the middle of the slab and Ȧ, over slab and tube, but for what inverse masses leave open; `errors` is the box of the tube.
+    pub fn matrices(&self, system: &dyn TrackingLoop, errors: &[Interval]) -> [Dense<Interval>; 2] {
+        let (n, masses, torques) = (self.n, &self.masses, &self.torques);
+        let number = Dense::from_fn(n, n, |i, j| masses.number.at(i, j));
+        let rate = Dense::from_fn(n, n, |i, j| Interval::point(masses.rate.at(i, j)));
+        let late = |x: &Dense<Interval>, times: Interval| x.map(|x| x * times);
+        let beside = sum(
+            product(&sum(number.clone(), late(&rate, self.offset)), &torques.beside),
+            late(&product(&rate, &torques.drift), self.offset.square()),
+        );
+        let accelerations = [
+            sum(product(&number, &torques.middle), beside),
+            sum(product(&number, &torques.drift), product(&rate, &torques.middle)),
+        ];
+        let robot = [product(&number, &torques.whole), product(&rate, &torques.whole)];
+        let [itself, none] =
+            [self.itself(system, errors), Dense::from_fn(4 * n, 4 * n, |_, _| Interval::ZERO)];
+        let [a, drift] = [(itself, 0), (none, 1)].map(|(beside, order)| {
+            Dense::from_fn(4 * n, 4 * n, |row, column| {
+                let more = masses.more.middle;
+                let links =
+                    if row / n == 2 { accelerations[order][(row % n, column)] } else { Interval::ZERO };
+                let robot = if more.magnitude() == 0.0 {
+                    Interval::ZERO
+                } else {
+                    (0..n).fold(Interval::ZERO, |sum, k| {
+                        sum + more * self.through[k][row] * robot[order][(k, column)]
+                    })
+                };
+                beside[(row, column)] + links + robot
+            })
+        });
+        [a, drift]
+    }
+
+    /// A without accelerations of the links.
+    fn itself(&self, system: &dyn TrackingLoop, errors: &[Interval]) -> Dense<Interval> {
         let n = self.n;
         let [_, metric_m, inertia] = system.metrics();
         let ([_, damping_m], drive) = (system.damping(), system.drive());
         let approach_l = slopes(&errors[..n], &|e| system.approach(e));
         let approach_m = slopes(&errors[n..2 * n], &|e| system.approach_m(e));
         let diagonal = |i: usize, j: usize, x: Interval| if i == j { x } else { Interval::ZERO };
-        let rooted: Vec<_> = (0..n).map(|k| self.rooted(k)).collect();
-        let over_links = |columns: &dyn Fn(usize) -> Interval, column: usize| {
-            (0..n).fold(Interval::ZERO, |sum, k| sum + columns(k) * rooted[k][column])
-        };
         Dense::from_fn(4 * n, 4 * n, |row, column| {
             let ((block, i), (of, j)) = ((row / n, row % n), (column / n, column % n));
-            let itself = match (block, of) {
+            match (block, of) {
                 (0, 0) => -approach_l[(i, j)],
                 (0, 2) | (1, 3) => diagonal(i, j, Interval::ONE),
                 (1, 1) => -approach_m[(i, j)],
                 (1, 2) => diagonal(i, j, -drive.stiffness[i] / metric_m[i]),
-                (2, _) => over_links(&|k| Interval::point(self.masses.root[(i, k)]), column),
                 (3, 1) => diagonal(i, j, -metric_m[i] / inertia[i]),
                 (3, 3) => diagonal(i, j, -damping_m[i] / inertia[i]),
                 _ => Interval::ZERO,
-            };
-            let more = self.masses.more.middle;
-            if more.magnitude() == 0.0 {
-                itself
-            } else {
-                itself + more * over_links(&|k| self.accelerated[k][row], column)
             }
         })
-    }
-
-    /// Row `k` of Lᵀ F.
-    fn rooted(&self, k: usize) -> Vec<Interval> {
-        let n = self.n;
-        let entry = |column: usize| {
-            (k..n).fold(Interval::ZERO, |sum, i| {
-                sum + Interval::point(self.masses.root[(i, k)]) * self.torques[(i, column)]
-            })
-        };
-        (0..4 * n).map(entry).collect()
     }
 
     /// What drives the errors: joint by joint, then what masses that are off do, then what inverse masses leave open.
@@ -130,21 +162,22 @@ impl Seen {
         let on_link = |i: usize| self.link_column(i);
         let on_motor = |i: usize| {
             let inverse = (drive.motor_inertia[i] + both_ways(spread.motor_inertia[i])).recip();
-            (0..4 * n)
-                .map(move |row| if row == 3 * n + i { inverse } else { Interval::ZERO })
-                .collect::<Vec<_>>()
+            let column = |row: usize| if row == 3 * n + i { inverse } else { Interval::ZERO };
+            [(0..4 * n).map(column).collect(), vec![Interval::ZERO; 4 * n]]
         };
-        let seen = |part: usize, i: usize, tolerance: Interval, column: Vec<Interval>| {
+        let seen = |part: usize, i: usize, tolerance: Interval, [column, drift]: [Vec<Interval>; 2]| {
             let k = part * n + i;
             Force {
                 columns: vec![column],
+                drifts: vec![drift],
                 size: self.all.track[k].coefficient(0) * tolerance,
                 slopes: vec![self.all.gradients.row(k).iter().map(|&g| g * tolerance).collect()],
                 is_open: false,
             }
         };
         let of_joint = |i: usize| {
-            let between = on_link(i).iter().zip(on_motor(i)).map(|(&a, b)| a - b).collect();
+            let [[link, drift], [motor, _]] = [on_link(i), on_motor(i)];
+            let between = [link.iter().zip(&motor).map(|(&a, &b)| a - b).collect(), drift];
             [
                 Force::unknown(spread.link_torque[i], on_link(i)),
                 Force::unknown(spread.motor_torque[i], on_motor(i)),
@@ -164,7 +197,7 @@ impl Seen {
 
     /// The load of link `i` on joint `j`, among all.
     fn load(&self, i: usize, j: usize) -> usize {
-        4 * self.n + entry(self.n, 0) + i * self.n + j
+        coriolis(self.n, self.n, 0) + i * self.n + j
     }
 
     /// What masses that are off do: one number a link, which the load on the reference goes with, and how else it may be, joint by joint.
@@ -174,8 +207,11 @@ impl Seen {
             |i: usize, j: usize| Interval::point(self.all.track[self.load(i, j)].coefficient(0).midpoint());
         let columns: Vec<_> = (0..n).map(|j| self.link_column(j)).collect();
         let of_link = |i: usize| {
-            let entry = |row| (0..n).fold(Interval::ZERO, |sum, j| sum + columns[j][row] * middle(i, j));
-            Force::unknown(spread.link_mass[i], (0..4 * n).map(entry).collect())
+            let of = |order: usize| {
+                let columns: Vec<_> = columns.iter().map(|column| column[order].clone()).collect();
+                combined(&columns, |j| middle(i, j))
+            };
+            Force::unknown(spread.link_mass[i], [of(0), of(1)])
         };
         let beside = |j: usize| {
             let left =
@@ -189,13 +225,15 @@ impl Seen {
     /// What numbers for the inverse masses leave open: of the model's, in the rows of s_l, and of the robot's, over the model's.
     fn open_masses(&self, spread: &Spread) -> [Force; 2] {
         let n = self.n;
+        let root = |i: usize, k: usize| Interval::point(self.masses.root[(i, k)]);
+        // Rows of Lᵀ F.
+        let rows: Vec<_> = (0..n).map(|i| self.torques.whole.row(i).to_vec()).collect();
         let times = |factor: Interval| {
-            (0..n).map(|k| self.rooted(k).into_iter().map(|x| x * factor).collect()).collect::<Vec<Vec<_>>>()
+            let row = |k: usize| combined(&rows, |i| root(i, k) * factor);
+            (0..n).map(row).collect::<Vec<_>>()
         };
         let in_place = |k: usize| {
-            let entry = |row: usize| {
-                if row / n == 2 { Interval::point(self.masses.root[(row % n, k)]) } else { Interval::ZERO }
-            };
+            let entry = |row: usize| if row / n == 2 { root(row % n, k) } else { Interval::ZERO };
             (0..4 * n).map(entry).collect()
         };
         // |d'_l|, joint by joint.
@@ -213,19 +251,19 @@ impl Seen {
             )
         };
         let rooted = |k: usize| {
-            (k..n).fold(Interval::ZERO, |sum, j| {
-                sum + Interval::point(self.masses.root[(j, k)].abs()) * felt(j)
-            })
+            (k..n).fold(Interval::ZERO, |sum, j| sum + Interval::point(root(j, k).magnitude()) * felt(j))
         };
         [
             Force {
                 columns: (0..n).map(in_place).collect(),
+                drifts: Vec::new(),
                 size: Interval::ZERO,
                 slopes: times(self.masses.model),
                 is_open: true,
             },
             Force {
-                columns: self.accelerated.clone(),
+                columns: self.rooted.clone(),
+                drifts: Vec::new(),
                 size: self.masses.robot.radius * norm((0..n).map(rooted)),
                 slopes: times(self.masses.more.radius),
                 is_open: !spread.has_masses(),
@@ -233,20 +271,20 @@ impl Seen {
         ]
     }
 
-    /// By what a torque on link `j` enters: c B L Lᵀ.
-    fn link_column(&self, j: usize) -> Vec<Interval> {
-        let entry = |row: usize| {
-            let through = |k: usize| self.accelerated[k][row] * Interval::point(self.masses.root[(j, k)]);
-            self.masses.robot.middle * (0..=j).map(through).fold(Interval::ZERO, |sum, x| sum + x)
-        };
-        (0..4 * self.n).map(entry).collect()
+    /// By what a torque on link `j` enters, and the rate of that: c B N(t).
+    fn link_column(&self, j: usize) -> [Vec<Interval>; 2] {
+        let (masses, times) = (&self.masses, self.masses.robot.middle);
+        [
+            combined(&self.through, |m| times * masses.number.at(m, j)),
+            combined(&self.through, |m| times * Interval::point(masses.rate.at(m, j))),
+        ]
     }
 }
 
 impl Force {
     /// Of at most `size`, whatever the errors.
-    fn unknown(size: Interval, column: Vec<Interval>) -> Self {
-        Self { columns: vec![column], size, slopes: Vec::new(), is_open: false }
+    fn unknown(size: Interval, [column, drift]: [Vec<Interval>; 2]) -> Self {
+        Self { columns: vec![column], drifts: vec![drift], size, slopes: Vec::new(), is_open: false }
     }
 }
 
@@ -255,17 +293,52 @@ fn entry(i: usize, j: usize) -> usize {
     i * (i + 1) / 2 + j
 }
 
-/// F over slab and tube.
-fn torques(system: &dyn TrackingLoop, coriolis: &Dense<Interval>) -> Dense<Interval> {
-    let n = system.joints();
-    let [metric, ..] = system.metrics();
-    let ([damping, _], drive) = (system.damping(), system.drive());
-    let diagonal = |i: usize, j: usize, x: Interval| if i == j { x } else { Interval::ZERO };
-    Dense::from_fn(n, 4 * n, |i, column| match (column / n, column % n) {
-        (0, j) => diagonal(i, j, -metric[i]),
-        (1, j) => diagonal(i, j, drive.stiffness[i]),
-        (2, j) => -(coriolis[(i, j)] + diagonal(i, j, damping[i])),
-        _ => Interval::ZERO,
+/// Where entry (i, j) of C_l of `n` joints is, among all.
+fn coriolis(n: usize, i: usize, j: usize) -> usize {
+    4 * n + entry(n, 0) + i * n + j
+}
+
+impl Torques {
+    fn new(system: &dyn TrackingLoop, all: &Views) -> Self {
+        let n = system.joints();
+        let [metric, ..] = system.metrics();
+        let ([damping, _], drive) = (system.damping(), system.drive());
+        let diagonal = |i: usize, j: usize, x: Interval| if i == j { x } else { Interval::ZERO };
+        let made = |constant: bool, c: &dyn Fn(usize) -> Interval| {
+            let times = if constant { Interval::ONE } else { Interval::ZERO };
+            Dense::from_fn(n, 4 * n, |i, column| match (column / n, column % n) {
+                (0, j) => diagonal(i, j, -metric[i] * times),
+                (1, j) => diagonal(i, j, drive.stiffness[i] * times),
+                (2, j) => -(c(coriolis(n, i, j)) + diagonal(i, j, damping[i] * times)),
+                _ => Interval::ZERO,
+            })
+        };
+        Self {
+            middle: made(true, &|k| Interval::point(all.line(k)[0])),
+            drift: made(false, &|k| Interval::point(all.line(k)[1])),
+            beside: made(false, &|k| all.beside[k]),
+            whole: made(true, &|k| all.ranges[k]),
+        }
+    }
+}
+
+/// Σ_k factor(k) v_k.
+fn combined(vectors: &[Vec<Interval>], factor: impl Fn(usize) -> Interval) -> Vec<Interval> {
+    let size = vectors.first().map_or(0, Vec::len);
+    let factors: Vec<_> = (0..vectors.len()).map(factor).collect();
+    let entry = |i: usize| {
+        vectors.iter().zip(&factors).fold(Interval::ZERO, |sum, (vector, &factor)| sum + factor * vector[i])
+    };
+    (0..size).map(entry).collect()
+}
+
+fn sum(a: Dense<Interval>, b: Dense<Interval>) -> Dense<Interval> {
+    Dense::from_fn(a.rows().len(), a.columns(), |i, j| a[(i, j)] + b[(i, j)])
+}
+
+fn product(a: &Dense<Interval>, b: &Dense<Interval>) -> Dense<Interval> {
+    Dense::from_fn(a.rows().len(), b.columns(), |i, j| {
+        (0..a.columns()).fold(Interval::ZERO, |sum, k| sum + a[(i, k)] * b[(k, j)])
     })
 }
 

@@ -16,6 +16,14 @@ pub struct Shape {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Passage(pub Vec<Shape>);
 
+/// The times of part `k` of `parts` of `time`, evenly spaced.
+pub fn part(time: Interval, k: usize, parts: usize) -> Interval {
+    let at = |k: usize| {
+        if k == parts { time.hi() } else { time.lo() + (time.hi() - time.lo()) * (k as f64 / parts as f64) }
+    };
+    Interval::new(at(k), at(k + 1)).unwrap_or(Interval::ENTIRE)
+}
+
 impl Shape {
     /// As large in every direction, times `factor`.
     pub fn times(&self, factor: f64) -> Self {

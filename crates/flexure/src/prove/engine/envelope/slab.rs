@@ -181,7 +181,7 @@ pub(super) struct Way<'a> {
     /// The reference over the slab.
     all: Vec<[Interval; 7]>,
     /// t − t_c in s.
-    offset: Interval,
+    pub(super) offset: Interval,
     /// The box around the tube.
     errors: Vec<Interval>,
     tube: &'a dyn Tube,
@@ -195,6 +195,8 @@ pub(super) struct Views {
     pub(super) track: Vec<Slope>,
     /// Their ranges over slab and tube.
     pub(super) ranges: Vec<Interval>,
+    /// How far they are there from their lines in time.
+    pub(super) beside: Vec<Interval>,
     /// Their derivatives by the errors: a row per number.
     pub(super) gradients: Dense<Interval>,
 }
@@ -272,7 +274,7 @@ impl<'a> Way<'a> {
     /// The numbers that `f` makes, over the tube and the slab; none if nobody waits for them.
     pub(super) fn along(&self, f: &dyn Fn(&Seeded) -> Vec<Slope>) -> Option<Views> {
         let middle = f(&self.seeded(View::Middle));
-        let track: Vec<_> = f(&self.seeded(View::Track));
+        let track = f(&self.seeded(View::Track));
         let track: Vec<_> =
             middle.iter().zip(track).map(|(middle, track)| self.expanded(middle, &track)).collect();
         let pass = |i| (self.goes_on)().then(|| f(&self.seeded(View::Tube(i))));
@@ -283,8 +285,28 @@ impl<'a> Way<'a> {
             // Both enclose it.
             mean.intersection(passes[0][k].coefficient(0)).unwrap_or(mean)
         };
-        let ranges = gradients.rows().enumerate().map(range).collect();
-        Some(Views { middle, track, ranges, gradients })
+        let ranges: Vec<_> = gradients.rows().enumerate().map(range).collect();
+        let beside = |(k, gradient): (usize, &[Interval])| {
+            let [at, rate] = line(&middle[k]).map(Interval::point);
+            let bent = self.bent(&middle[k], &track[k]) + self.tube.reach(gradient);
+            bent.intersection(ranges[k] - at - rate * self.offset).unwrap_or(bent)
+        };
+        let beside = gradients.rows().enumerate().map(beside).collect();
+        Some(Views { middle, track, ranges, beside, gradients })
+    }
+
+    /// How far a number on the reference over the slab is from its line in time.
+    fn bent(&self, middle: &Slope, track: &Slope) -> Interval {
+        let [value, slope, curvature] = [0, 1, 2].map(|k| track.coefficient(k));
+        let [at, rate] = line(middle).map(Interval::point);
+        let off = middle.coefficient(0) - at;
+        match self.smooth {
+            Smooth::Not => value - at - rate * self.offset,
+            Smooth::Once => off + (slope - rate) * self.offset,
+            Smooth::Twice => {
+                off + (middle.coefficient(1) - rate) * self.offset + curvature * self.offset.square()
+            }
+        }
     }
 
     /// A number on the reference over the slab: what its evaluation there says, and what follows from the middle.
@@ -308,7 +330,17 @@ impl<'a> Way<'a> {
     }
 }
 
+/// Value and rate at the middle of the slab of a straight line in time near a number on the reference.
+fn line(middle: &Slope) -> [f64; 2] {
+    [0, 1].map(|k| middle.coefficient(k).midpoint())
+}
+
 impl Views {
+    /// Value and rate at the middle of the slab of number `k`'s line in time.
+    pub(super) fn line(&self, k: usize) -> [f64; 2] {
+        line(&self.middle[k])
+    }
+
     /// The numbers in the view of `seed`.
     pub(super) fn at(&self, seed: &Seeded) -> Vec<Slope> {
         match seed.view {
