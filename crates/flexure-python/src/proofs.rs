@@ -29,7 +29,7 @@ fn list(name: &'static str, given: Option<&Bound<'_, PyAny>>) -> PyResult<Option
 /// its text, or None if nothing was proved. Errors in rad, links then motors, torques in N m, rates in 1/s.
 #[pyfunction]
 #[pyo3(signature = (scenario, *, error_box = None, initial_error = None, rate = None, disturbance = None, link_disturbance = None,
-                    up_to_limits = false, velocity_error = None,
+                    up_to_limits = false, slabs = None, velocity_error = None,
                     direct = false, budget = 10_000, out = None, progress = None))]
 #[expect(clippy::too_many_arguments, reason = "keywords")]
 pub fn certify<'py>(
@@ -41,6 +41,7 @@ pub fn certify<'py>(
     disturbance: Option<&Bound<'py, PyAny>>,
     link_disturbance: Option<&Bound<'py, PyAny>>,
     up_to_limits: bool,
+    slabs: Option<usize>,
     velocity_error: Option<&Bound<'py, PyAny>>,
     direct: bool,
     budget: usize,
@@ -67,7 +68,7 @@ pub fn certify<'py>(
         [list("disturbance", disturbance)?, list("link_disturbance", link_disturbance)?];
     let velocity_error = list("velocity_error", velocity_error)?;
     let question =
-        Question { region, rate, disturbance, link_disturbance, up_to_limits, velocity_error, direct }
+        Question { region, rate, disturbance, link_disturbance, up_to_limits, slabs, velocity_error, direct }
             .fitting(&loaded)
             .map_err(|problem| refused(py, &problem))?;
     let found = watched(py, progress, |progress| {

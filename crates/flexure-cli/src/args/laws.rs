@@ -35,6 +35,9 @@ pub struct Certify {
     /// Multiply the disturbances until a limit of the robot may act: the largest funnel in which none does, and which one is in the way.
     #[arg(long)]
     pub up_to_limits: bool,
+    /// Slabs of time that a funnel may have; 100,000 over the third power of the number of joints if left out.
+    #[arg(long, value_name = "SLABS")]
+    pub slabs: Option<usize>,
     /// Largest velocity errors in rad/s, links then motors: certifies the contraction rate, in a metric that grows with the error, of any two
     /// solutions of the virtual system while both keep to them and to the region. For phi = tanh, and for linear where the link metric hardens.
     #[arg(long, value_name = "S", value_delimiter = ',', allow_negative_numbers = true)]

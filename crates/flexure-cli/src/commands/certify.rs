@@ -105,8 +105,8 @@ fn question(options: &Certify, scenario: &Scenario) -> Result<Question, Problem>
     let link_disturbance = options.link_disturbance.clone();
     let velocity_error = options.velocity_error.clone();
     let up_to_limits = options.up_to_limits;
-    let rate = options.rate;
-    Question { region, rate, disturbance, link_disturbance, up_to_limits, velocity_error, direct }
+    let (rate, slabs) = (options.rate, options.slabs);
+    Question { region, rate, disturbance, link_disturbance, up_to_limits, slabs, velocity_error, direct }
         .fitting(scenario)
 }
 

@@ -273,6 +273,7 @@ def certify(
     disturbance: _Numbers | None = None,
     link_disturbance: _Numbers | None = None,
     up_to_limits: bool = False,
+    slabs: int | None = None,
     velocity_error: _Numbers | None = None,
     direct: bool = False,
     budget: int = 10_000,

@@ -78,6 +78,7 @@ def certify(
     disturbance: Numbers | None = None,
     link_disturbance: Numbers | None = None,
     up_to_limits: bool = False,
+    slabs: int | None = None,
     velocity_error: Numbers | None = None,
     direct: bool = False,
     budget: int = 10_000,
@@ -88,7 +89,8 @@ def certify(
 
     The dict has the keys of `--json`, with `verdict` ("proved", "proved (ideal loop)", "refuted", "undecided", …), and `certificate`,
     the text that `verify` checks, None if nothing was proved. Errors in rad, links then motors; rate in 1/s; disturbance in N m, on
-    the motors, link_disturbance on the links, with up_to_limits multiplied until a limit may act; velocity errors in rad/s, links then motors.
+    the motors, link_disturbance on the links, with up_to_limits multiplied until a limit may act; a funnel may have so many slabs of
+    time; velocity errors in rad/s, links then motors.
     """
     scenario = _scenario(scenario)
     return _watched(
@@ -102,6 +104,7 @@ def certify(
             disturbance=disturbance,
             link_disturbance=link_disturbance,
             up_to_limits=up_to_limits,
+            slabs=slabs,
             velocity_error=velocity_error,
             direct=direct,
             budget=budget,

@@ -2,6 +2,10 @@
 
 use std::ops::{Add, Index, IndexMut, Mul, Range};
 
+use flexure_core::scalar::Scalar;
+
+use super::Symmetric;
+
 /// A matrix, stored row by row; entry (i, j) is `matrix[(i, j)]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dense<T> {
@@ -111,29 +115,35 @@ impl Dense<f64> {
     }
 }
 
-impl Add for &Dense<f64> {
-    type Output = Dense<f64>;
+impl<T: Copy + Add<Output = T>> Add for &Dense<T> {
+    type Output = Dense<T>;
 
-    fn add(self, rhs: Self) -> Dense<f64> {
-        let entries = self.entries.iter().zip(&rhs.entries).map(|(a, b)| a + b).collect();
+    fn add(self, rhs: Self) -> Dense<T> {
+        let entries = self.entries.iter().zip(&rhs.entries).map(|(&a, &b)| a + b).collect();
         Dense { columns: self.columns, entries }
     }
 }
 
-impl Mul for &Dense<f64> {
-    type Output = Dense<f64>;
+impl<T: Scalar + PartialEq> Mul for &Dense<T> {
+    type Output = Dense<T>;
 
-    fn mul(self, rhs: Self) -> Dense<f64> {
+    fn mul(self, rhs: Self) -> Dense<T> {
         let rows = self.rows().len();
-        let mut product = Dense::zeros(rows, rhs.columns);
+        let mut product = Dense { columns: rhs.columns, entries: vec![T::ZERO; rows * rhs.columns] };
         for (sum, row) in product.entries.chunks_exact_mut(rhs.columns.max(1)).zip(self.rows()) {
             for (&factor, other) in row.iter().zip(rhs.rows()) {
-                if factor != 0.0 {
-                    sum.iter_mut().zip(other).for_each(|(sum, x)| *sum += factor * x);
+                if factor != T::ZERO {
+                    sum.iter_mut().zip(other).for_each(|(sum, &x)| *sum += factor * x);
                 }
             }
         }
         product
+    }
+}
+
+impl<T: Copy> From<&Symmetric<T>> for Dense<T> {
+    fn from(symmetric: &Symmetric<T>) -> Self {
+        Self::from_fn(symmetric.size(), symmetric.size(), |i, j| symmetric.at(i, j))
     }
 }
 

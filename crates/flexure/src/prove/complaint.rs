@@ -102,7 +102,11 @@ impl Proof {
                     100.0 * share
                 ),
             ),
-            None if open.unbounded => ("tolerances".to_owned(), MANY_JOINTS.to_owned()),
+            None if open.unbounded => {
+                let funnel = self.robust.as_ref().and_then(|found| found.as_ref().err());
+                let funnel = funnel.map_or_else(String::new, |none| format!("; of a funnel: {}", none.at));
+                ("tolerances".to_owned(), format!("{MANY_JOINTS}{funnel}"))
+            }
             // Smaller ones do not help, or the start is what is wrong.
             None => ("tolerances".to_owned(), ASK_LESS.to_owned()),
         };

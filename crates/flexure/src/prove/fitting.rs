@@ -47,6 +47,10 @@ impl Question {
             let hint = "name some, on links or motors: those are multiplied until a limit may act";
             return Err(Problem::new("range", message, hint));
         }
+        if self.slabs == Some(0) {
+            let message = "a funnel may have 0 slabs of time, must be >= 1".to_owned();
+            return Err(Problem::new("range", message, "leave it out for as many as are usual"));
+        }
         let hint = "one number, or one per joint of the links, then of the motors, in rad/s";
         let velocity_error = self
             .velocity_error

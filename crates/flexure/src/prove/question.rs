@@ -52,6 +52,8 @@ pub struct Question {
     pub link_disturbance: Option<Vec<f64>>,
     /// Whether these torques say only which ones, and the largest multiple is looked for under which no limit of the robot acts.
     pub up_to_limits: bool,
+    /// Slabs of time that a funnel may have; if none are named, the fewer the more joints there are.
+    pub slabs: Option<usize>,
     /// Largest velocity errors [rad/s], links then motors, if a rate in a stretched metric is asked for.
     pub velocity_error: Option<Vec<f64>>,
     /// Whether the direct engine shall prove the rate once more, and how hard it may try.
@@ -304,7 +306,7 @@ pub fn prove_watched(
             let [motors, links] = [&question.disturbance, &question.link_disturbance].map(number);
             let spread = spread(&scenario.robot, motors.as_deref(), links.as_deref());
             let bounds = if question.up_to_limits { up_to_limits } else { robust };
-            (bounds(scenario, &spread, &between(begun, ROBUST))?, ROBUST)
+            (bounds(scenario, &spread, question.slabs, &between(begun, ROBUST))?, ROBUST)
         }
         _ => (None, begun),
     };

@@ -48,6 +48,17 @@ pub struct Robust {
     pub limits: Vec<Limit>,
     /// Slabs of time that the funnel has.
     pub slabs: usize,
+    /// The errors over time.
+    pub profile: Profile,
+}
+
+/// Bounds of position errors, part by part of the run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Profile {
+    /// Where each part ends in s; the first begins at 0.
+    pub end: Vec<f64>,
+    /// |q̃_i| in rad in each part, links then motors: a list for each i.
+    pub error: Vec<Vec<f64>>,
 }
 
 /// What is in the way of a funnel in which no limit acts.
@@ -74,6 +85,11 @@ pub struct NoFunnel {
 const SLAB: f64 = 0.02;
 const FEWEST: f64 = 64.0;
 
+/// Slabs of a funnel of `joints` joints where nobody says how many: about half a minute.
+fn usual_slabs(joints: usize) -> usize {
+    100_000 / joints.pow(3)
+}
+
 /// Errors so much larger than the funnel's are to come back into it.
 const ROOM: f64 = 1.2;
 
@@ -89,20 +105,25 @@ const HALVED: usize = 5;
 /// Funnels that are looked for, about, for the largest torques.
 const LOOKED_FOR: f64 = 9.0;
 
+/// Parts of the run that errors are told of at most.
+const PARTS: usize = 240;
+
 /// Part of the work that the funnel takes, about.
 const FUNNEL: f64 = 0.7;
 
-/// The bounds for `scenario` with what `spread` leaves open. None where `progress` breaks it off.
+/// The bounds for `scenario` with what `spread` leaves open, by a funnel of at most so many `slabs`, or as many as are usual. None where
+/// `progress` breaks it off.
 ///
 /// # Errors
 /// As [`along`](crate::prove::along::along).
 pub fn robust(
     scenario: &Scenario,
     spread: &Spread,
+    slabs: Option<usize>,
     progress: Progress<'_>,
 ) -> Result<Option<Result<Robust, NoFunnel>>, Problems> {
     let system = enclosed(scenario)?;
-    Ok(bounds(scenario, &*system, spread, progress))
+    Ok(bounds(scenario, &*system, spread, slabs, progress))
 }
 
 /// The bounds under the largest torques under which no limit of the robot acts: torques of `spread` times a number, tolerances as they are.
@@ -115,14 +136,15 @@ pub fn robust(
 pub fn up_to_limits(
     scenario: &Scenario,
     spread: &Spread,
+    slabs: Option<usize>,
     progress: Progress<'_>,
 ) -> Result<Option<Result<Robust, NoFunnel>>, Problems> {
     let system = enclosed(scenario)?;
     let mut done = 0.0;
     let at = |times: f64| {
         let spread = spread.with_torques_times(times);
-        let found =
-            bounds(scenario, &*system, &spread, &|part| progress(((done + part) / LOOKED_FOR).min(1.0)));
+        let part = |part: f64| progress(((done + part) / LOOKED_FOR).min(1.0));
+        let found = bounds(scenario, &*system, &spread, slabs, &part);
         done += 1.0;
         found.map(|found| found.map(|found| Robust { times, ..found }))
     };
@@ -173,6 +195,7 @@ fn bounds(
     scenario: &Scenario,
     system: &dyn TrackingLoop,
     spread: &Spread,
+    slabs: Option<usize>,
     progress: Progress<'_>,
 ) -> Option<Result<Robust, NoFunnel>> {
     let duration = scenario.bounds(scenario.duration).hi();
@@ -182,20 +205,27 @@ fn bounds(
         start: start_errors(scenario, system).concat(),
         slab: SLAB.min(duration / FEWEST),
         room: ROOM,
+        most: slabs.unwrap_or_else(|| usual_slabs(system.joints())),
     };
     let found = Funnel::along(system, &request, &|fraction| progress(FUNNEL * fraction))?;
     let funnel = match found {
         Ok(funnel) => funnel,
-        Err(open) => return Some(Err(no_funnel(&open))),
+        Err(open) => return Some(Err(no_funnel(&open, &request))),
     };
     let course = course(system, &funnel, &|fraction| progress(FUNNEL + (1.0 - FUNNEL) * fraction))?;
     Some(Ok(Robust::new(scenario, system.joints(), &funnel, &course)))
 }
 
-fn no_funnel(open: &Open) -> NoFunnel {
+fn no_funnel(open: &Open, request: &FunnelRequest) -> NoFunnel {
     let largest = open.error.iter().copied().fold(0.0, f64::max);
     let time = short(open.time, 4);
-    let at = if largest < FAR {
+    let at = if open.is_spent {
+        format!(
+            "at t = {time} s of {} s all {} slabs of time were used up; --slabs allows more",
+            short(request.duration, 4),
+            request.most
+        )
+    } else if largest < FAR {
         format!(
             "at t = {time} s link errors beyond {} rad were not shown to stay bounded",
             engineering(largest)
@@ -235,6 +265,15 @@ impl Binding {
     }
 }
 
+impl Profile {
+    /// Of the first `count` errors.
+    fn of(funnel: &Funnel, count: usize) -> Self {
+        let parts = funnel.profile(PARTS);
+        let error = |i: usize| parts.iter().map(|(_, extents)| extents[i]).collect();
+        Self { end: parts.iter().map(|(end, _)| *end).collect(), error: (0..count).map(error).collect() }
+    }
+}
+
 impl Robust {
     fn new(scenario: &Scenario, n: usize, funnel: &Funnel, course: &Course) -> Self {
         let extents = funnel.extents();
@@ -261,6 +300,7 @@ impl Robust {
             torque,
             limits: limits(scenario, n, &verdict),
             slabs: funnel.pieces.len(),
+            profile: Profile::of(funnel, 2 * n),
         }
     }
 }

@@ -1,5 +1,5 @@
-//! A proof as a picture: the storage W along the run of the file, and for each joint the plane of its errors with the region, the level set, the
-//! tube and the run in them.
+//! A proof as a picture: the storage W along the run of the file; for each joint its link error in the funnel over time, if there is one, and the
+//! plane of its errors with the region, the level set, the tube and the run in them.
 
 use super::error_path::ErrorPath;
 use super::run::BOUND;
@@ -7,7 +7,8 @@ use crate::files::Problems;
 use crate::files::number::{engineering, power_of_ten, short, significant};
 use crate::progress::Progress;
 use crate::prove::decay::ROUNDING;
-use crate::prove::summary::ProofSummary;
+use crate::prove::robust::Profile;
+use crate::prove::summary::{FunnelSummary, ProofSummary};
 use crate::report::draw::axes::{Axes, Axis, BOTTOM};
 use crate::report::draw::curve::Curve;
 use crate::report::draw::panel::{LEFT, TIME, buckets, over_time, span};
@@ -26,6 +27,8 @@ const STORAGE: f64 = 380.0;
 /// Planes in a row, and the height of one [px].
 const COLUMNS: usize = 4;
 const PLANE: f64 = 330.0;
+/// Height of a link error over time [px].
+const BAND: f64 = 280.0;
 /// So many times what is proved is shown of a run that leaves it.
 const OUTSIDE: f64 = 3.0;
 /// The region is shown where it is no more than so many times the level set.
@@ -34,6 +37,7 @@ const FAR: f64 = 2.5;
 const DECADES: f64 = 25.0;
 
 const REGION: Stroke = Stroke { color: MUTED, width: 1.6, dash: &[6.0, 4.0] };
+const FUNNEL: Stroke = Stroke::solid(HOLDS, 1.8);
 const LEVEL: Stroke = Stroke::solid(HOLDS, 2.4);
 
 fn run_stroke() -> Stroke {
@@ -64,11 +68,22 @@ pub fn certificate_figure(
     let joints = scenario.robot.joint_count();
     let columns = joints.clamp(1, COLUMNS);
     let width = (WIDTH - MARGIN) / columns as f64;
+    let rows = joints.div_ceil(columns) as f64;
+    let place = |i: usize, top: f64, height: f64| {
+        [MARGIN / 2.0 + width * (i % columns) as f64, top + height * (i / columns) as f64]
+    };
+    if let Some(profile) = told.funnel {
+        for (i, joint) in scenario.robot.joints.iter().enumerate() {
+            let band = Band::new(&path, profile, i);
+            band.draw(&mut scene, place(i, top, BAND), width, &joint.name, joint.kind);
+        }
+        top += BAND * rows;
+    }
     for (i, joint) in scenario.robot.joints.iter().enumerate() {
-        let place = [MARGIN / 2.0 + width * (i % columns) as f64, top + PLANE * (i / columns) as f64];
+        let place = place(i, top, PLANE);
         Plane::new(&path, &told, i, joints).draw(&mut scene, place, width, &joint.name, joint.kind);
     }
-    scene.height = top + PLANE * joints.div_ceil(columns) as f64 + 6.0;
+    scene.height = top + PLANE * rows + 6.0;
     Ok(scene)
 }
 
@@ -82,6 +97,7 @@ struct Told<'a> {
     start: Option<f64>,
     /// Rate at which √W decays \[1/s\].
     rate: Option<f64>,
+    funnel: Option<&'a Profile>,
 }
 
 /// The states up to a level of W.
@@ -115,6 +131,10 @@ impl<'a> Told<'a> {
                 .filter(|start| start.inside && start.level > ROUNDING)
                 .map(|start| start.level),
             rate: summary.convergence_rate.filter(|rate| *rate > 0.0),
+            funnel: summary.funnel.as_ref().and_then(|funnel| match funnel {
+                FunnelSummary::Proved(robust) => Some(&robust.profile),
+                FunnelSummary::Undecided(_) => None,
+            }),
         }
     }
 
@@ -134,7 +154,11 @@ impl<'a> Told<'a> {
         let levels = self.levels.iter().map(|Set { what, level, stroke, .. }| {
             (format!("W = {} J, {what}", engineering(*level)), *stroke)
         });
+        let funnel = self.funnel.map(|_| {
+            ("funnel: link errors under every torque, of every robot asked about".to_owned(), FUNNEL)
+        });
         std::iter::once(("the run".to_owned(), run_stroke()))
+            .chain(funnel)
             .chain(decay)
             .chain(region)
             .chain(levels)
@@ -182,6 +206,48 @@ fn draw_storage(scene: &mut Scene, top: f64, told: &Told, run: &Curve, decay: Op
     }
     for curve in decay.map(|decay| decay.exponents(count)).iter().chain([&run]) {
         axes.curve(scene, curve, count);
+    }
+}
+
+/// The link error of a joint over time.
+struct Band {
+    run: Curve,
+    /// What it stays within, either way.
+    ends: [Curve; 2],
+}
+
+impl Band {
+    fn new(path: &ErrorPath, profile: &Profile, joint: usize) -> Self {
+        let (t, values) = path.of_link(joint);
+        let begins = std::iter::once(&0.0).chain(&profile.end);
+        // Constant over each part.
+        let t_of: Vec<f64> = begins.zip(&profile.end).flat_map(|(from, to)| [*from, *to]).collect();
+        let end = |sign: f64| Curve {
+            t: t_of.clone(),
+            values: profile.error[joint].iter().flat_map(|error| [sign * error; 2]).collect(),
+            stroke: FUNNEL,
+        };
+        Self { run: Curve { t, values, stroke: run_stroke() }, ends: [end(1.0), end(-1.0)] }
+    }
+
+    fn draw(&self, scene: &mut Scene, [left, top]: Point, width: f64, name: &str, kind: JointKind) {
+        let unit = units::ANGLE.of(kind).raised;
+        let size = |curve: &Curve| curve.values.iter().map(|e| e.abs()).fold(0.0, f64::max);
+        let within = size(&self.ends[0]);
+        let most = 1.12 * within.max(size(&self.run).min(OUTSIDE * within)).max(1e-15);
+        let range = Range { low: -most, high: most };
+        let label = match ticks::power(range) {
+            0 => format!("link error [{unit}]"),
+            power => format!("link error [{} {unit}]", power_of_ten(power)),
+        };
+        scene.text([left + LEFT, top + 16.0], name, bold(15.0, INK), Anchor::Start);
+        let y = Axis { range, ticks: ticks::several(range, 6, ticks::power(range)), label: &label };
+        let time = span(&self.ends[0].t);
+        let axes = over_time([left, top + 20.0, width, BAND - 26.0], LEFT, time, TIME, y);
+        axes.draw(scene);
+        for curve in self.ends.iter().chain([&self.run]) {
+            axes.curve(scene, curve, buckets(3));
+        }
     }
 }
 

@@ -23,6 +23,8 @@ pub(crate) struct ErrorPath {
     storage: Thinned,
     /// Position errors of each joint, e_l and e_m \[rad\].
     errors: Vec<Path>,
+    /// e_l over time.
+    links: Vec<Thinned>,
 }
 
 impl ErrorPath {
@@ -48,12 +50,18 @@ impl ErrorPath {
             motion: motion.iter().flat_map(|name| of_joints(signals, name)).collect(),
             storage: Thinned::new(POINTS),
             errors: vec![Path::new(); scenario.robot.joint_count()],
+            links: vec![Thinned::new(POINTS); scenario.robot.joint_count()],
         })
     }
 
     /// W = ½ (e_lᵀ Π_l e_l + e_mᵀ Π_m e_m + σ_lᵀ s_l + σ_mᵀ s_m) over time, \[s\] and in J.
     pub(crate) fn storage(&self) -> (Vec<f64>, Vec<f64>) {
         self.storage.points().into_iter().unzip()
+    }
+
+    /// The position error of a joint's link over time, \[s\] and \[rad\].
+    pub(crate) fn of_link(&self, joint: usize) -> (Vec<f64>, Vec<f64>) {
+        self.links.get(joint).map(Thinned::points).unwrap_or_default().into_iter().unzip()
     }
 
     /// The position errors of a joint's link and of its motor \[rad\].
@@ -88,6 +96,7 @@ impl Sink for ErrorPath {
         for (path, errors) in self.errors.iter_mut().zip(e_l.iter().zip(&errors.e_m)) {
             path.push([*errors.0, *errors.1]);
         }
+        self.links.iter_mut().zip(&e_l).for_each(|(link, &error)| link.push(t, error));
         ControlFlow::Continue(())
     }
 }

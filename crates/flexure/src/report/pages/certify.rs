@@ -10,7 +10,7 @@ use super::runs::symbols;
 use crate::files::Problems;
 use crate::files::number::short;
 use crate::prove::standing::Standing;
-use crate::prove::summary::ProofSummary;
+use crate::prove::summary::{FunnelSummary, ProofSummary};
 use crate::report::draw::scene::Scene;
 use crate::report::tables::proof::statements;
 use crate::report::tables::summary::proved_rate;
@@ -107,7 +107,11 @@ pub(crate) fn certify_page(
     beside: bool,
 ) -> String {
     let caption = markup! {
-        "Above: the storage W of the errors along the run. Below: the position errors of each joint, from the ring on"
+        "Above: the storage W of the errors along the run. "
+        @if matches!(summary.funnel, Some(FunnelSummary::Proved(_))) {
+            "In the middle: the link error of each joint over time, and the funnel that no run of the ideal loop leaves. "
+        }
+        "Below: the position errors of each joint, from the ring on"
         @if summary.region.as_ref().is_some_and(|region| region.level.is_some()) {
             "; a level of W is an ellipse there, and what is outside of the ellipse is outside of the level, while a point inside of it may have momenta that are \
              not"

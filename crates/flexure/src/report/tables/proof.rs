@@ -254,14 +254,10 @@ fn funnel(found: &FunnelSummary, summary: &ProofSummary) -> Vec<String> {
     let [rad, speed, torque] = [units::ANGLE, units::SPEED, units::TORQUE].map(|unit| summary.unit(unit));
     let (links, motors) = found.error.split_at(found.error.len() / 2);
     let mut lines = vec![
+        format!("funnel       in the ideal loop, all along the run from its start, {}:", under(found.times)),
+        format!("funnel       |q̃_l| ≤ {} {rad}, |q̃_m| ≤ {} {rad}", list(links), list(motors)),
         format!(
-            "funnel       in the ideal loop, all along the run from its start, {}: |q̃_l| ≤ {} {rad}, |q̃_m| ≤ {} {rad}",
-            under(found.times),
-            list(links),
-            list(motors)
-        ),
-        format!(
-            "funnel       errors up to {} times those come back: V − 1 falls at {} 1/s or faster",
+            "funnel       errors beyond, up to {} times as large, come back: V − 1 falls at {} 1/s or faster, V = zᵀ X⁻¹ z",
             short(found.room, 3),
             engineering(found.rate)
         ),
@@ -288,7 +284,7 @@ fn funnel(found: &FunnelSummary, summary: &ProofSummary) -> Vec<String> {
 fn under(times: f64) -> String {
     let torques =
         if times.total_cmp(&1.0).is_eq() { String::new() } else { format!(" up to {times} times those") };
-    format!("under every torque{torques} and for every robot asked about, with the links of the file")
+    format!("under every torque{torques} and for every robot asked about")
 }
 
 /// What is in the way of larger torques.

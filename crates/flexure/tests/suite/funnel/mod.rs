@@ -1,6 +1,7 @@
 //! Funnels of the arm with the gains of its hardware: how wide they are, and that the check of a slab can fail.
 
 mod motions;
+mod random;
 
 use flexure::core::scalar::{Interval, Scalar};
 use flexure::progress::unwatched;
@@ -24,7 +25,14 @@ fn request(link: f64, motor: f64, spring: f64) -> FunnelRequest {
         motor_torque: point(motor),
         link_torque: point(link),
     };
-    FunnelRequest { spread, duration: 20.0, start: vec![Interval::ZERO; 8], slab: 0.02, room: 1.0 }
+    FunnelRequest {
+        spread,
+        duration: 20.0,
+        start: vec![Interval::ZERO; 8],
+        slab: 0.02,
+        room: 1.0,
+        most: 40_000,
+    }
 }
 
 /// Largest link error in rad.

@@ -83,6 +83,7 @@ fn funnelled(case: &'static Case) -> Funnelled {
         start: vec![Interval::ZERO; 8],
         slab: 0.02,
         room: 1.0,
+        most: 40_000,
     };
     let found = Funnel::along(&enclosed(&scenario), &request, &unwatched).expect("nobody breaks it off");
     let funnel = found.unwrap_or_else(|open| panic!("{}: {open:?}", case.scenario));

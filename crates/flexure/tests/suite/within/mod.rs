@@ -63,7 +63,7 @@ pub fn tolerant(mut scenario: Scenario, parts: [f64; 4]) -> Scenario {
         motor_inertia: part(&robot.motor_inertia, parts[1]),
         link_damping: part(&robot.link_damping, parts[2]),
         motor_damping: part(&robot.motor_damping, parts[3]),
-        link_mass: vec![0.0; 2],
+        link_mass: vec![0.0; robot.joint_count()],
     };
     scenario
 }

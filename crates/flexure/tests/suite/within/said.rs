@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 
 use flexure::progress::unwatched;
-use flexure::prove::question::{Proof, Question, prove_watched};
+use flexure::prove::question::{Proof, Question, prove, prove_watched};
 use flexure::prove::within::{Open, Within};
 use flexure::robot::Tolerances;
 use flexure::scenario::{Scenario, load_scenario};
@@ -55,11 +55,12 @@ fn what_is_too_wide_to_prove_names_what_counts_most() {
     assert!(!is_wrong && problem.hint().contains("with all tolerances times"), "{}", problem.hint());
 }
 
-/// Where joints are many no tolerances are small enough: said at once, and nobody is sent to identify more closely.
+/// Where joints are many no tolerances are small enough for W: said at once, and nobody is sent to identify more closely. A funnel takes long
+/// there, and what it lacks is named.
 #[test]
 fn what_cannot_be_bounded_is_said_at_once() {
     let arm = tolerant(load_scenario("panda-tanh-smooth").unwrap(), [1e-9; 4]);
-    let wide = proof(&arm);
+    let wide = prove(&arm, &Question { slabs: Some(2), ..Question::default() }).unwrap();
     let Some(Err(open)) = &wide.within else { panic!("{:?}", wide.within) };
     assert!(open.unbounded && open.closer.is_none(), "{open:?}");
     // One level was looked at, of one size of tolerances.
@@ -67,6 +68,7 @@ fn what_cannot_be_bounded_is_said_at_once() {
     let (problem, is_wrong) = wide.complaint(&arm).unwrap();
     assert!(!is_wrong && problem.to_string().contains("no tolerances are small enough"), "{problem}");
     assert!(!problem.hint().contains("identify"), "{}", problem.hint());
+    assert!(problem.hint().contains("all 2 slabs of time were used up; --slabs"), "{}", problem.hint());
 }
 
 /// Without tolerances nothing is said; with next to none it is the certified rate; with more it is less.

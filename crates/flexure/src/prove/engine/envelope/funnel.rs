@@ -34,6 +34,8 @@ pub struct FunnelRequest {
     pub slab: f64,
     /// Errors up to so many times those of the funnel are to come back into it, 1 or more.
     pub room: f64,
+    /// Slabs that it may have.
+    pub most: usize,
 }
 
 /// Ellipsoids from the beginning to the end of a run.
@@ -84,12 +86,14 @@ pub struct Open {
     pub time: f64,
     /// Link errors there that are not known to stay, in rad.
     pub error: Vec<f64>,
+    /// Whether it may go on, with more slabs than were asked for.
+    pub is_spent: bool,
 }
 
 impl Open {
     /// At the beginning of the slab `time`, where errors were not shown to stay in `shape`.
     pub fn of(shape: &Shape, time: Interval) -> Self {
-        Self { time: time.lo(), error: shape.extents()[..shape.size() / 4].to_vec() }
+        Self { time: time.lo(), error: shape.extents()[..shape.size() / 4].to_vec(), is_spent: false }
     }
 }
 
@@ -102,9 +106,6 @@ const LOOKED: usize = 8;
 
 /// The first ellipsoid is tried so often, wider and wider.
 const FIRST_TRIED: usize = 24;
-
-/// Slabs of a run at most.
-const MOST: usize = 40_000;
 
 impl Funnel {
     /// Over all of the run; none if `progress` breaks it off.
@@ -126,8 +127,8 @@ impl Funnel {
         let mut pieces: Vec<Piece> = Vec::new();
         let mut at = Front { shape: first, multipliers: None, still: None };
         while time.lo() < request.duration {
-            if pieces.len() == MOST {
-                return Some(Err(Open::of(&at.shape, time)));
+            if pieces.len() == request.most {
+                return Some(Err(Open { is_spent: true, ..Open::of(&at.shape, time) }));
             }
             match at.piece(system, request, time, &goes_on(time))? {
                 Ok((piece, still)) => {
@@ -157,10 +158,22 @@ impl Funnel {
 
     /// Bounds of |z_i| over the whole run.
     pub fn extents(&self) -> Vec<f64> {
-        let of = |piece: &Piece| piece.passage.errors().iter().map(|e| e.magnitude()).collect::<Vec<_>>();
-        let larger = |a: Vec<f64>, b: Vec<f64>| a.iter().zip(b).map(|(a, b)| a.max(b)).collect();
-        self.pieces.iter().map(of).reduce(larger).unwrap_or_default()
+        extents(&self.pieces)
     }
+
+    /// The same over at most so many `parts` of it, and where each ends in s.
+    pub fn profile(&self, parts: usize) -> Vec<(f64, Vec<f64>)> {
+        let each = self.pieces.len().div_ceil(parts.max(1)).max(1);
+        let part = |pieces: &[Piece]| Some((pieces.last()?.time.hi(), extents(pieces)));
+        self.pieces.chunks(each).filter_map(part).collect()
+    }
+}
+
+/// Bounds of |z_i| over `pieces`.
+fn extents(pieces: &[Piece]) -> Vec<f64> {
+    let of = |piece: &Piece| piece.passage.errors().iter().map(|e| e.magnitude()).collect::<Vec<_>>();
+    let larger = |a: Vec<f64>, b: Vec<f64>| a.iter().zip(b).map(|(a, b)| a.max(b)).collect();
+    pieces.iter().map(of).reduce(larger).unwrap_or_default()
 }
 
 /// An ellipsoid that errors stay in at the beginning of the slab `time` as long as it stays the same, and the start in it.
@@ -184,7 +197,7 @@ fn first(
     let Some(mut guess) = with_start(&floor) else {
         // Start and torques are too far apart in size for numbers of one ellipsoid.
         let error = start[..size / 4].iter().map(|e| e.abs()).collect();
-        return Some(Err(Open { time: time.lo(), error }));
+        return Some(Err(Open { time: time.lo(), error, is_spent: false }));
     };
     let beginning = Interval::point(time.lo());
     for _ in 0..FIRST_TRIED {

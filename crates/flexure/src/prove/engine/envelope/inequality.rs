@@ -43,18 +43,9 @@ pub fn holds(flow: &Flow, with: &Multipliers, ends: [&Shape; 2], time: Interval)
 
 /// All λ B.
 fn bent(flow: &Flow, rate: &Symmetric<Interval>, step: Interval) -> Symmetric<Interval> {
-    let moved = product(&flow.drift.map(Interval::point), rate);
+    let moved = &flow.drift.map(Interval::point) * &Dense::from(rate);
     let factor = Interval::point(0.25) * step.square();
     Symmetric::from_fn(rate.size(), |i, j| ((moved[(i, j)] + moved[(j, i)]) * factor).hull(Interval::ZERO))
-}
-
-/// A X.
-fn product(matrix: &Dense<Interval>, x: &Symmetric<Interval>) -> Dense<Interval> {
-    let n = x.size();
-    Dense::from_fn(n, n, |i, j| {
-        let row = matrix.row(i).iter().enumerate().filter(|(_, a)| a.magnitude() != 0.0);
-        row.fold(Interval::ZERO, |sum, (k, &a)| sum + a * x.at(k, j))
-    })
 }
 
 /// Ẋ − A X − X Aᵀ − Σ α X − Σ (D²/α + τ) n nᵀ − Σ X c cᵀ X / τ.
@@ -67,7 +58,7 @@ fn residual(
 ) -> Symmetric<Interval> {
     let n = x.size();
     let point = Interval::point;
-    let moved = product(matrix, x);
+    let moved = matrix * &Dense::from(x);
     let growth = with.alpha.iter().fold(Interval::ZERO, |sum, &alpha| sum + point(alpha));
     let mut left =
         Symmetric::from_fn(n, |i, j| rate.at(i, j) - moved[(i, j)] - moved[(j, i)] - growth * x.at(i, j));

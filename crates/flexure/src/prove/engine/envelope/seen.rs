@@ -102,18 +102,16 @@ impl Seen {
     /// A at the middle of the slab and Ȧ, over slab and tube, but for what inverse masses leave open; `errors` is the box of the tube.
     pub fn matrices(&self, system: &dyn TrackingLoop, errors: &[Interval]) -> [Dense<Interval>; 2] {
         let (n, masses, torques) = (self.n, &self.masses, &self.torques);
-        let number = Dense::from_fn(n, n, |i, j| masses.number.at(i, j));
-        let rate = Dense::from_fn(n, n, |i, j| Interval::point(masses.rate.at(i, j)));
-        let late = |x: &Dense<Interval>, times: Interval| x.map(|x| x * times);
-        let beside = sum(
-            product(&sum(number.clone(), late(&rate, self.offset)), &torques.beside),
-            late(&product(&rate, &torques.drift), self.offset.square()),
-        );
+        let number = Dense::from(&masses.number);
+        let rate = Dense::from(&masses.rate.map(Interval::point));
+        let moved = &number + &rate.map(|x| x * self.offset);
+        let beside =
+            &(&moved * &torques.beside) + &(&rate * &torques.drift).map(|x| x * self.offset.square());
         let accelerations = [
-            sum(product(&number, &torques.middle), beside),
-            sum(product(&number, &torques.drift), product(&rate, &torques.middle)),
+            &(&number * &torques.middle) + &beside,
+            &(&number * &torques.drift) + &(&rate * &torques.middle),
         ];
-        let robot = [product(&number, &torques.whole), product(&rate, &torques.whole)];
+        let robot = [&number * &torques.whole, &rate * &torques.whole];
         let [itself, none] =
             [self.itself(system, errors), Dense::from_fn(4 * n, 4 * n, |_, _| Interval::ZERO)];
         let [a, drift] = [(itself, 0), (none, 1)].map(|(beside, order)| {
@@ -330,16 +328,6 @@ fn combined(vectors: &[Vec<Interval>], factor: impl Fn(usize) -> Interval) -> Ve
         vectors.iter().zip(&factors).fold(Interval::ZERO, |sum, (vector, &factor)| sum + factor * vector[i])
     };
     (0..size).map(entry).collect()
-}
-
-fn sum(a: Dense<Interval>, b: Dense<Interval>) -> Dense<Interval> {
-    Dense::from_fn(a.rows().len(), a.columns(), |i, j| a[(i, j)] + b[(i, j)])
-}
-
-fn product(a: &Dense<Interval>, b: &Dense<Interval>) -> Dense<Interval> {
-    Dense::from_fn(a.rows().len(), b.columns(), |i, j| {
-        (0..a.columns()).fold(Interval::ZERO, |sum, k| sum + a[(i, k)] * b[(k, j)])
-    })
 }
 
 /// From −`x` to `x`.
