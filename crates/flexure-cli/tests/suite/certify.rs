@@ -153,6 +153,9 @@ fn torques_on_links_give_a_funnel() {
     let outcome = funnel("5", &[]);
     assert_eq!(outcome.code, Some(3), "{outcome:?}");
     assert!(outcome.stdout.contains("funnel       none was found"), "{outcome:?}");
+    let outcome = funnel("0.01", &["--slabs", "7"]);
+    assert_eq!(outcome.code, Some(3), "{outcome:?}");
+    assert!(outcome.stdout.contains("all 7 slabs of time were used up; --slabs allows more"), "{outcome:?}");
     let json = funnel("5", &["--json"]).json();
     assert!(json["funnel"]["verdict"] == "undecided" && json["along"].is_null(), "{json}");
 }
@@ -248,7 +251,7 @@ fn bad_options_are_told_apart() {
     folder.scenario("phi.toml", &[("\"tanh\"", "\"tahn\"")]);
     folder.scenario("metric.toml", &[("[55.0, 30.0]", "[55.0, -30.0]")]);
     folder.jumping("jumping.toml");
-    let cases: [(&[&str], &str); 30] = [
+    let cases: [(&[&str], &str); 33] = [
         (&["two-link-tanh", "--error-box", "0"], "empty"),
         (&["two-link-tanh", "--error-box", "-1"], "empty"),
         (&["two-link-tanh", "--error-box", "nan"], "magnitude"),
@@ -272,6 +275,9 @@ fn bad_options_are_told_apart() {
         (&["jumping.toml", "--link-disturbance", "0.1"], "third derivative"),
         (&["jumping.toml", "--up-to-limits", "--disturbance", "0.1"], "third derivative"),
         (&["two-link-tanh", "--up-to-limits", "--disturbance", "0"], "not which torques"),
+        (&["two-link-tanh", "--disturbance", "0.1", "--slabs", "0"], "must be >= 1"),
+        (&["two-link-tanh", "--disturbance", "0.1", "--slabs", "-3"], "invalid"),
+        (&["two-link-tanh", "--disturbance", "0.1", "--slabs", "99999999999999999999"], "invalid"),
         (&["two-link-tanh", "--velocity-error", "-1"], "must be >= 0"),
         (&["two-link-tanh", "--velocity-error", "1,2,3"], "1 or 4 numbers"),
         (&["two-link-linear", "--velocity-error", "1"], "stretched"),

@@ -57,15 +57,20 @@ pub fn small(value: f64) -> (String, &'static str) {
     if value.abs() < 1e-4 { (engineering(1e6 * value), "µ") } else { (engineering(1e3 * value), "m") }
 }
 
-/// The largest number of `digits` significant digits, or nearly, that is not above `value`, which is positive.
+/// The largest number of `digits` significant digits, or nearly, that is not above `value`.
 pub fn rounded_down(value: f64, digits: usize) -> f64 {
     let rounded = |x: f64| format!("{x:.*e}", digits.saturating_sub(1)).parse().unwrap_or(x);
     let nearest = rounded(value);
-    if nearest <= value {
+    if nearest <= value || !value.is_finite() {
         return nearest;
     }
-    let step = |x: f64| 10f64.powf(x.log10().floor() + 1.0) / 10f64.powf(digits as f64);
+    let step = |x: f64| 10f64.powf(x.abs().log10().floor() + 1.0) / 10f64.powf(digits as f64);
     rounded(value - step(value))
+}
+
+/// The smallest that is not below `value`.
+pub fn rounded_up(value: f64, digits: usize) -> f64 {
+    -rounded_down(-value, digits)
 }
 
 /// Seconds in the unit that reads best: `3 ms`, `1.25 s`.
@@ -94,7 +99,7 @@ fn shift(mantissa: &str, places: i32) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{duration, engineering, power_of_ten, rounded_down, significant, small};
+    use super::{duration, engineering, power_of_ten, rounded_down, rounded_up, significant, small};
 
     #[test]
     fn three_digits_and_powers_in_steps_of_three() {
@@ -177,5 +182,18 @@ mod tests {
             format!("{number} {prefix}rad")
         });
         assert_eq!(words, ["20.6 mrad", "0.100 mrad", "5.12 µrad", "0.939 µrad", "0 µrad"]);
+    }
+
+    #[test]
+    fn rounding_goes_the_way_it_says() {
+        for x in [0.008_534_26, 1.0, 9.996, 0.2, 123_456.0, 9.99e-7, 0.0, -20.998_71, -9.996] {
+            let (down, up) = (rounded_down(x, 3), rounded_up(x, 3));
+            assert!(down <= x && x <= up && up - down <= 0.011 * x.abs(), "{x}: {down} {up}");
+        }
+        assert_eq!(significant(rounded_up(0.008_534_26, 3), 3), "0.00854");
+        assert_eq!(significant(rounded_up(9.996, 3), 3), "10.0");
+        assert_eq!(significant(rounded_down(9.996, 3), 3), "9.99");
+        assert_eq!(significant(rounded_up(-20.998_71, 6), 6), "−20.9987");
+        assert!(rounded_up(f64::INFINITY, 3).is_infinite() && rounded_down(f64::NAN, 3).is_nan());
     }
 }

@@ -9,6 +9,7 @@ mod exceeding;
 use flexure_core::scalar::{Interval, Scalar};
 use serde::Serialize;
 
+use crate::files::number::short;
 use crate::files::{Problem, Problems};
 use crate::progress::Progress;
 use crate::prove::closed_loop::along_reference;
@@ -223,11 +224,13 @@ fn verdict(
 pub(crate) fn beyond(bound: f64, time: f64, limit: f64, seen: f64) -> String {
     if bound.is_finite() {
         format!(
-            "near t = {time:.4} s the bound is {bound:.6e}, above the limit of {limit}; the largest value seen is \
-             {seen:.6e}"
+            "near t = {} s the bound is {}, above the limit of {limit}; the largest value seen is {}",
+            short(time, 5),
+            short(bound, 7),
+            short(seen, 7)
         )
     } else {
-        format!("no finite bound was found near t = {time:.4} s")
+        format!("no finite bound was found near t = {} s", short(time, 5))
     }
 }
 

@@ -87,7 +87,7 @@ const FEWEST: f64 = 64.0;
 
 /// Slabs of a funnel of `joints` joints where nobody says how many: about half a minute.
 fn usual_slabs(joints: usize) -> usize {
-    100_000 / joints.pow(3)
+    (100_000 / joints.pow(3)).max(1)
 }
 
 /// Errors so much larger than the funnel's are to come back into it.
@@ -99,11 +99,11 @@ const FAR: f64 = 1e3;
 /// How often the torques are doubled or halved at most, to a funnel in which no limit acts and one in which one may.
 const DOUBLED: usize = 8;
 
-/// How often what lies between is halved then: to within 3 %.
-const HALVED: usize = 5;
+/// How often what lies between is halved then: to within 1.6 %.
+const HALVED: usize = 6;
 
 /// Funnels that are looked for, about, for the largest torques.
-const LOOKED_FOR: f64 = 9.0;
+const LOOKED_FOR: f64 = 10.0;
 
 /// Parts of the run that errors are told of at most.
 const PARTS: usize = 240;

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::columns::laid_out;
 use super::summary::{headed, right};
-use crate::files::number::{NONE, engineering, short, significant};
+use crate::files::number::{NONE, engineering, rounded_down, rounded_up, short, significant};
 use crate::prove::along::{Along, Limit};
 use crate::prove::engine::certificate::{LoopSide, Norm, StructureName};
 use crate::prove::engine::verdict::Verdict;
@@ -111,8 +111,8 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
                 ));
                 lines.push(format!(
                     "invariant    {{W ≤ {} J}}, where |q̃_i| ≤ {} {rad}",
-                    short(level, 3),
-                    list(at_level)
+                    short(rounded_down(level, 3), 3),
+                    at_most(at_level)
                 ));
             }
             _ => lines.push("region       any error, any speed, any configuration".to_owned()),
@@ -123,7 +123,7 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
             } else {
                 "not known to be inside: nothing is said of this run"
             };
-            lines.push(format!("start        W ≤ {} J, {place}", short(start.level.max(ROUNDING), 3)));
+            lines.push(format!("start        W ≤ {} J, {place}", most(start.level.max(ROUNDING))));
         }
         lines.push("mass matrix  positive definite at every configuration".to_owned());
     }
@@ -141,7 +141,7 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
                 Norm::Two => "2",
                 Norm::Infinity => "∞",
             };
-            format!("μ_{norm} ≤ {}", significant(measure.bound, 6))
+            format!("μ_{norm} ≤ {}", significant(rounded_up(measure.bound, 6), 6))
         });
         let bounds = bounds.collect::<Vec<_>>().join(", ");
         if !bounds.is_empty() {
@@ -163,7 +163,7 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
         lines.push(match (direct.rate, direct.boxes, &direct.at) {
             (Some(rate), Some(boxes), _) => format!(
                 "direct       {} 1/s proved from the full inequality, {boxes} {}",
-                significant(rate, 6),
+                significant(rounded_down(rate, 6), 6),
                 if boxes == 1 { "box" } else { "boxes" }
             ),
             (_, boxes, at) => format!(
@@ -178,8 +178,8 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
         lines.push(format!(
             "tube         |d_m| ≤ {} {torque}: W comes below {} J, where |q̃_i| ≤ {} {rad}",
             list(&tube.disturbance),
-            engineering(tube.level),
-            list(&tube.error)
+            most(tube.level),
+            at_most(&tube.error)
         ));
     }
     lines.extend(stretched(summary));
@@ -209,7 +209,7 @@ fn stretched(summary: &ProofSummary) -> Option<String> {
     let errors = errors.map_or(String::new(), |errors| format!("|q̃_i| ≤ {} {rad} and ", list(errors)));
     Some(format!(
         "stretched    {} 1/s between any two solutions of the virtual system, while both have {errors}|s_i| ≤ {} {speed}",
-        significant(stretched.rate, 6),
+        significant(rounded_down(stretched.rate, 6), 6),
         list(&stretched.velocity_error)
     ))
 }
@@ -234,13 +234,13 @@ fn tolerated(within: &WithinSummary, rad: &str) -> Vec<String> {
     vec![
         format!(
             "tolerances   every robot within them, in the ideal loop along the reference, from W ≤ {} J: √W comes down at {} 1/s",
-            engineering(level),
-            significant(rate, 6)
+            engineering(rounded_down(level, 3)),
+            significant(rounded_down(rate, 6), 6)
         ),
         format!(
             "tolerances   to that of W = {} J, where |q̃_i| ≤ {} {rad}, not to 0",
-            engineering(settles),
-            list(error)
+            most(settles),
+            at_most(error)
         ),
     ]
 }
@@ -255,11 +255,11 @@ fn funnel(found: &FunnelSummary, summary: &ProofSummary) -> Vec<String> {
     let (links, motors) = found.error.split_at(found.error.len() / 2);
     let mut lines = vec![
         format!("funnel       in the ideal loop, all along the run from its start, {}:", under(found.times)),
-        format!("funnel       |q̃_l| ≤ {} {rad}, |q̃_m| ≤ {} {rad}", list(links), list(motors)),
+        format!("funnel       |q̃_l| ≤ {} {rad}, |q̃_m| ≤ {} {rad}", at_most(links), at_most(motors)),
         format!(
             "funnel       errors beyond, up to {} times as large, come back: V − 1 falls at {} 1/s or faster, V = zᵀ X⁻¹ z",
             short(found.room, 3),
-            engineering(found.rate)
+            engineering(rounded_down(found.rate, 3))
         ),
         format!(
             "funnel       |q̇_l| {}, |q_m − q_l| {}",
@@ -384,10 +384,27 @@ fn shortened(text: &str) -> String {
 /// Bounds, if there are any: where one is not finite none are.
 fn bounded(bounds: &[f64], unit: &str) -> String {
     if bounds.iter().all(|bound| bound.is_finite()) {
-        format!("≤ {} {unit}", list(bounds))
+        format!("≤ {} {unit}", at_most(bounds))
     } else {
         "not bounded".to_owned()
     }
+}
+
+/// An upper bound: what is printed is one, too, but for this part of it, so that 0.2 rounded outwards is not 0.201.
+const OUTWARDS: f64 = 1e-12;
+
+/// An upper bound to three digits.
+fn most(bound: f64) -> String {
+    short(above(bound), 3)
+}
+
+/// Upper bounds to three digits.
+fn at_most(bounds: &[f64]) -> String {
+    list(&bounds.iter().map(|&bound| above(bound)).collect::<Vec<_>>())
+}
+
+fn above(bound: f64) -> f64 {
+    rounded_up(bound * (1.0 - OUTWARDS), 3)
 }
 
 /// Numbers with blanks; one if all are the same.

@@ -7,7 +7,7 @@
 use flexure_core::scalar::{Interval, Scalar};
 
 use crate::linalg::{Dense, Symmetric, cholesky, lower_inverse};
-use crate::prove::engine::envelope::shape::congruent;
+use crate::prove::engine::envelope::shape::{congruent, square};
 
 /// Steps of the power method.
 const POWERS: usize = 6;
@@ -48,7 +48,7 @@ impl Masses {
         let middle = on_lines.map(|[at, _]| at);
         // Where that does not exist nothing is bounded, with any numbers.
         let root = cholesky(&middle).unwrap_or_else(|| Dense::identity(n));
-        let number = product(&root);
+        let number = square(&root);
         let inverse = lower_inverse(&root);
         let model = scaled_norm(&root, &inverse, |i, j| {
             beside.at(i, j) + Interval::point(middle.at(i, j)) - number.at(i, j)
@@ -61,15 +61,6 @@ impl Masses {
         let [robot, more] = [about(times), about(mu.square() / between)];
         Self { root, number, rate: on_lines.map(|[_, rate]| rate), model, robot, more }
     }
-}
-
-/// L Lᵀ.
-fn product(lower: &Dense<f64>) -> Symmetric<Interval> {
-    Symmetric::from_fn(lower.columns(), |i, j| {
-        (0..=i.min(j)).fold(Interval::ZERO, |sum, k| {
-            sum + Interval::point(lower[(i, k)]) * Interval::point(lower[(j, k)])
-        })
-    })
 }
 
 /// A bound of ‖L⁻¹ D L⁻ᵀ‖ for the symmetric D of these entries; `inverse` is about L⁻¹: R D Rᵀ with R L = 1 + δ is by at most

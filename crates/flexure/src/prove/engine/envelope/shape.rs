@@ -44,11 +44,7 @@ impl Shape {
 
     /// X.
     pub fn square(&self) -> Symmetric<Interval> {
-        let entry = |i: usize, j: usize| {
-            let row = self.lower.row(i).iter().zip(self.lower.row(j)).take(i.min(j) + 1);
-            row.fold(Interval::ZERO, |sum, (&a, &b)| sum + Interval::point(a) * Interval::point(b))
-        };
-        Symmetric::from_fn(self.size(), entry)
+        square(&self.lower)
     }
 
     /// Whether it is known to lie in `other`.
@@ -116,6 +112,15 @@ impl Tube for Passage {
         let farther = |a: (f64, Vec<f64>), b: (f64, Vec<f64>)| if a.0 > b.0 { a } else { b };
         self.0.iter().map(at).reduce(farther).map_or_else(Vec::new, |(_, point)| point)
     }
+}
+
+/// L Lᵀ of a lower triangular L.
+pub(super) fn square(lower: &Dense<f64>) -> Symmetric<Interval> {
+    let entry = |i: usize, j: usize| {
+        let row = lower.row(i).iter().zip(lower.row(j)).take(i.min(j) + 1);
+        row.fold(Interval::ZERO, |sum, (&a, &b)| sum + Interval::point(a) * Interval::point(b))
+    };
+    Symmetric::from_fn(lower.columns(), entry)
 }
 
 /// R A Rᵀ.
