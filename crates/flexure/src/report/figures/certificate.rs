@@ -37,8 +37,11 @@ const FAR: f64 = 2.5;
 const DECADES: f64 = 25.0;
 
 const REGION: Stroke = Stroke { color: MUTED, width: 1.6, dash: &[6.0, 4.0] };
-const FUNNEL: Stroke = Stroke::solid(HOLDS, 1.8);
 const LEVEL: Stroke = Stroke::solid(HOLDS, 2.4);
+
+fn funnel_stroke() -> Stroke {
+    Stroke::solid(hue(3), 2.0)
+}
 
 fn run_stroke() -> Stroke {
     Stroke::solid(hue(0), 2.2)
@@ -121,7 +124,7 @@ impl<'a> Told<'a> {
         let levels = [
             invariant.map(set("invariant", LEVEL)),
             tube.map(set("tube of the disturbance", dotted(1))),
-            within.map(set("where robots within the tolerances settle", dotted(3))),
+            within.map(set("where robots within the tolerances settle", dotted(5))),
         ];
         Self {
             region: region.and_then(|region| region.error.as_deref()),
@@ -155,7 +158,7 @@ impl<'a> Told<'a> {
             (format!("W = {} J, {what}", engineering(*level)), *stroke)
         });
         let funnel = self.funnel.map(|_| {
-            ("funnel: link errors under every torque, of every robot asked about".to_owned(), FUNNEL)
+            ("funnel: link errors under every torque, of every robot asked about".to_owned(), funnel_stroke())
         });
         std::iter::once(("the run".to_owned(), run_stroke()))
             .chain(funnel)
@@ -225,7 +228,7 @@ impl Band {
         let end = |sign: f64| Curve {
             t: t_of.clone(),
             values: profile.error[joint].iter().flat_map(|error| [sign * error; 2]).collect(),
-            stroke: FUNNEL,
+            stroke: funnel_stroke(),
         };
         Self { run: Curve { t, values, stroke: run_stroke() }, ends: [end(1.0), end(-1.0)] }
     }

@@ -52,9 +52,12 @@ fn torques_and_springs_move_links_by_millirads() {
     {
         let (funnel, largest) = link_error(&request(link, motor, spring));
         println!(
-            "{link} N m on links, {motor} N m on motors, {spring} of the springs: {:.5?}",
-            funnel.extents()
+            "{link} N m on links, {motor} N m on motors, {spring} of the springs: {:.5?}, {} 1/s",
+            funnel.extents(),
+            funnel.rate()
         );
+        // At standstill, too, where next to nothing drives.
+        assert!(funnel.rate() > 0.9, "{} 1/s", funnel.rate());
         assert!(largest <= most, "{largest} rad");
         // No smaller than what a torque that stays there leaves: its part over the slowest of all springs and gains.
         assert!(largest > 0.1 * most, "{largest} rad");

@@ -31,6 +31,9 @@ const HALVINGS: usize = 12;
 /// The first guess of the sum of all α [1/s].
 const FIRST: f64 = 1.0;
 
+/// Σ α is at least this [1/s] where something stays with it: where next to nothing drives, errors beyond are to come back all the same.
+const LEAST: f64 = 1.0;
+
 /// X of directions that nothing drives, over that of the ellipsoid nearby.
 const UNDRIVEN: f64 = 1e-6;
 
@@ -199,7 +202,11 @@ impl Scaled {
             grows[usize::from(drive.is_open)] += alpha + (felt * pulled).sqrt() / trace;
             (on_the_way(before.alpha[k], alpha), on_the_way(before.tau[k], tau))
         };
-        let (alpha, tau): (Vec<f64>, Vec<f64>) = self.drives.iter().enumerate().map(one).unzip();
+        let (mut alpha, tau): (Vec<f64>, Vec<f64>) = self.drives.iter().enumerate().map(one).unzip();
+        let all: f64 = alpha.iter().sum();
+        if 0.0 < all && all < LEAST {
+            alpha.iter_mut().for_each(|alpha| *alpha *= LEAST / all);
+        }
         let finite = alpha.iter().chain(&tau).all(|x| x.is_finite());
         let [known, open] = grows;
         let open = if open > 0.0 { open / (open + known) } else { 0.0 };
