@@ -205,7 +205,9 @@ impl Scaled {
         let (mut alpha, tau): (Vec<f64>, Vec<f64>) = self.drives.iter().enumerate().map(one).unzip();
         let all: f64 = alpha.iter().sum();
         if 0.0 < all && all < LEAST {
-            alpha.iter_mut().for_each(|alpha| *alpha *= LEAST / all);
+            for alpha in &mut alpha {
+                *alpha *= LEAST / all;
+            }
         }
         let finite = alpha.iter().chain(&tau).all(|x| x.is_finite());
         let [known, open] = grows;
