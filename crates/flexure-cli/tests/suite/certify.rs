@@ -276,7 +276,7 @@ fn bad_options_are_told_apart() {
         (&["jumping.toml", "--up-to-limits", "--disturbance", "0.1"], "third derivative"),
         (&["two-link-tanh", "--up-to-limits", "--disturbance", "0"], "not which torques"),
         (&["two-link-tanh", "--disturbance", "0.1", "--slabs", "0"], "must be >= 1"),
-        (&["two-link-tanh", "--disturbance", "0.1", "--slabs", "-3"], "invalid"),
+        (&["two-link-tanh", "--disturbance", "0.1", "--slabs", "-3"], "unexpected"),
         (&["two-link-tanh", "--disturbance", "0.1", "--slabs", "99999999999999999999"], "invalid"),
         (&["two-link-tanh", "--velocity-error", "-1"], "must be >= 0"),
         (&["two-link-tanh", "--velocity-error", "1,2,3"], "1 or 4 numbers"),

@@ -125,6 +125,12 @@ pub(crate) fn uneven_metric(scenario: &Scenario) -> Option<Problem> {
     Some(scenario.places.problem("controller.link.metric_hardening", "metric", message, help))
 }
 
+/// The limits of `robot` in the order of what is bounded; infinite for none.
+pub(crate) fn all_limits(robot: &crate::Robot) -> Vec<Interval> {
+    let given = [&robot.limits.velocity, &robot.limits.deflection, &robot.limits.torque];
+    given.into_iter().flatten().map(|&limit| robot.bounds(limit)).collect()
+}
+
 /// Part of the work that slabs take, about, where states beyond limits are looked for, too.
 const COURSE: f64 = 0.6;
 
@@ -135,11 +141,9 @@ fn bounds(
     budget: usize,
     progress: Progress<'_>,
 ) -> Option<Along> {
-    let robot = &scenario.robot;
-    let given = [&robot.limits.velocity, &robot.limits.deflection, &robot.limits.torque];
-    let all: Vec<Interval> = given.into_iter().flatten().map(|&limit| robot.bounds(limit)).collect();
     let duration = scenario.bounds(scenario.duration).hi();
-    let course = course(system, &AlongRequest { level, duration, limits: all, budget }, &|fraction| {
+    let limits_of = all_limits(&scenario.robot);
+    let course = course(system, &AlongRequest { level, duration, limits: limits_of, budget }, &|fraction| {
         progress(COURSE * fraction)
     })?;
     let n = system.joints();

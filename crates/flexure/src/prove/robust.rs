@@ -14,12 +14,15 @@ use serde::Serialize;
 use crate::files::Problems;
 use crate::files::number::{engineering, short};
 use crate::progress::Progress;
-use crate::prove::along::{Exceeding, Limit, Peaks, beyond, enclosed, limits, peaks, start_errors};
-use crate::prove::engine::envelope::Course;
+use crate::prove::along::{
+    Exceeding, Limit, Peaks, all_limits, beyond, enclosed, limits, peaks, start_errors,
+};
 use crate::prove::engine::envelope::closed_loop::TrackingLoop;
 use crate::prove::engine::envelope::deviation::Spread;
 use crate::prove::engine::envelope::funnel::{Funnel, FunnelRequest, Open, Piece};
 use crate::prove::engine::envelope::slab::Slab;
+use crate::prove::engine::envelope::tube::Tube;
+use crate::prove::engine::envelope::{Course, refined};
 use crate::prove::engine::verdict::{Undecided, Verdict};
 use crate::scenario::Scenario;
 
@@ -212,7 +215,8 @@ fn bounds(
         Ok(funnel) => funnel,
         Err(open) => return Some(Err(no_funnel(&open, &request))),
     };
-    let course = course(system, &funnel, &|fraction| progress(FUNNEL + (1.0 - FUNNEL) * fraction))?;
+    let progress = |fraction: f64| progress(FUNNEL + (1.0 - FUNNEL) * fraction);
+    let course = course(system, &funnel, &all_limits(&scenario.robot), &progress)?;
     Some(Ok(Robust::new(scenario, system.joints(), &funnel, &course)))
 }
 
@@ -236,16 +240,29 @@ fn no_funnel(open: &Open, request: &FunnelRequest) -> NoFunnel {
     NoFunnel { at }
 }
 
-/// What the robot may do in the funnel.
-fn course(system: &dyn TrackingLoop, funnel: &Funnel, progress: Progress<'_>) -> Option<Course> {
+/// Slabs of the funnel that are cut, to see what the robot may do: a part of all, and some.
+const CUT: [usize; 2] = [8, 32];
+
+/// What the robot may do in the funnel, against `limits` in the order of what is bounded.
+fn course(
+    system: &dyn TrackingLoop,
+    funnel: &Funnel,
+    limits: &[Interval],
+    progress: Progress<'_>,
+) -> Option<Course> {
     let (done, count) = (AtomicUsize::new(0), funnel.pieces.len());
-    let goes_on = || progress(done.load(Ordering::Relaxed) as f64 / count.max(1) as f64).is_continue();
-    let slab = |piece: &Piece| {
-        let slab = Slab::of(system, Arc::new(piece.passage.clone()), piece.time, &goes_on);
+    let budget = count + 2 * (count / CUT[0] + CUT[1]);
+    let goes_on = || progress((done.load(Ordering::Relaxed) as f64 / budget as f64).min(1.0)).is_continue();
+    let looked = |tube: Arc<dyn Tube>, time: Interval| {
+        let slab = Slab::of(system, tube, time, &goes_on);
         done.fetch_add(1, Ordering::Relaxed);
         slab
     };
-    Some(Course { slabs: funnel.pieces.par_iter().map(slab).collect::<Option<_>>()?, spent: count })
+    let slab = |piece: &Piece| looked(Arc::new(piece.passage.clone()), piece.time);
+    let slabs = funnel.pieces.par_iter().map(slab).collect::<Option<_>>()?;
+    // All of its errors, for a part of its times.
+    let half = |slab: &Slab, time: Interval| looked(slab.tube.clone(), time);
+    Some(refined(slabs, limits, budget, &half, &goes_on))
 }
 
 impl Binding {

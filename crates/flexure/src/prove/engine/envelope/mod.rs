@@ -80,11 +80,24 @@ pub fn course(system: &dyn TrackingLoop, request: &AlongRequest, progress: Progr
     };
     // In parallel, but in the order of time: the outcome does not depend on the number of cores.
     let begin: Vec<_> = (0..first).map(|i| (cut(i), cut(i + 1))).collect();
-    let begun = begin.into_par_iter().map(|times| slab(times).map(|slab| Piece::new(slab, None)));
-    let mut pieces: Vec<Piece> = begun.collect::<Option<_>>()?;
-    let mut spent = first;
+    let begun = begin.into_par_iter().map(slab).collect::<Option<_>>()?;
+    let half = |_: &Slab, half: Interval| slab((half.lo(), half.hi()));
+    Some(refined(begun, &request.limits, request.budget, &half, &goes_on))
+}
+
+/// Cuts those of `slabs` that decide a bound, until they are tight or so many were looked at, or while it `goes_on`; `half` makes a
+/// slab of a part of one's time.
+pub fn refined(
+    slabs: Vec<Slab>,
+    limits: &[Interval],
+    budget: usize,
+    half: &(dyn Fn(&Slab, Interval) -> Option<Slab> + Sync),
+    goes_on: &dyn Fn() -> bool,
+) -> Course {
+    let mut spent = slabs.len();
+    let mut pieces: Vec<Piece> = slabs.into_iter().map(|slab| Piece::new(slab, None)).collect();
     loop {
-        let marked = marked(&pieces, request, (request.budget - spent.min(request.budget)) / 2);
+        let marked = marked(&pieces, limits, (budget - spent.min(budget)) / 2);
         if marked.is_empty() || !goes_on() {
             break;
         }
@@ -94,7 +107,7 @@ pub fn course(system: &dyn TrackingLoop, request: &AlongRequest, progress: Progr
                 return vec![piece];
             }
             let (left, right) = piece.slab.time.split();
-            let half = |half: Interval| slab((half.lo(), half.hi()));
+            let half = |time: Interval| half(&piece.slab, time);
             match half(left).zip(half(right)) {
                 Some((left, right)) => [left, right].map(|half| Piece::new(half, Some(&piece))).into(),
                 None => vec![piece],
@@ -102,12 +115,12 @@ pub fn course(system: &dyn TrackingLoop, request: &AlongRequest, progress: Progr
         };
         pieces = pieces.into_par_iter().enumerate().flat_map_iter(halves).collect();
     }
-    Some(Course { slabs: pieces.into_iter().map(|piece| piece.slab).collect(), spent })
+    Course { slabs: pieces.into_iter().map(|piece| piece.slab).collect(), spent }
 }
 
 /// Which pieces to cut next: those that are farthest above their goals, at most `most`.
-fn marked(pieces: &[Piece], request: &AlongRequest, most: usize) -> BTreeSet<usize> {
-    let goals = goals(pieces, &request.limits);
+fn marked(pieces: &[Piece], limits: &[Interval], most: usize) -> BTreeSet<usize> {
+    let goals = goals(pieces, limits);
     let excess = pieces.iter().map(|piece| piece.excess(&goals)).enumerate();
     let mut marked: Vec<(usize, f64)> = excess.filter(|(_, excess)| *excess > 1.0).collect();
     marked.sort_by(|a, b| b.1.total_cmp(&a.1));
