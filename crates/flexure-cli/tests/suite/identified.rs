@@ -147,7 +147,8 @@ fn an_identified_arm_is_certified_with_its_error_bars() {
     let errors = within["error"].as_array().unwrap();
     assert!(errors.len() == 4 && errors[0].as_f64().unwrap() < 0.003, "{within}");
     // Limits are kept by all of them.
-    let limits = certified["along"]["limits"].as_array().unwrap();
+    assert!(certified["along"].is_null(), "in the funnel");
+    let limits = certified["funnel"]["limits"].as_array().unwrap();
     assert!(
         limits.len() == 2 && limits.iter().all(|limit| limit["verdict"]["proved"].is_number()),
         "{limits:?}"
