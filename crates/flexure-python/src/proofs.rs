@@ -29,7 +29,7 @@ fn list(name: &'static str, given: Option<&Bound<'_, PyAny>>) -> PyResult<Option
 /// its text, or None if nothing was proved. Errors in rad, links then motors, torques in N m, rates in 1/s.
 #[pyfunction]
 #[pyo3(signature = (scenario, *, error_box = None, initial_error = None, rate = None, disturbance = None, link_disturbance = None,
-                    up_to_limits = false, slabs = None, velocity_error = None,
+                    up_to_limits = false, slabs = None, velocity_error = None, sampled_tube = None,
                     direct = false, budget = 10_000, out = None, progress = None))]
 #[expect(clippy::too_many_arguments, reason = "keywords")]
 pub fn certify<'py>(
@@ -43,6 +43,7 @@ pub fn certify<'py>(
     up_to_limits: bool,
     slabs: Option<usize>,
     velocity_error: Option<&Bound<'py, PyAny>>,
+    sampled_tube: Option<&Bound<'py, PyAny>>,
     direct: bool,
     budget: usize,
     out: Option<PathBuf>,
@@ -67,10 +68,19 @@ pub fn certify<'py>(
     let [disturbance, link_disturbance] =
         [list("disturbance", disturbance)?, list("link_disturbance", link_disturbance)?];
     let velocity_error = list("velocity_error", velocity_error)?;
-    let question =
-        Question { region, rate, disturbance, link_disturbance, up_to_limits, slabs, velocity_error, direct }
-            .fitting(&loaded)
-            .map_err(|problem| refused(py, &problem))?;
+    let sampled_tube = list("sampled_tube", sampled_tube)?;
+    let question = Question {
+        region,
+        rate,
+        disturbance,
+        link_disturbance,
+        up_to_limits,
+        slabs,
+        velocity_error,
+        sampled_tube,
+        direct,
+    };
+    let question = question.fitting(&loaded).map_err(|problem| refused(py, &problem))?;
     let found = watched(py, progress, |progress| {
         let proof = prove_watched(&loaded, &question, progress)?;
         let sampled = probe(&loaded)?;

@@ -42,6 +42,10 @@ pub struct Certify {
     /// solutions of the virtual system while both keep to them and to the region. For phi = tanh, and for linear where the link metric hardens.
     #[arg(long, value_name = "S", value_delimiter = ',', allow_negative_numbers = true)]
     pub velocity_error: Option<Vec<f64>>,
+    /// How far links reach in a tube around the run in rad, one number or one per link: proves how fast motions in it come closer in the sampled loop,
+    /// with the control period, the delay and the torque limits of the file. 1e-5 is a beginning.
+    #[arg(long, value_name = "E", value_delimiter = ',', allow_negative_numbers = true)]
+    pub sampled_tube: Option<Vec<f64>>,
     /// Prove the certified contraction rate once more, from the full inequality; of theorems only that the rate of the mass matrix cancels.
     #[arg(long)]
     pub direct: bool,

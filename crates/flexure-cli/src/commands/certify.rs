@@ -105,9 +105,20 @@ fn question(options: &Certify, scenario: &Scenario) -> Result<Question, Problem>
     let link_disturbance = options.link_disturbance.clone();
     let velocity_error = options.velocity_error.clone();
     let up_to_limits = options.up_to_limits;
+    let sampled_tube = options.sampled_tube.clone();
     let (rate, slabs) = (options.rate, options.slabs);
-    Question { region, rate, disturbance, link_disturbance, up_to_limits, slabs, velocity_error, direct }
-        .fitting(scenario)
+    Question {
+        region,
+        rate,
+        disturbance,
+        link_disturbance,
+        up_to_limits,
+        slabs,
+        velocity_error,
+        sampled_tube,
+        direct,
+    }
+    .fitting(scenario)
 }
 
 /// The exit code: 1 for what is refuted or unstable, and if it is `strict` for what is proved of another loop than the one in the

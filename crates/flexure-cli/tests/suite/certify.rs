@@ -160,6 +160,34 @@ fn torques_on_links_give_a_funnel() {
     assert!(json["funnel"]["verdict"] == "undecided" && json["along"].is_null(), "{json}");
 }
 
+/// The loop of the file, its torque held and late, has a tube in which motions come closer; a loop that is too late has none, and it is said.
+#[test]
+fn sampled_loops_have_tubes() {
+    let folder = Place::new();
+    let late = |name: &str, delay: &str| {
+        let text = format!("[[imperfection]]\nkind = \"delay\"\ncomputation = {delay}\n\n[sources]");
+        folder.scenario(name, &[("[sources]", &text)]);
+    };
+    late("late.toml", "5e-4");
+    late("later.toml", "7e-4");
+    let asked = |file: &str, options: &[&str]| {
+        folder
+            .run(&[&["certify", file, "--sampled-tube", "1e-5", "--set", "duration=0.05"], options].concat())
+    };
+    let found = asked("late.toml", &["--json"]).done().json()["sampled_tube"].clone();
+    assert_eq!(
+        (&found["verdict"], &found["periods"], &found["delay"]),
+        (&"proved".into(), &50.into(), &5e-4.into())
+    );
+    assert!(found["rate"].as_f64().unwrap() > 5.0, "{found}");
+    let said = asked("late.toml", &[]).done().stdout;
+    assert!(said.contains("the loop with its torque held for 0.001 s and 0.0005 s late"), "{said}");
+    assert!(said.contains("1/s or faster in every period"), "{said}");
+    let outcome = asked("later.toml", &[]);
+    assert_eq!(outcome.code, Some(1), "{outcome:?}");
+    assert!(outcome.stdout.contains("sampled      no tube was found"), "{outcome:?}");
+}
+
 /// Links that are a tenth heavier or lighter have a funnel, and W says nothing of them.
 #[test]
 fn masses_that_are_off_give_a_funnel() {
@@ -250,8 +278,9 @@ fn bad_options_are_told_apart() {
     folder.scenario("motor.toml", &[(motor, &hardening(motor))]);
     folder.scenario("phi.toml", &[("\"tanh\"", "\"tahn\"")]);
     folder.scenario("metric.toml", &[("[55.0, 30.0]", "[55.0, -30.0]")]);
+    folder.scenario("continuous.toml", &[("duration", "hold = \"continuous\"\nduration")]);
     folder.jumping("jumping.toml");
-    let cases: [(&[&str], &str); 33] = [
+    let cases: [(&[&str], &str); 40] = [
         (&["two-link-tanh", "--error-box", "0"], "empty"),
         (&["two-link-tanh", "--error-box", "-1"], "empty"),
         (&["two-link-tanh", "--error-box", "nan"], "magnitude"),
@@ -278,6 +307,13 @@ fn bad_options_are_told_apart() {
         (&["two-link-tanh", "--disturbance", "0.1", "--slabs", "0"], "must be >= 1"),
         (&["two-link-tanh", "--disturbance", "0.1", "--slabs", "-3"], "unexpected"),
         (&["two-link-tanh", "--disturbance", "0.1", "--slabs", "99999999999999999999"], "invalid"),
+        (&["two-link-tanh", "--sampled-tube", "0"], "must be at least 1e-9"),
+        (&["two-link-tanh", "--sampled-tube", "-1e-5"], "must be at least 1e-9"),
+        (&["two-link-tanh", "--sampled-tube", "nan"], "magnitude"),
+        (&["two-link-tanh", "--sampled-tube", "1e-5,1e-5,1e-5"], "1 or 2 numbers"),
+        (&["two-link-tanh", "--sampled-tube", "narrow"], "invalid"),
+        (&["two-link-hardware", "--sampled-tube", "1e-5"], "imperfections of kind 'encoder'"),
+        (&["continuous.toml", "--sampled-tube", "1e-5"], "acts in continuous time"),
         (&["two-link-tanh", "--velocity-error", "-1"], "must be >= 0"),
         (&["two-link-tanh", "--velocity-error", "1,2,3"], "1 or 4 numbers"),
         (&["two-link-linear", "--velocity-error", "1"], "stretched"),

@@ -275,6 +275,7 @@ def certify(
     up_to_limits: bool = False,
     slabs: int | None = None,
     velocity_error: _Numbers | None = None,
+    sampled_tube: _Numbers | None = None,
     direct: bool = False,
     budget: int = 10_000,
     out: _Path | None = None,

@@ -80,6 +80,7 @@ def certify(
     up_to_limits: bool = False,
     slabs: int | None = None,
     velocity_error: Numbers | None = None,
+    sampled_tube: Numbers | None = None,
     direct: bool = False,
     budget: int = 10_000,
     out: Path | None = None,
@@ -90,7 +91,7 @@ def certify(
     The dict has the keys of `--json`, with `verdict` ("proved", "proved (ideal loop)", "refuted", "undecided", …), and `certificate`,
     the text that `verify` checks, None if nothing was proved. Errors in rad, links then motors; rate in 1/s; disturbance in N m, on
     the motors, link_disturbance on the links, with up_to_limits multiplied until a limit may act; a funnel may have so many slabs of
-    time; velocity errors in rad/s, links then motors.
+    time; velocity errors in rad/s, links then motors. A sampled_tube says how far links reach in a tube around the run of the sampled loop, in rad.
     """
     scenario = _scenario(scenario)
     return _watched(
@@ -106,6 +107,7 @@ def certify(
             up_to_limits=up_to_limits,
             slabs=slabs,
             velocity_error=velocity_error,
+            sampled_tube=sampled_tube,
             direct=direct,
             budget=budget,
             out=out,

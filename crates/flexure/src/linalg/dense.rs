@@ -52,6 +52,15 @@ impl<T> Dense<T> {
         Dense { columns: self.columns, entries: self.entries.iter().copied().map(f).collect() }
     }
 
+    /// Rows as columns.
+    #[must_use]
+    pub fn transposed(&self) -> Self
+    where
+        T: Copy,
+    {
+        Self::from_fn(self.columns, self.rows().len(), |i, j| self[(j, i)])
+    }
+
     /// All entries, row by row.
     pub fn entries_mut(&mut self) -> &mut [T] {
         &mut self.entries
@@ -87,12 +96,6 @@ impl Dense<f64> {
             }
         }
         Self::from_fn(n, b.columns(), |i, j| b[(i, j)] / self[(i, i)])
-    }
-
-    /// Rows as columns.
-    #[must_use]
-    pub fn transposed(&self) -> Self {
-        Self::from_fn(self.columns, self.rows().len(), |i, j| self[(j, i)])
     }
 
     /// Every entry times `factor`.

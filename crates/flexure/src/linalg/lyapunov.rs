@@ -1,4 +1,4 @@
-//! Lyapunov's equation by the squared Smith method. R. A. Smith, *Matrix equation XA + BX = C*, SIAM J. Appl. Math. 16 (1968);
+//! Lyapunov's and Stein's equations by the squared Smith method. R. A. Smith, *Matrix equation XA + BX = C*, SIAM J. Appl. Math. 16 (1968);
 //! Penzl, *A cyclic low-rank Smith method for large sparse Lyapunov equations*, SIAM J. Sci. Comput. 21 (2000), section 2.
 
 use super::Dense;
@@ -22,8 +22,13 @@ pub fn lyapunov(a: &Dense<f64>, q: &Dense<f64>) -> Option<Dense<f64>> {
     let shifted =
         |sign: f64| Dense::from_fn(n, n, |i, j| sign * a[(i, j)] + if i == j { shift } else { 0.0 });
     let inverse = shifted(-1.0).solved(Dense::identity(n));
-    let mut power = &inverse * &shifted(1.0);
-    let mut sum = (&(&inverse * q) * &inverse.transposed()).scaled(2.0 * shift);
+    stein(&inverse * &shifted(1.0), (&(&inverse * q) * &inverse.transposed()).scaled(2.0 * shift))
+}
+
+/// The X with X = `a` X `a`ᵀ + `q`, for a symmetric `q` and an `a` whose eigenvalues are below 1 in size; none where they are not.
+pub fn stein(a: Dense<f64>, q: Dense<f64>) -> Option<Dense<f64>> {
+    let n = a.columns();
+    let (mut power, mut sum) = (a, q);
     let size = |x: &Dense<f64>| (0..n).map(|i| x[(i, i)].abs()).sum::<f64>();
     for _ in 0..SQUARINGS {
         let next = &(&power * &sum) * &power.transposed();

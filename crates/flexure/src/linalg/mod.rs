@@ -8,7 +8,7 @@
 //! | [`eigenvalues`], [`eigenvectors`] | Jacobi rotations, in place in the leading block of any storage |
 //! | [`spectral_radius`], [`dominant_mode`] | eigenvalues of matrices that are not symmetric |
 //! | [`exponential`] | of a matrix |
-//! | [`lyapunov`] | A X + X Aᵀ + Q = 0 |
+//! | [`lyapunov`], [`stein`] | A X + X Aᵀ + Q = 0, X = A X Aᵀ + Q |
 //! | [`cholesky`], [`solved`], [`lower_inverse`], [`direction_of_descent`], [`weakest`] | floats that suggest, and never prove |
 //!
 //! Kernels that a robot's controller runs have sizes known at compile time and are in
@@ -32,6 +32,6 @@ pub use eigen::{eigenvalues, eigenvectors};
 pub use exponential::exponential;
 pub use factor::{cholesky, direction_of_descent, lower_inverse, solved, weakest};
 pub use leading::Leading;
-pub use lyapunov::lyapunov;
+pub use lyapunov::{lyapunov, stein};
 pub use spectrum::{Mode, dominant_mode, spectral_radius};
 pub use symmetric::Symmetric;

@@ -62,6 +62,7 @@ impl Proof {
                 _ => self
                     .limits(scenario)
                     .or_else(|| self.no_funnel(scenario))
+                    .or_else(|| self.no_sampled_tube(scenario))
                     .or_else(|| self.tolerances(scenario)),
             },
             Verdict::Refuted(witness) => {
@@ -124,6 +125,15 @@ impl Proof {
         let help = format!(
             "the rates hold without torques, of the numbers of the file; {ASK_LESS}, or ask about smaller torques or tolerances"
         );
+        Some((scenario.places.problem("controller", "undecided", message, help), false))
+    }
+
+    /// What to say where a tube of the sampled loop was asked for and none was found.
+    fn no_sampled_tube(&self, scenario: &Scenario) -> Option<(Problem, bool)> {
+        let open = self.sampled_tube.as_ref()?.as_ref().err()?;
+        let message = format!("{}: nothing is decided of the sampled loop: {}", scenario.name, open.at);
+        let help =
+            "the rates hold in continuous time; `flexure margins` measures what the sampled loop bears";
         Some((scenario.places.problem("controller", "undecided", message, help), false))
     }
 

@@ -7,6 +7,9 @@ use crate::scenario::Scenario;
 /// Largest and smallest number that a question takes: products of a few of them stay finite.
 const LARGEST: f64 = 1e30;
 
+/// Smallest tube of a sampled loop in rad: rounding of the run is a hundredth of it.
+const SMALLEST_TUBE: f64 = 1e-9;
+
 const OF_BOTH_SIDES: &str = "one number, or one per joint of the links, then of the motors, in rad";
 
 impl Question {
@@ -60,12 +63,20 @@ impl Question {
             let message = format!("the velocity error is {negative} rad/s, must be >= 0");
             return Err(Problem::new("range", message, "the largest absolute value of the velocity error"));
         }
+        let hint =
+            "how far links reach in the tube: one number, or one per link, in rad; 1e-5 is a beginning";
+        let sampled_tube =
+            self.sampled_tube.map(|extents| per_joint("the sampled tube", extents, n, hint)).transpose()?;
+        if let Some(none) = sampled_tube.iter().flatten().find(|&&e| e < SMALLEST_TUBE) {
+            let message = format!("the sampled tube is {none:e} rad, must be at least {SMALLEST_TUBE:e}");
+            return Err(Problem::new("range", message, hint));
+        }
         if let Some(rate) = self.rate.filter(|rate| !(rate.is_finite() && *rate > 0.0 && *rate <= LARGEST)) {
             let message = format!("the rate is {rate:e} 1/s, must be > 0 and at most 1e30");
             let hint = "decay rate of the distance of two solutions; leave it out for the largest";
             return Err(Problem::new("range", message, hint));
         }
-        Ok(Self { region, disturbance, link_disturbance, velocity_error, ..self })
+        Ok(Self { region, disturbance, link_disturbance, velocity_error, sampled_tube, ..self })
     }
 }
 

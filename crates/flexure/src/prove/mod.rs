@@ -13,6 +13,7 @@ mod fitting;
 pub mod paper;
 pub mod question;
 pub mod robust;
+pub mod sampled_data;
 pub mod sampling;
 pub mod standing;
 pub mod subject;

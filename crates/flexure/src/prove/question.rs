@@ -21,6 +21,7 @@ use crate::prove::engine::verdict::Verdict;
 use crate::prove::engine::witness::RateWitness;
 use crate::prove::paper::paper_rate;
 use crate::prove::robust::{NoFunnel, Robust, robust, up_to_limits};
+use crate::prove::sampled_data::{NoTube, SampledTube, sampled_tube, suitable_when_sampled};
 use crate::prove::sampling::{Sampled, sample};
 use crate::prove::subject::subject;
 use crate::prove::verified::certify;
@@ -56,6 +57,8 @@ pub struct Question {
     pub slabs: Option<usize>,
     /// Largest velocity errors [rad/s], links then motors, if a rate in a stretched metric is asked for.
     pub velocity_error: Option<Vec<f64>>,
+    /// How far link positions reach in a tube of the sampled loop in rad, one number a link, if one is asked for.
+    pub sampled_tube: Option<Vec<f64>>,
     /// Whether the direct engine shall prove the rate once more, and how hard it may try.
     pub direct: Option<Direct>,
 }
@@ -113,6 +116,8 @@ pub struct Proof {
     pub needs_funnel: bool,
     /// How far the motion can be from its reference, by a funnel, if disturbances or tolerances were named; or why there is none.
     pub robust: Option<Result<Robust, NoFunnel>>,
+    /// How fast motions of the sampled loop come closer near its run, if that was asked for; or why nothing was shown.
+    pub sampled_tube: Option<Result<SampledTube, NoTube>>,
     /// Bounds along the reference inside the tube of W, if a disturbance of the motors or tolerances were named and there is no funnel.
     pub along: Option<Along>,
     /// Options that were not given, and numbers that no source vouches for.
@@ -247,6 +252,9 @@ const WITHIN: f64 = 0.25;
 const ROBUST: f64 = 0.5;
 const DIRECT: f64 = 0.6;
 
+/// Where all that ends if a tube of the sampled loop is asked for, which takes the rest.
+const BEFORE_TUBE: f64 = 0.2;
+
 /// As [`prove`]; `progress` is told about what fraction is done. Once the rates are proved, what it breaks off has what was
 /// proved until then ([`Proof::broken_off`]).
 ///
@@ -258,11 +266,13 @@ pub fn prove_watched(
     progress: Progress<'_>,
 ) -> Result<Proof, Problems> {
     let broken_off = AtomicBool::new(false);
-    let watched = |fraction: f64| {
+    let share = if question.sampled_tube.is_some() { BEFORE_TUBE } else { 1.0 };
+    let told = |fraction: f64| {
         let flow = progress(fraction);
         broken_off.fetch_or(flow.is_break(), Ordering::Relaxed);
         flow
     };
+    let watched = |fraction: f64| told(share * fraction);
     let is_broken_off = || broken_off.load(Ordering::Relaxed);
     let started = Clock::now();
     let start = start_level(scenario).ok().filter(|_| !outside_travel(scenario));
@@ -274,6 +284,9 @@ pub fn prove_watched(
     let needs_funnel = question.link_disturbance.is_some() || question.up_to_limits || has_masses;
     if needs_funnel {
         suitable(scenario)?;
+    }
+    if question.sampled_tube.is_some() {
+        suitable_when_sampled(scenario)?;
     }
     if watched(0.0).is_break() {
         return Err(Problems::interrupted());
@@ -333,8 +346,15 @@ pub fn prove_watched(
         Some(level) if !is_broken_off() => along(scenario, &level, budget, &between(middle, 1.0))?,
         _ => None,
     };
+    let sampled_tube = match &question.sampled_tube {
+        Some(error) if !is_broken_off() => {
+            sampled_tube(scenario, error, &|fraction| told(share + (1.0 - share) * fraction))?
+        }
+        _ => None,
+    };
     Ok(Proof {
         confirmation,
+        sampled_tube,
         start,
         within,
         needs_funnel,

@@ -12,6 +12,7 @@ use crate::prove::engine::verdict::Verdict;
 use crate::prove::engine::witness::WitnessState;
 use crate::prove::question::{Proof, inside};
 use crate::prove::robust::{NoFunnel, Robust};
+use crate::prove::sampled_data::{NoTube, SampledTube};
 use crate::prove::sampling;
 use crate::prove::standing::Standing;
 use crate::prove::within::{Closer, Open, Within};
@@ -63,6 +64,8 @@ pub struct ProofSummary {
     pub within: Option<WithinSummary>,
     /// How far the motion can be from its reference, by a funnel; none without disturbances or tolerances.
     pub funnel: Option<FunnelSummary>,
+    /// How fast motions of the sampled loop come closer near its run; none if that was not asked for.
+    pub sampled_tube: Option<SampledTubeSummary>,
     /// Bounds along the reference inside the tube of W; none without a disturbance or tolerances, or where there is a funnel.
     pub along: Option<Along>,
     /// What the direct engine says of the contraction rate; none if it was not asked.
@@ -175,6 +178,16 @@ pub enum FunnelSummary {
     Proved(Box<Robust>),
     /// None was found.
     Undecided(NoFunnel),
+}
+
+/// A tube of the sampled loop, or why there is none.
+#[derive(Clone, Debug, Serialize)]
+#[serde(tag = "verdict", rename_all = "lowercase")]
+pub enum SampledTubeSummary {
+    /// Motions in it come closer.
+    Proved(Box<SampledTube>),
+    /// None was found.
+    Undecided(NoTube),
 }
 
 /// An error tube.
@@ -304,6 +317,11 @@ impl ProofSummary {
             within: proof.within.as_ref().map(within),
             funnel: proof.robust.clone().map(|found| {
                 found.map_or_else(FunnelSummary::Undecided, |found| FunnelSummary::Proved(Box::new(found)))
+            }),
+            sampled_tube: proof.sampled_tube.clone().map(|found| {
+                found.map_or_else(SampledTubeSummary::Undecided, |found| {
+                    SampledTubeSummary::Proved(Box::new(found))
+                })
             }),
             along: proof.along.clone(),
             direct: proof.confirmation.as_ref().map(direct),

@@ -49,6 +49,7 @@ mod replay;
 mod report;
 mod rough_plant;
 mod sampled;
+mod sampled_tubes;
 mod samples;
 mod sinks;
 mod stretched;

@@ -19,6 +19,7 @@ pub mod position;
 pub mod rate;
 pub mod region;
 pub mod reserve;
+pub mod sampled_data;
 #[cfg(test)]
 mod schema;
 pub mod shaping;

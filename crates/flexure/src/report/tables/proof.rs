@@ -10,7 +10,9 @@ use crate::prove::engine::certificate::{LoopSide, Norm, StructureName};
 use crate::prove::engine::verdict::Verdict;
 use crate::prove::robust::Binding;
 use crate::prove::standing::outside_of_proofs;
-use crate::prove::summary::{BlockSummary, FunnelSummary, ProofSummary, WithinSummary, WitnessSummary};
+use crate::prove::summary::{
+    BlockSummary, FunnelSummary, ProofSummary, SampledTubeSummary, WithinSummary, WitnessSummary,
+};
 use crate::robot::JointKind;
 use crate::units::{self, Unit};
 
@@ -190,6 +192,9 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
     if let Some(found) = &summary.funnel {
         lines.extend(funnel(found, summary));
     }
+    if let Some(found) = &summary.sampled_tube {
+        lines.extend(sampled_tube(found, summary));
+    }
     if let Some(along) = &summary.along {
         lines.extend(bounds(along, summary));
     }
@@ -278,6 +283,46 @@ fn funnel(found: &FunnelSummary, summary: &ProofSummary) -> Vec<String> {
         lines.push("funnel       larger torques were not tried: no limit was in the way".to_owned());
     }
     lines
+}
+
+/// What holds of motions of the sampled loop.
+fn sampled_tube(found: &SampledTubeSummary, summary: &ProofSummary) -> Vec<String> {
+    let found = match found {
+        SampledTubeSummary::Proved(found) => found,
+        SampledTubeSummary::Undecided(none) => {
+            return vec![format!("sampled      no tube was found: {}", none.at)];
+        }
+    };
+    let [rad, torque] = [units::ANGLE, units::TORQUE].map(|unit| summary.unit(unit));
+    let (links, motors) = found.error.split_at(found.error.len() / 2);
+    let alone = &found.alone[..links.len()];
+    let late =
+        if found.delay > 0.0 { format!(" and {} s late", short(found.delay, 4)) } else { String::new() };
+    let held = format!("its torque held for {} s{late}", short(found.period, 4));
+    vec![
+        format!(
+            "sampled      the loop with {held}, on true states: {} control periods, one by one",
+            found.periods
+        ),
+        format!(
+            "sampled      motions in a tube around the run, |q_l − run| ≤ {} {rad}, |q_m − run| ≤ {} {rad} at most, stay in it",
+            at_most(links),
+            at_most(motors)
+        ),
+        format!(
+            "sampled      and any two of them come closer, in its norms, at {} 1/s or faster in every period",
+            significant(rounded_down(found.rate, 4), 4)
+        ),
+        format!(
+            "sampled      a link that starts off alone is in it up to {} {rad}",
+            list(&alone.iter().map(|&e| rounded_down(e, 3)).collect::<Vec<_>>())
+        ),
+        format!(
+            "sampled      the run's links are within {} {rad} of the reference in its last quarter; |u_m| ≤ {} {torque} in the tube",
+            at_most(&found.tracking),
+            at_most(&found.torque)
+        ),
+    ]
 }
 
 /// Under which torques, and of which robots, a funnel is; the number is exact.

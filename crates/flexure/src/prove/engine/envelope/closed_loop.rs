@@ -69,6 +69,9 @@ pub trait TrackingLoop: Sync {
     fn approach_m(&self, e_m: &[Slope]) -> Vec<Slope>;
     /// What the law says at `x`, with the Taylor coefficients `q_ld` of the reference in rad/sᵏ.
     fn command(&self, x: &Place, q_ld: &[[Slope; 5]]) -> Answer;
+    /// M_l `a_l` + (C_l + D_l) `v_l` + g_l [N m]: what the springs have to give where the links are at `q_l` in rad, move at `v_l` [rad/s] and speed
+    /// up by `a_l` [rad/s²].
+    fn link_load(&self, q_l: &[Slope], v_l: &[Slope], a_l: &[Slope]) -> Vec<Slope>;
     /// M_l⁻¹ [1/(kg m²)] at `q_l` in rad.
     fn inverse_mass(&self, q_l: &[Interval]) -> Symmetric<Interval>;
     /// The lower triangle of M_l⁻¹ [1/(kg m²)], row by row, with its derivatives at `q_l` in rad.
@@ -149,6 +152,12 @@ where
         );
         let [u_m, q_md, e_l, e_m, s_l, s_m] = [u_m, q_md, e_l, e_m, s_l, s_m].map(|v| self.list(&v));
         Answer { u_m, q_md, e_l, e_m, s_l, s_m }
+    }
+
+    fn link_load(&self, q_l: &[Slope], v_l: &[Slope], a_l: &[Slope]) -> Vec<Slope> {
+        let [q_l, v_l, a_l] = [q_l, v_l, a_l].map(vector::<Slope, N>);
+        let load = self.robot.links.inverse_dynamics(&q_l, &v_l, &v_l, &a_l);
+        self.list(&(load + self.robot.link_damping.diag_mul(&v_l)))
     }
 
     fn inverse_mass(&self, q_l: &[Interval]) -> Symmetric<Interval> {

@@ -1,0 +1,123 @@
+//! Tubes of sampled loops against simulated ones: what starts in a tube ends where it was said to, and no tube is found where none is.
+
+use flexure::files::{Change, Reading};
+use flexure::imperfections::{Delay, Imperfection};
+use flexure::progress::unwatched;
+use flexure::prove::engine::sampled_data::tube::Ellipsoid;
+use flexure::prove::sampled_data::{NoTube, SampledTube, sampled_tube};
+use flexure::scenario::{Scenario, load_scenario_with};
+use flexure::simulate::Observed;
+
+use crate::common::Random;
+
+/// The arm with the paper's gains, soon at speed, for a fraction of a second.
+const LOOP: [&str; 2] = ["duration = 0.12", "reference.smooth_start.duration = 0.1"];
+
+fn scenario(name: &str, changes: &[&str]) -> Scenario {
+    let changes: Vec<Change> =
+        changes.iter().map(|change| Change::parse(change).expect("a change")).collect();
+    load_scenario_with(name, Reading::changed(&changes))
+        .unwrap_or_else(|problems| panic!("{name}: {problems}"))
+}
+
+fn with_delay(delay: f64) -> Scenario {
+    let mut scenario = scenario("two-link-tanh-smooth", &LOOP);
+    scenario.imperfections = vec![Imperfection::Delay(Delay { computation: delay, actuation: 0.0 })];
+    scenario
+}
+
+fn found(scenario: &Scenario, error: f64) -> Result<SampledTube, NoTube> {
+    let error = vec![error; scenario.robot.joint_count()];
+    sampled_tube(scenario, &error, &unwatched).expect("suitable").expect("nobody breaks it off")
+}
+
+/// The motion at the end of the run from `start`.
+fn end(scenario: &Scenario, start: &[f64]) -> Vec<f64> {
+    let n = scenario.robot.joint_count();
+    let mut scenario = scenario.clone();
+    let part = |k: usize| start[k * n..(k + 1) * n].to_vec();
+    let initial = &mut scenario.initial;
+    (initial.q_l, initial.q_m, initial.dq_l, initial.dq_m) = (part(0), part(1), part(2), part(3));
+    let mut held = scenario.open().expect("a loop");
+    let periods = (scenario.duration / scenario.control_period).round();
+    // The first step is the first instant.
+    for _ in 0..=periods as u64 {
+        held.step().expect("it follows");
+    }
+    let mut observed = Observed::new(n);
+    held.observe(&mut observed).expect("of its size");
+    assert!((observed.t - scenario.duration).abs() < 1e-9, "{}", observed.t);
+    observed.motion
+}
+
+/// A state at |y| = 1, in a random direction of motions; torques on their way are those of the springs, as runs begin.
+fn on_the_surface(tube: &Ellipsoid, scenario: &Scenario, random: &mut Random) -> Vec<f64> {
+    let n = scenario.robot.joint_count();
+    let size = tube.center.len();
+    let y: Vec<f64> = (0..4 * n).map(|_| random.next()).collect();
+    let mut off: Vec<f64> =
+        (0..4 * n).map(|i| (0..=i).map(|k| tube.lower[(i, k)] * y[k]).sum::<f64>()).collect();
+    for at in 4 * n..size {
+        let joint = at % n;
+        off.push(scenario.robot.stiffness[joint] * (off[n + joint] - off[joint]));
+    }
+    let at = |scale: f64| -> Vec<f64> { tube.center.iter().zip(&off).map(|(c, x)| c + scale * x).collect() };
+    // Far from the rounding of the middle.
+    let distance = tube.distance(&at(1.0));
+    at(1.0 / distance)
+}
+
+/// 400 runs from the surface of two tubes: none ends farther from the run than was said.
+#[test]
+fn no_run_decays_slower_than_said() {
+    let mut random = Random(18);
+    for scenario in [scenario("two-link-tanh-smooth", &LOOP), with_delay(0.0005)] {
+        let tube = found(&scenario, 1e-5).unwrap_or_else(|none| panic!("{}", none.at));
+        assert!(tube.rate > 5.0, "{}", tube.rate);
+        let [first, last] = &tube.ends;
+        // The middle is the run.
+        let n = scenario.robot.joint_count();
+        let run = end(&scenario, &first.center[..4 * n]);
+        let missed = last.distance(&run);
+        assert!(missed < 1e-3, "{missed}");
+        let left = (-tube.mean_rate * scenario.duration).exp();
+        let mut largest = 0.0_f64;
+        for _ in 0..200 {
+            let start = on_the_surface(first, &scenario, &mut random);
+            let distance = last.distance(&end(&scenario, &start[..4 * n]));
+            largest = largest.max(distance);
+            assert!(distance <= left + 1e-3, "{distance} of {left}");
+        }
+        println!("rate {}, {largest} of {left} at the end", tube.mean_rate);
+        // It says something: a rate of three times as much is refuted.
+        assert!(largest > left.powi(3), "{largest} of {left}");
+    }
+}
+
+/// The loop with 0.7 ms of delay is unstable, and with torques of 5 N m at most it cannot follow.
+#[test]
+fn no_tube_is_found_where_there_is_none() {
+    let none = found(&with_delay(0.0007), 1e-5).unwrap_err();
+    assert!(none.at.contains("small errors do not shrink"), "{}", none.at);
+    let mut limited = scenario("two-link-tanh-smooth", &LOOP);
+    limited.plant.unlimited = false;
+    limited.robot.limits.torque = vec![5.0, 5.0];
+    let none = found(&limited, 1e-5).unwrap_err();
+    assert!(none.at.contains("N m, beyond its limit of 5 N m"), "{}", none.at);
+    let none = found(&scenario("two-link-tanh-smooth", &LOOP), 0.1).unwrap_err();
+    assert!(none.at.contains("a smaller one may have one"), "{}", none.at);
+}
+
+/// Of what is beyond it nothing is said, and which that is.
+#[test]
+fn loops_with_more_are_refused() {
+    for (name, changes, what) in [
+        ("two-link-hardware", &[][..], "imperfections of kind 'encoder'"),
+        ("two-link-tanh-smooth", &["hold = \"continuous\""], "acts in continuous time"),
+        ("two-link-tanh-smooth", &["plant.spring_hardening = [1.0, 1.0]"], "plant.spring_hardening"),
+    ] {
+        let scenario = scenario(name, changes);
+        let problems = sampled_tube(&scenario, &[1e-5, 1e-5], &unwatched).unwrap_err();
+        assert!(problems.to_string().contains(what), "{problems}");
+    }
+}
