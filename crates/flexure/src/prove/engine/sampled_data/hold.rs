@@ -4,6 +4,7 @@ use flexure_core::scalar::{Interval, Scalar};
 
 use crate::linalg::Dense;
 use crate::prove::engine::envelope::closed_loop::TrackingLoop;
+use crate::prove::engine::sampled_data::curvature::Curvature;
 use crate::prove::engine::sampled_data::fundamental::fundamental;
 use crate::prove::engine::sampled_data::robot::{Links, Path};
 
@@ -72,8 +73,13 @@ pub fn held(
 ) -> Option<Spread> {
     let length = length / Interval::point(pieces as f64);
     let u_m = torque.ranges(sizes);
-    (0..pieces).try_fold(motion, |motion, _| piece(system, &motion, torque, (sizes, &u_m), length))
+    let mut curvature = None;
+    (0..pieces)
+        .try_fold(motion, |motion, _| piece(system, &motion, torque, (sizes, &u_m), length, &mut curvature))
 }
+
+/// Boxes that second derivatives are bounded over are so many times as wide as those of pieces, on either side.
+const ROOMY: f64 = 4.0;
 
 /// One piece.
 fn piece(
@@ -82,6 +88,7 @@ fn piece(
     torque: &Spread,
     (sizes, u_m): (&Sizes, &[Interval]),
     length: Interval,
+    curvature: &mut Option<Curvature>,
 ) -> Option<Spread> {
     let (size, half, n) = (motion.center.len(), motion.center.len() / 2, u_m.len());
     let ranges = enclosed(system, &motion.ranges(sizes), u_m, length)?;
@@ -108,7 +115,21 @@ fn piece(
     let mut rates = begin[half..].to_vec();
     rates.extend(path.accelerations().iter().zip(&at_start).map(|(&a, &r)| a + r));
 
-    let flow = flow(system, (&ranges, &accelerations[..n]), &links, &rates, length)?;
+    let of_links = &ranges[..3 * n];
+    if !curvature.as_ref().is_some_and(|curvature| curvature.covers(of_links)) {
+        let roomy = |x: &Interval| *x + around_zero(ROOMY * x.width());
+        *curvature = Some(Curvature::over(system, of_links.iter().map(roomy).collect()));
+    }
+    let at_middle: Vec<_> = ranges.iter().map(|x| Interval::point(x.midpoint())).collect();
+    let (middle, at) = accelerated(system, &at_middle, u_m)?;
+    let middle = middle.rates(system, &at_middle[..n], &at_middle[half..half + n], &at[..n]);
+    let everywhere = links.rates(system, &ranges[..n], &ranges[half..half + n], &accelerations[..n]);
+    let around = curvature.as_ref().map_or_else(|| everywhere.clone(), |c| c.around(&middle, of_links));
+    // Both enclose them.
+    let link_rates = Dense::from_fn(n, 3 * n, |i, j| {
+        everywhere[(i, j)].intersection(around[(i, j)]).unwrap_or(everywhere[(i, j)])
+    });
+    let flow = flow(system, &link_rates, &rates, length)?;
     let end = path.at(length);
     let beside = |x: &[Interval], p: &[Interval]| x.iter().zip(p).map(|(&x, &p)| x - p).collect::<Vec<_>>();
     let mut start = beside(&motion.center, &begin);
@@ -187,17 +208,15 @@ struct Flow {
     between: Dense<f64>,
 }
 
-/// Over the box `ranges` for `length` in s, by X(1) of ξ' = `length` S J S⁻¹ ξ for motions and torques, S a power of two for velocities so that no entry is
+/// For `length` in s, with the slopes `by_links` of the links' accelerations, by X(1) of ξ' = `length` S J S⁻¹ ξ for motions and torques, S a power of two for velocities so that no entry is
 /// large; none if that is too long.
 fn flow(
     system: &dyn TrackingLoop,
-    (ranges, accelerations): (&[Interval], &[Interval]),
-    links: &Links,
+    by_links: &Dense<Interval>,
     path_rates: &[Interval],
     length: Interval,
 ) -> Option<Flow> {
-    let (size, half, n) = (ranges.len(), ranges.len() / 2, accelerations.len());
-    let by_links = links.rates(system, &ranges[..n], &ranges[half..half + n], accelerations);
+    let (size, half, n) = (path_rates.len(), path_rates.len() / 2, path_rates.len() / 4);
     let drive = system.drive();
     let by_motors = |i: usize, j: usize| {
         let torque = match j.checked_sub(i) {

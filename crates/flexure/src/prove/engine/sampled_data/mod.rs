@@ -15,6 +15,7 @@
 //! λ⁻² Φ L_k L_kᵀ Φᵀ + Q in floats with Φ the middle of those and a λ that is asked for: then Φ has norm λ at most, and what intervals leave open goes by
 //! directions that Q holds. A torque that would be off by w at each instant is such a Q: it makes the tube as wide as it is asked to be.
 
+pub mod curvature;
 pub mod fundamental;
 pub mod hold;
 pub mod instant;

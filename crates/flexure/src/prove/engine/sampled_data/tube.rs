@@ -163,18 +163,20 @@ pub fn tube(
     if let Some(limited) = of.beyond(0..of.waiting, &now) {
         return ends(0, limited);
     }
+    let mut cuts = Cuts::new();
     for k in 0..request.periods {
         if progress(k as f64 / request.periods as f64).is_break() {
             return None;
         }
-        let Some(passage) = passage(of, k, &now) else { return ends(k, Why::Unbounded) };
+        let law = law_at(of, k, &now);
         let beyond = |(_, (torque, limit)): &(usize, (f64, &f64))| torque > limit;
-        let torques = passage.law.largest();
+        let torques = law.largest();
         if let Some((joint, (torque, _))) =
             torques.into_iter().zip(of.limits.unwrap_or_default()).enumerate().find(beyond)
         {
             return ends(k, Why::Limited(joint, torque));
         }
+        let Some(passage) = cuts.passage(of, &now, law) else { return ends(k, Why::Unbounded) };
         let Some(next) = next(&passage, &off, shrink) else { return ends(k, Why::NoRoot) };
         let step = check(&passage, &next);
         // What is no number is not below either.
@@ -202,15 +204,79 @@ fn points(all: &[f64]) -> Vec<Interval> {
     all.iter().map(|&x| Interval::point(x)).collect()
 }
 
-/// Period `k` from `now`; none if motions are not shown to exist.
-fn passage(of: &HeldLoop<'_>, k: usize, now: &Ellipsoid) -> Option<Passage> {
+/// Into how many pieces holds are cut.
+struct Cuts {
+    /// So many times as many as are needed at least.
+    finer: usize,
+    /// What was open when finer pieces did not help.
+    floor: f64,
+}
+
+/// Pieces are halved at most to this part.
+const FINEST: usize = 32;
+
+/// What intervals leave open of all numbers together, as a part of their extents, that is not worth more pieces.
+const CLOSED: f64 = 2e-4;
+
+/// Halves that leave open more than this part of what there was do not help.
+const HELPED: f64 = 0.75;
+
+impl Cuts {
+    fn new() -> Self {
+        Self { finer: 1, floor: CLOSED }
+    }
+
+    /// The period from `now` under `law`, in pieces that leave little open, as far as pieces can.
+    fn passage(&mut self, of: &HeldLoop<'_>, now: &Ellipsoid, law: Instant) -> Option<Passage> {
+        let mut found = passage(of, now, &law, self.finer)?;
+        let mut open = openness(&found);
+        while open > 2.0 * self.floor && self.finer < FINEST {
+            let halved = passage(of, now, &law, 2 * self.finer)?;
+            let left = openness(&halved);
+            if left > HELPED * open {
+                self.floor = open.max(CLOSED);
+                break;
+            }
+            (found, open) = (halved, left);
+            self.finer *= 2;
+        }
+        if open < 0.25 * self.floor {
+            self.finer = (self.finer / 2).max(1);
+        }
+        Some(found)
+    }
+}
+
+/// Lengths of what the rows of y leave open, and of the rows.
+fn open_of(passage: &Passage) -> (Vec<f64>, Vec<f64>) {
+    let ball = passage.sizes.ball;
+    let length = |row: &[Interval], of: &dyn Fn(Interval) -> f64| {
+        row[..ball].iter().map(|&x| of(x).powi(2)).sum::<f64>().sqrt()
+    };
+    let all = || passage.after.deviations.rows();
+    let open = all().map(|row| length(row, &|x| radius(x).hi())).collect();
+    (open, all().map(|row| length(row, &Interval::midpoint)).collect())
+}
+
+/// What is open of all rows together, as parts of them.
+fn openness(passage: &Passage) -> f64 {
+    let (open, rows) = open_of(passage);
+    open.iter().zip(&rows).map(|(open, row)| open / row).sum()
+}
+
+/// The law at instant `k` over `now`.
+fn law_at(of: &HeldLoop<'_>, k: usize, now: &Ellipsoid) -> Instant {
+    let size = 4 * of.law.joints();
+    let square = Dense::from_fn(size, size, |i, j| now.lower[(i, j)]);
+    Instant::over(of.law, of.period * Interval::point(k as f64), &now.center[..size], &square)
+}
+
+/// A period from `now` under `law`, in so many times as many pieces as are needed; none if motions are not shown to exist.
+fn passage(of: &HeldLoop<'_>, now: &Ellipsoid, law: &Instant, finer: usize) -> Option<Passage> {
     let (n, ball) = (of.law.joints(), now.center.len());
     let size = 4 * n;
     let lower = now.lower.map(Interval::point);
     let motion = Spread { center: points(&now.center[..size]), deviations: rows(&lower, 0, size) };
-    let square = Dense::from_fn(size, size, |i, j| now.lower[(i, j)]);
-    let t = of.period * Interval::point(k as f64);
-    let law = Instant::over(of.law, t, &now.center[..size], &square);
     let sizes = Sizes { ball, others: law.beside.clone() };
     let wide = |all: &Dense<Interval>, own: bool| {
         Dense::from_fn(all.rows().len(), ball + n, |i, j| match j.checked_sub(ball) {
@@ -229,7 +295,14 @@ fn passage(of: &HeldLoop<'_>, k: usize, now: &Ellipsoid) -> Option<Passage> {
     let queue: Vec<Spread> = (0..of.waiting).map(waiting).chain([asked]).collect();
     let motion = Spread { center: motion.center, deviations: wide(&motion.deviations, false) };
     let holds = |motion: Spread, torque: &Spread, length: Interval| {
-        held(of.robot, motion, torque, &sizes, length, pace(of.robot, &motion_at(&now.center, n), length))
+        held(
+            of.robot,
+            motion,
+            torque,
+            &sizes,
+            length,
+            finer * pace(of.robot, &motion_at(&now.center, n), length),
+        )
     };
     let moved = match of.offset {
         None => holds(motion, &queue[0], of.period)?,
@@ -239,7 +312,7 @@ fn passage(of: &HeldLoop<'_>, k: usize, now: &Ellipsoid) -> Option<Passage> {
     let center = all.iter().flat_map(|part| part.center.iter().copied()).collect();
     let each: Vec<&[Interval]> = all.iter().flat_map(|part| part.deviations.rows()).collect();
     let deviations = Dense::from_fn(ball, ball + n, |i, j| each[i][j]);
-    Some(Passage { law, after: Spread { center, deviations }, sizes })
+    Some(Passage { law: law.clone(), after: Spread { center, deviations }, sizes })
 }
 
 fn motion_at(center: &[f64], n: usize) -> Vec<Interval> {
@@ -283,7 +356,7 @@ fn first(of: &HeldLoop<'_>, request: &TubeRequest, shrink: f64) -> Option<(Ellip
     center.extend((0..of.waiting).flat_map(|_| request.torque.iter().copied()));
     let size = center.len();
     let small = Ellipsoid { center: center.clone(), lower: Dense::identity(size).scaled(SMALL) };
-    let (flow, columns) = middles(&passage(of, 0, &small)?);
+    let (flow, columns) = middles(&passage(of, &small, &law_at(of, 0, &small), 1)?);
     let flow = flow.scaled(1.0 / (SMALL * shrink));
     let mut torques = vec![1.0; n];
     for round in 0..=ROUNDS {
@@ -307,19 +380,17 @@ fn first(of: &HeldLoop<'_>, request: &TubeRequest, shrink: f64) -> Option<(Ellip
 /// The ellipsoid after `passage`.
 fn next(passage: &Passage, torques: &[f64], shrink: f64) -> Option<Ellipsoid> {
     let (flow, columns) = middles(passage);
-    let all = &passage.after.deviations;
-    let (ball, room) = (passage.sizes.ball, SHARE * (1.0 - shrink));
+    let room = SHARE * (1.0 - shrink);
     let count = torques.len() as f64;
     let torques: Vec<_> = torques
         .iter()
         .zip(&passage.sizes.others)
         .map(|(&w, &open)| w.max(open * count.sqrt() / room))
         .collect();
-    let open = |i: usize| {
-        let row = all.row(i)[..ball].iter().map(|&x| radius(x).hi().powi(2)).sum::<f64>();
-        row.sqrt() * (ball as f64).sqrt() / room
-    };
-    let open: Vec<_> = (0..ball).map(open).collect();
+    // Of all r with Σ (open/r)² = room², those with the least Σ (r/row)².
+    let (open, rows) = open_of(passage);
+    let parts: f64 = open.iter().zip(&rows).map(|(open, row)| open / row).sum();
+    let open: Vec<_> = open.iter().zip(&rows).map(|(open, row)| (open * row * parts).sqrt() / room).collect();
     let lower = cholesky(&spread(&(&flow * &flow.transposed()), &columns, &torques, shrink, &open))?;
     let center = passage.after.center.iter().map(|c| c.midpoint()).collect();
     Some(Ellipsoid { center, lower })
