@@ -189,15 +189,9 @@ fn lines(summary: &ProofSummary) -> Vec<String> {
     if let Some(within) = summary.within.as_ref().filter(|within| within.rate.is_some() || !in_funnel) {
         lines.extend(tolerated(within, &rad));
     }
-    if let Some(found) = &summary.funnel {
-        lines.extend(funnel(found, summary));
-    }
-    if let Some(found) = &summary.sampled_tube {
-        lines.extend(sampled_tube(found, summary));
-    }
-    if let Some(along) = &summary.along {
-        lines.extend(bounds(along, summary));
-    }
+    lines.extend(summary.funnel.iter().flat_map(|found| funnel(found, summary)));
+    lines.extend(summary.sampled_tube.iter().flat_map(|found| sampled_tube(found, summary)));
+    lines.extend(summary.along.iter().flat_map(|along| bounds(along, summary)));
     lines.extend(summary.witness.as_ref().map(|found| witness(found, &rad)));
     if let Some(undecided) = &summary.undecided {
         lines.push(format!("undecided    {} (boxes looked at: {})", undecided.at, undecided.spent));

@@ -35,8 +35,7 @@ pub fn fundamental(rates: &Dense<Interval>) -> Option<Fundamental> {
     let radius = rates.map(|x| (x - Interval::point(x.midpoint())).magnitude());
     let above = Dense::from_fn(n, n, |i, j| (middle[(i, j)].abs() + radius[(i, j)]) * INFLATED);
     let norm = above.rows().map(|row| row.iter().sum::<f64>()).fold(0.0, f64::max) * INFLATED;
-    // What is no number is not below either.
-    if !(norm <= LARGEST) {
+    if norm.is_nan() || norm > LARGEST {
         return None;
     }
     let (mut order, mut rest) = (0.0, 1.0);

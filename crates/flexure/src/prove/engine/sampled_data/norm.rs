@@ -45,8 +45,7 @@ fn largest(a: &Dense<f64>) -> f64 {
     let (mut power, mut root, mut logarithm) = (a.clone(), 1.0, 0.0);
     for _ in 0..SQUARINGS {
         let trace: f64 = (0..power.columns()).map(|i| power[(i, i)]).sum();
-        // Of nothing, or of what is no number.
-        if !(trace > 0.0) {
+        if trace.is_nan() || trace <= 0.0 {
             return trace;
         }
         logarithm += trace.ln() * root;

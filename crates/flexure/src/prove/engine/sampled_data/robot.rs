@@ -52,7 +52,7 @@ impl Links {
         });
         let norm = off.rows().map(|row| row.iter().fold(Interval::ZERO, |sum, &x| sum + x).hi());
         let norm = Interval::point(norm.fold(0.0, f64::max));
-        if !(norm.hi() < 1.0) {
+        if norm.hi().is_nan() || norm.hi() >= 1.0 {
             return None;
         }
         let first = &off * &R.map(|x| Interval::point(x.magnitude()));

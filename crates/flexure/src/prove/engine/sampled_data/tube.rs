@@ -176,11 +176,11 @@ pub fn tube(
         {
             return ends(k, Why::Limited(joint, torque));
         }
-        let Some(passage) = cuts.passage(of, &now, law) else { return ends(k, Why::Unbounded) };
+        let Some(passage) = cuts.passage(of, &now, &law) else { return ends(k, Why::Unbounded) };
         let Some(next) = next(&passage, &off, shrink) else { return ends(k, Why::NoRoot) };
         let step = check(&passage, &next);
-        // What is no number is not below either.
-        if !((Interval::point(step.growth) + Interval::point(step.offset)).hi() <= 1.0) {
+        let most = (Interval::point(step.growth) + Interval::point(step.offset)).hi();
+        if most.is_nan() || most > 1.0 {
             return ends(k, Why::Grows(step.growth + step.offset));
         }
         each(k, &now, &passage, step);
@@ -227,11 +227,11 @@ impl Cuts {
     }
 
     /// The period from `now` under `law`, in pieces that leave little open, as far as pieces can.
-    fn passage(&mut self, of: &HeldLoop<'_>, now: &Ellipsoid, law: Instant) -> Option<Passage> {
-        let mut found = passage(of, now, &law, self.finer)?;
+    fn passage(&mut self, of: &HeldLoop<'_>, now: &Ellipsoid, law: &Instant) -> Option<Passage> {
+        let mut found = passage(of, now, law, self.finer)?;
         let mut open = openness(&found);
         while open > 2.0 * self.floor && self.finer < FINEST {
-            let halved = passage(of, now, &law, 2 * self.finer)?;
+            let halved = passage(of, now, law, 2 * self.finer)?;
             let left = openness(&halved);
             if left > HELPED * open {
                 self.floor = open.max(CLOSED);
