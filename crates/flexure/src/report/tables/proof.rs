@@ -290,9 +290,8 @@ fn sampled_tube(found: &SampledTubeSummary, summary: &ProofSummary) -> Vec<Strin
     let [rad, torque] = [units::ANGLE, units::TORQUE].map(|unit| summary.unit(unit));
     let (links, motors) = found.error.split_at(found.error.len() / 2);
     let alone = &found.alone[..links.len()];
-    let late =
-        if found.delay > 0.0 { format!(" and {} s late", short(found.delay, 4)) } else { String::new() };
-    let held = format!("its torque held for {} s{late}", short(found.period, 4));
+    let late = if found.delay > 0.0 { format!(" and {} s late", found.delay) } else { String::new() };
+    let held = format!("its torque held for {} s{late}", found.period);
     vec![
         format!(
             "sampled      the loop with {held}, on true states: {} control periods, one by one",
