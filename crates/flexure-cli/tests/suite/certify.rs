@@ -166,7 +166,8 @@ fn sampled_loops_have_tubes() {
     let folder = Place::new();
     let late = |name: &str, delay: &str| {
         let text = format!("[[imperfection]]\nkind = \"delay\"\ncomputation = {delay}\n\n[sources]");
-        folder.scenario(name, &[("[sources]", &text)]);
+        let start = "[reference.smooth_start]\nduration = 2.0\n\n[controller]";
+        folder.scenario(name, &[("[sources]", &text), ("[controller]", start)]);
     };
     late("late.toml", "5e-4");
     late("later.toml", "7e-4");
@@ -308,7 +309,7 @@ fn bad_options_are_told_apart() {
         (&["two-link-tanh", "--disturbance", "0.1", "--slabs", "-3"], "unexpected"),
         (&["two-link-tanh", "--disturbance", "0.1", "--slabs", "99999999999999999999"], "invalid"),
         (&["two-link-tanh", "--sampled-tube", "0"], "must be at least 1e-9"),
-        (&["two-link-tanh", "--sampled-tube", "-1e-5"], "must be at least 1e-9"),
+        (&["two-link-tanh", "--sampled-tube", "-0.1"], "must be at least 1e-9"),
         (&["two-link-tanh", "--sampled-tube", "nan"], "magnitude"),
         (&["two-link-tanh", "--sampled-tube", "1e-5,1e-5,1e-5"], "1 or 2 numbers"),
         (&["two-link-tanh", "--sampled-tube", "narrow"], "invalid"),

@@ -152,6 +152,10 @@ fn why(scenario: &Scenario, rate: f64, ends: &Ends) -> NoTube {
         Why::NoRoot | Why::Grows(_) => {
             format!("at t = {time} s motions in it were not shown to come closer; {small}")
         }
+        Why::Widens(reach) => format!(
+            "at t = {time} s a tube of motions that come closer was shown only with links up to {} rad from the run; {small}",
+            engineering(reach)
+        ),
         Why::Limited(joint, torque) => format!(
             "at t = {time} s the torque of joint {} may come to {} N m, beyond its limit of {} N m",
             joint + 1,

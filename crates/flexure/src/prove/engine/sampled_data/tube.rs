@@ -81,6 +81,8 @@ pub enum Why {
     NoRoot,
     /// Motions come closer: what is known of λ + ρ.
     Grows(f64),
+    /// Links stay as near the run as was asked for, nearly: how far one of them may be [rad].
+    Widens(f64),
     /// The torque of a joint, by index, stays below its limit: its bound [N m].
     Limited(usize, f64),
 }
@@ -141,6 +143,9 @@ fn inverse_of(lower: &Dense<f64>) -> (Dense<Interval>, Interval) {
 /// Of 1 − λ, the part that each of what intervals leave open may take.
 const SHARE: f64 = 0.25;
 
+/// A tube whose links reach so many times as far as was asked for is none: what makes it so wide has taken over.
+const WIDEST: f64 = 10.0;
+
 /// Numbers of a state are off by this part of their extents at least, each for itself.
 const LEAST: f64 = 1e-6;
 
@@ -167,6 +172,14 @@ pub fn tube(
     for k in 0..request.periods {
         if progress(k as f64 / request.periods as f64).is_break() {
             return None;
+        }
+        let reached = now
+            .extents()
+            .into_iter()
+            .zip(&request.extents)
+            .find(|(extent, asked)| *extent > WIDEST * **asked);
+        if let Some((extent, _)) = reached {
+            return ends(k, Why::Widens(extent));
         }
         let law = law_at(of, k, &now);
         let beyond = |(_, (torque, limit)): &(usize, (f64, &f64))| torque > limit;
