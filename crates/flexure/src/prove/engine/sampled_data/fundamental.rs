@@ -108,7 +108,7 @@ mod tests {
             }
         }
         let width = found.rows().flatten().fold(0.0, |widest: f64, x| widest.max(x.width()));
-        assert!(width < 2.5, "{width}");
+        assert!(width < 4.0, "{width}");
     }
 
     /// Numbers that are known give numbers that are known to rounding; e^(-1) and a rotation.
@@ -120,7 +120,7 @@ mod tests {
         let exact =
             [[(-1.0_f64).exp(), 0.0, 0.0], [0.0, angle.cos(), -angle.sin()], [0.0, angle.sin(), angle.cos()]];
         for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
-            assert!((found[(i, j)].midpoint() - exact[i][j]).abs() < 1e-15);
+            assert!((found[(i, j)].midpoint() - exact[i][j]).abs() < 1e-14);
             assert!(found[(i, j)].contains(exact[i][j]) && found[(i, j)].width() < 1e-12);
         }
     }
