@@ -61,6 +61,14 @@ impl<T> Dense<T> {
         Self::from_fn(self.columns, self.rows().len(), |i, j| self[(j, i)])
     }
 
+    /// The matrix times the vector `x`.
+    pub fn apply(&self, x: &[T]) -> Vec<T>
+    where
+        T: Scalar,
+    {
+        self.rows().map(|row| row.iter().zip(x).fold(T::ZERO, |sum, (&a, &x)| sum + a * x)).collect()
+    }
+
     /// All entries, row by row.
     pub fn entries_mut(&mut self) -> &mut [T] {
         &mut self.entries

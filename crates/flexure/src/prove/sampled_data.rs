@@ -10,7 +10,9 @@ use crate::imperfections::stages::split;
 use crate::imperfections::{Delay, Imperfection, Saturation};
 use crate::progress::Progress;
 use crate::prove::closed_loop::along_reference;
-use crate::prove::engine::sampled_data::tube::{Ellipsoid, Ends, HeldLoop, TubeRequest, Why, tube};
+use crate::prove::engine::sampled_data::ellipsoid::Ellipsoid;
+use crate::prove::engine::sampled_data::period::HeldLoop;
+use crate::prove::engine::sampled_data::tube::{Ends, TubeRequest, Why, tube};
 use crate::sampled;
 use crate::scenario::{Hold, Scenario};
 
@@ -63,7 +65,8 @@ pub fn sampled_tube(
     let none = |at: String| Ok(Some(Err(NoTube { at })));
     let rate = match sampled::probe(scenario)? {
         Some(found) if found.stable => PART * found.rate,
-        _ => return none("small errors do not shrink in the sampled loop".to_owned()),
+        Some(_) => return none("small errors do not shrink in it".to_owned()),
+        None => return none(sampled::not_looked_at(scenario).unwrap_or_default()),
     };
     let n = scenario.robot.joint_count();
     let system = along_reference(scenario)?;
@@ -79,8 +82,7 @@ pub fn sampled_tube(
     let limits: Option<Vec<f64>> =
         limits.map(|limits| limits.iter().map(|&limit| scenario.robot.bounds(limit).lo()).collect());
     let of = HeldLoop {
-        law: &*system,
-        robot: &*system,
+        system: &*system,
         period,
         waiting,
         offset: (offset > 0.0).then(|| exact - whole_periods),
@@ -89,51 +91,95 @@ pub fn sampled_tube(
     let initial = &scenario.initial;
     let start: Vec<f64> =
         [&initial.q_l, &initial.q_m, &initial.dq_l, &initial.dq_m].into_iter().flatten().copied().collect();
+    // The run begins at the decimals of the file, with the springs holding the links (`simulate::assembly`).
+    let exact: Vec<_> = start.iter().map(|&x| scenario.bounds(x)).collect();
+    let springs: Vec<_> = (0..n)
+        .map(|i| scenario.robot.bounds(scenario.robot.stiffness[i]) * (exact[n + i] - exact[i]))
+        .collect();
     let request = TubeRequest {
-        // As the run begins: `simulate::assembly`.
-        torque: (0..n).map(|i| scenario.robot.stiffness[i] * (start[n + i] - start[i])).collect(),
-        periods: whole(scenario.duration / seconds),
+        torque: springs.iter().map(|torque| torque.midpoint()).collect(),
+        periods: scenario.periods() as usize,
         extents: error.to_vec(),
         rate,
         start,
     };
-    let mut slowest = f64::INFINITY;
-    let mut mean_rate = 0.0;
-    let mut first = None;
-    let [mut largest, mut tracking, mut torque] = [2 * n, n, n].map(|count| vec![0.0_f64; count]);
-    let raise = |most: &mut [f64], with: &[f64]| {
-        most.iter_mut().zip(with).for_each(|(most, x)| *most = most.max(*x));
-    };
+    let mut found = Findings::new(n);
+    let begin = [exact, springs.repeat(waiting)].concat();
     let done = tube(&of, &request, progress, &mut |k, ellipsoid, passage, step| {
+        let run = found.run.map_or_else(|| ellipsoid.reach(&begin), Interval::hi);
         // From below: a growth is known from above.
-        let rate = (-Interval::point(step.growth).ln() / period).lo();
-        slowest = slowest.min(rate);
-        mean_rate += rate / request.periods as f64;
-        raise(&mut largest, &ellipsoid.extents());
-        raise(&mut torque, &passage.law.largest());
+        let rate = -Interval::point(step.growth).ln() / period;
+        found.slowest = found.slowest.min(rate.lo());
+        found.rates += rate;
+        found.at(ellipsoid, run);
+        raise(&mut found.torque, passage.law.largest());
         if 4 * k >= 3 * request.periods {
-            let errors: Vec<f64> = passage.law.errors.iter().take(n).map(|e| e.magnitude()).collect();
-            raise(&mut tracking, &errors);
+            let off = passage.law.errors.iter().zip(ellipsoid.extents()).take(n);
+            let off = off.map(|(e, extent)| {
+                (Interval::point(e.magnitude()) + Interval::point(extent) * Interval::point(run)).hi()
+            });
+            raise(&mut found.tracking, off);
         }
-        first.get_or_insert_with(|| ellipsoid.clone());
+        let next = Interval::point(step.growth) * Interval::point(run) + Interval::point(step.offset);
+        found.run = Some(next);
+        found.first.get_or_insert_with(|| ellipsoid.clone());
     });
     Ok(done.map(|done| {
         let last = done.map_err(|ends| why(scenario, rate, &ends))?;
-        let first = first.unwrap_or_else(|| last.clone());
-        raise(&mut largest, &last.extents());
+        let first = found.first.clone().unwrap_or_else(|| last.clone());
+        found.at(&last, found.run.map_or(0.0, Interval::hi));
+        // As far as the run, which need not be in the middle, leaves room.
+        let room = Interval::ONE - Interval::point(first.reach(&begin));
         Ok(SampledTube {
-            rate: slowest,
-            mean_rate,
-            error: largest,
-            alone: (0..2 * n).map(|i| first.alone(i)).collect(),
-            tracking,
-            torque,
+            rate: found.slowest,
+            mean_rate: (found.rates / Interval::point(request.periods as f64)).lo(),
+            alone: (0..2 * n).map(|i| (Interval::point(first.alone(i)) * room).lo()).collect(),
+            error: found.largest,
+            tracking: found.tracking,
+            torque: found.torque,
             period: seconds,
             delay,
             periods: request.periods,
             ends: [first, last],
         })
     }))
+}
+
+/// What is found along a tube.
+struct Findings {
+    slowest: f64,
+    /// The sum of the rates of all periods.
+    rates: Interval,
+    /// |y| of the run, which is only nearly the middle.
+    run: Option<Interval>,
+    largest: Vec<f64>,
+    tracking: Vec<f64>,
+    torque: Vec<f64>,
+    first: Option<Ellipsoid>,
+}
+
+impl Findings {
+    fn new(n: usize) -> Self {
+        Self {
+            slowest: f64::INFINITY,
+            rates: Interval::ZERO,
+            run: None,
+            largest: vec![0.0; 2 * n],
+            tracking: vec![0.0; n],
+            torque: vec![0.0; n],
+            first: None,
+        }
+    }
+
+    /// An ellipsoid, with the run at |y| = `run`: motions in it are as far from that as from the middle, and the run's own distance more.
+    fn at(&mut self, ellipsoid: &Ellipsoid, run: f64) {
+        let most = Interval::ONE + Interval::point(run);
+        raise(&mut self.largest, ellipsoid.extents().into_iter().map(|e| (Interval::point(e) * most).hi()));
+    }
+}
+
+fn raise(most: &mut [f64], with: impl IntoIterator<Item = f64>) {
+    most.iter_mut().zip(with).for_each(|(most, x)| *most = most.max(x));
 }
 
 /// Where a tube ends, in words.
@@ -149,7 +195,7 @@ fn why(scenario: &Scenario, rate: f64, ends: &Ends) -> NoTube {
                 "at t = {time} s motions in it were not shown to stay bounded for a control period; {small}"
             )
         }
-        Why::NoRoot | Why::Grows(_) => {
+        Why::Grows => {
             format!("at t = {time} s motions in it were not shown to come closer; {small}")
         }
         Why::Widens(reach) => format!(
@@ -164,15 +210,6 @@ fn why(scenario: &Scenario, rate: f64, ends: &Ends) -> NoTube {
         ),
     };
     NoTube { at }
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "runs have fewer periods than 2⁵³"
-)]
-fn whole(count: f64) -> usize {
-    count.round() as usize
 }
 
 /// Whether tubes of the sampled loop are what such a scenario is.

@@ -110,6 +110,12 @@ impl Scenario {
         self.decimals.and(self.robot.decimals).enclose(x)
     }
 
+    /// Number of control periods in the run.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to [1, 1e9]")]
+    pub fn periods(&self) -> u32 {
+        (self.duration / self.control_period).round().clamp(1.0, 1e9) as u32
+    }
+
     /// What is between this loop and the ideal one, in words: options of the plant, kinds of imperfections, `observer`,
     /// `disturbance observer`, `guard`; and that the limits of the robot's torques do not act, if it has some.
     pub fn conditions(&self) -> Vec<&'static str> {

@@ -40,7 +40,7 @@ impl<'a> Course<'a> {
             watch: Watch::new(criteria.clone(), limits),
             divergence: None,
             broken_off: None,
-            left: periods(scenario) + 1,
+            left: scenario.periods() + 1,
         }
     }
 
@@ -79,12 +79,6 @@ impl<'a> Course<'a> {
         let summary = summary(scenario, &figures, following, held, divergence.is_some(), seconds);
         Run { summary, trace: Trace::default(), divergence, broken_off, faults: held.faults() }
     }
-}
-
-/// Number of control periods in the run.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to [1, 1e9]")]
-fn periods(scenario: &Scenario) -> u32 {
-    (scenario.duration / scenario.control_period).round().clamp(1.0, 1e9) as u32
 }
 
 fn summary(

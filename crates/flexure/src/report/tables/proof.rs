@@ -20,8 +20,14 @@ use crate::units::{self, Unit};
 pub fn proof_table(summary: &ProofSummary, width: usize) -> String {
     let mut text = format!("{}: {}\n", summary.name, summary.verdict);
     if let Some(outside) = outside_of_proofs(&summary.left_out) {
+        let but = match &summary.sampled_tube {
+            Some(SampledTubeSummary::Proved(_)) => {
+                "; the sampled tube, below, is of the loop with its control period, delay and torque limits"
+            }
+            _ => "",
+        };
         // Writing to a text cannot fail.
-        let _ = writeln!(text, "{outside}");
+        let _ = writeln!(text, "{outside}{but}");
     }
     if let Some(sampled) = &summary.sampled {
         let _ = writeln!(text, "{}", sampled.line());
@@ -298,12 +304,12 @@ fn sampled_tube(found: &SampledTubeSummary, summary: &ProofSummary) -> Vec<Strin
             found.periods
         ),
         format!(
-            "sampled      motions in a tube around the run, |q_l − run| ≤ {} {rad}, |q_m − run| ≤ {} {rad} at most, stay in it",
+            "sampled      motions in a tube around the run, |q_l − run| ≤ {} {rad}, |q_m − run| ≤ {} {rad}, are in it at every control instant",
             at_most(links),
             at_most(motors)
         ),
         format!(
-            "sampled      and any two of them come closer, in its norms, at {} 1/s or faster in every period",
+            "sampled      and any two of them come closer, in its norms, at {} 1/s or faster in every period; with the numbers of the files, without tolerances",
             significant(rounded_down(found.rate, 4), 4)
         ),
         format!(

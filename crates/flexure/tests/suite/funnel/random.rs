@@ -21,7 +21,7 @@ use crate::common::Random;
 
 /// Numbers of a chain of turning joints.
 #[derive(Clone)]
-struct Chain {
+pub(crate) struct Chain {
     axes: Vec<[f64; 3]>,
     places: Vec<[f64; 3]>,
     masses: Vec<f64>,
@@ -84,11 +84,11 @@ struct Parts {
 }
 
 /// A scenario, and what it is to bear.
-struct Case {
-    chain: Chain,
+pub(crate) struct Case {
+    pub chain: Chain,
     scenario: Scenario,
     /// Its file.
-    text: String,
+    pub text: String,
     parts: Parts,
     /// Largest torques on links and motors [N m].
     torques: [Vec<f64>; 2],
@@ -112,7 +112,7 @@ const STILL: &str = "robot = 'robot.toml'\nduration = 1.0\ncontrol_period = 0.00
                      [controller]\nkind = 'vcbc'\nphi = 'tanh'\nlink = { metric = 1.0, shaping = 1.0, damping = 1.0 }\n\
                      motor = { metric = 1.0, shaping = 1.0, damping = 1.0 }\n";
 
-fn drawn(number: u64) -> Case {
+pub(crate) fn drawn(number: u64) -> Case {
     let mut r = Random(5000 + number);
     let n = [1, 2, 2, 3][r.below(4)];
     // As likely to be in one part of a decade as in any other.
@@ -169,7 +169,7 @@ fn drawn(number: u64) -> Case {
     Case { chain, scenario, text, parts, torques }
 }
 
-fn loaded(chain: &Chain, text: &str) -> Result<Scenario, flexure::files::Problems> {
+pub(crate) fn loaded(chain: &Chain, text: &str) -> Result<Scenario, flexure::files::Problems> {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("robot.toml"), chain.text()).unwrap();
     scenario_from_text("scenario.toml", text, Path::new(folder.path()))

@@ -3,6 +3,7 @@
 use flexure_core::scalar::Interval;
 
 use crate::linalg::Dense;
+use crate::prove::engine::sampled_data::norm::{around_zero, radius};
 
 /// Largest norm of coefficients that the series is summed for.
 const LARGEST: f64 = 4.0;
@@ -32,7 +33,7 @@ pub struct Fundamental {
 pub fn fundamental(rates: &Dense<Interval>) -> Option<Fundamental> {
     let n = rates.columns();
     let middle = rates.map(Interval::midpoint);
-    let radius = rates.map(|x| (x - Interval::point(x.midpoint())).magnitude());
+    let radius = rates.map(|x| radius(x).hi());
     let above = Dense::from_fn(n, n, |i, j| (middle[(i, j)].abs() + radius[(i, j)]) * INFLATED);
     let norm = above.rows().map(|row| row.iter().sum::<f64>()).fold(0.0, f64::max) * INFLATED;
     if norm.is_nan() || norm > LARGEST {
@@ -51,7 +52,7 @@ pub fn fundamental(rates: &Dense<Interval>) -> Option<Fundamental> {
     let open = &(&above * &radius) * &above;
     let at_end = Dense::from_fn(n, n, |i, j| {
         let error = (open[(i, j)] + rounding * above[(i, j)] + rest) * INFLATED;
-        Interval::point(about[(i, j)]) + Interval::new(-error, error).unwrap_or(Interval::ENTIRE)
+        Interval::point(about[(i, j)]) + around_zero(error)
     });
     Some(Fundamental { at_end, between: above })
 }

@@ -5,51 +5,10 @@ use flexure_core::scalar::{Interval, Scalar};
 use crate::linalg::Dense;
 use crate::prove::engine::envelope::closed_loop::TrackingLoop;
 use crate::prove::engine::sampled_data::curvature::Curvature;
-use crate::prove::engine::sampled_data::fundamental::fundamental;
+use crate::prove::engine::sampled_data::flow::flow;
+use crate::prove::engine::sampled_data::norm::around_zero;
 use crate::prove::engine::sampled_data::robot::{Links, Path};
-
-/// Numbers c + M (y, η) with |y| ≤ 1 and |η_j| ≤ s_j; of another y and η, they differ by some N (Δy, Δη), N in the same intervals.
-#[derive(Clone, Debug)]
-pub struct Spread {
-    /// c.
-    pub center: Vec<Interval>,
-    /// M: columns of y, then of η.
-    pub deviations: Dense<Interval>,
-}
-
-/// What the y and η are.
-#[derive(Clone, Debug)]
-pub struct Sizes {
-    /// Numbers in y.
-    pub ball: usize,
-    /// s_j, from above.
-    pub others: Vec<f64>,
-}
-
-impl Sizes {
-    /// How far |row·(y, η)| goes, from above.
-    pub fn reach(&self, row: &[Interval]) -> f64 {
-        let (y, others) = row.split_at(self.ball);
-        let square = y.iter().fold(Interval::ZERO, |sum, x| sum + Interval::point(x.magnitude()).square());
-        let others = others.iter().zip(&self.others).fold(Interval::ZERO, |sum, (x, &size)| {
-            sum + Interval::point(x.magnitude()) * Interval::point(size)
-        });
-        (square.sqrt() + others).hi()
-    }
-}
-
-impl Spread {
-    /// The box around all of it.
-    pub fn ranges(&self, sizes: &Sizes) -> Vec<Interval> {
-        let range = |(&c, row): (&Interval, &[Interval])| c + around_zero(sizes.reach(row));
-        self.center.iter().zip(self.deviations.rows()).map(range).collect()
-    }
-}
-
-/// [−radius, radius].
-pub(super) fn around_zero(radius: f64) -> Interval {
-    Interval::new(-radius, radius).unwrap_or(Interval::ENTIRE)
-}
+use crate::prove::engine::sampled_data::spread::{Sizes, Spread};
 
 /// How often a box is made larger until no motion leaves it.
 const WIDENED: u32 = 12;
@@ -74,27 +33,24 @@ pub fn held(
     let length = length / Interval::point(pieces as f64);
     let u_m = torque.ranges(sizes);
     let mut curvature = None;
-    (0..pieces)
-        .try_fold(motion, |motion, _| piece(system, &motion, torque, (sizes, &u_m), length, &mut curvature))
+    (0..pieces).try_fold(motion, |motion, _| {
+        piece(system, &motion, torque, (sizes, &u_m), (length, pieces), &mut curvature)
+    })
 }
 
-/// Boxes that second derivatives are bounded over are so many times as wide as those of pieces, on either side.
-const ROOMY: f64 = 4.0;
-
-/// One piece.
+/// One of so many equal pieces of `length` in s, whose second derivatives are those of `curvature` as long as that covers them.
 fn piece(
     system: &dyn TrackingLoop,
     motion: &Spread,
     torque: &Spread,
     (sizes, u_m): (&Sizes, &[Interval]),
-    length: Interval,
+    (length, pieces): (Interval, usize),
     curvature: &mut Option<Curvature>,
 ) -> Option<Spread> {
     let (size, half, n) = (motion.center.len(), motion.center.len() / 2, u_m.len());
-    let ranges = enclosed(system, &motion.ranges(sizes), u_m, length)?;
+    let (ranges, about) = enclosed(system, &motion.ranges(sizes), u_m, length)?;
     let middle = |all: &[Interval]| all.iter().map(|x| x.midpoint()).collect::<Vec<_>>();
     let u_p = middle(&torque.center);
-    let about = Links::over(system, &ranges[..n])?;
     let path = Path::from(system, &about.middle, &middle(&motion.center), &u_p);
     // Mean values are taken between motions and the path.
     let meanwhile = path.at(Interval::ZERO.hull(length));
@@ -103,59 +59,48 @@ fn piece(
 
     let u_p: Vec<_> = u_p.iter().map(|&u| Interval::point(u)).collect();
     let inertia = system.drive().motor_inertia;
+    // Accelerations by torques that are left over.
     let rest = |left: Vec<Interval>| -> Vec<Interval> {
-        let of_links = links
-            .inverse_mass
-            .rows()
-            .map(|row| row.iter().zip(&left).fold(Interval::ZERO, |sum, (&a, &x)| sum + a * x));
-        of_links.chain(left[n..].iter().zip(&inertia).map(|(&x, &inertia)| x / inertia)).collect()
+        let of_motors = left[n..].iter().zip(&inertia).map(|(&x, &inertia)| x / inertia);
+        links.inverse_mass.apply(&left).into_iter().chain(of_motors).collect()
     };
     let [at_start, later] = path.left_over(system, &u_p, length).map(rest);
     let begin = path.at(Interval::ZERO);
-    let mut rates = begin[half..].to_vec();
-    rates.extend(path.accelerations().iter().zip(&at_start).map(|(&a, &r)| a + r));
+    let mut path_rates = begin[half..].to_vec();
+    path_rates.extend(path.accelerations().iter().zip(&at_start).map(|(&a, &r)| a + r));
 
+    // Wide enough for the pieces that follow.
     let of_links = &ranges[..3 * n];
     if !curvature.as_ref().is_some_and(|curvature| curvature.covers(of_links)) {
-        let roomy = |x: &Interval| *x + around_zero(ROOMY * x.width());
+        let roomy = |x: &Interval| *x + around_zero(pieces as f64 * x.width());
         *curvature = Some(Curvature::over(system, of_links.iter().map(roomy).collect()));
     }
-    let at_middle: Vec<_> = ranges.iter().map(|x| Interval::point(x.midpoint())).collect();
-    let (middle, at) = accelerated(system, &at_middle, u_m)?;
-    let middle = middle.rates(system, &at_middle[..n], &at_middle[half..half + n], &at[..n]);
     let everywhere = links.rates(system, &ranges[..n], &ranges[half..half + n], &accelerations[..n]);
-    let around = curvature.as_ref().map_or_else(|| everywhere.clone(), |c| c.around(&middle, of_links));
+    let points: Vec<_> = ranges.iter().map(|x| Interval::point(x.midpoint())).collect();
+    let (at_points, a) = accelerated(system, &points, u_m)?;
+    let rates = at_points.rates(system, &points[..n], &points[half..half + n], &a[..n]);
+    let around = curvature.as_ref()?.around(&rates, of_links);
     // Both enclose them.
-    let link_rates = Dense::from_fn(n, 3 * n, |i, j| {
+    let rates = Dense::from_fn(n, 3 * n, |i, j| {
         everywhere[(i, j)].intersection(around[(i, j)]).unwrap_or(everywhere[(i, j)])
     });
-    let flow = flow(system, &link_rates, &rates, length)?;
-    let end = path.at(length);
+
+    let flow = flow(system, &rates, &path_rates, length)?;
     let beside = |x: &[Interval], p: &[Interval]| x.iter().zip(p).map(|(&x, &p)| x - p).collect::<Vec<_>>();
-    let mut start = beside(&motion.center, &begin);
-    start.extend(beside(&torque.center, &u_p));
-    let moved = |i: usize| {
-        let row = flow.at_end.row(i);
-        let sum = row.iter().zip(&start).fold(Interval::ZERO, |sum, (&a, &x)| sum + a * x);
-        let late = flow.between.row(i)[half..]
-            .iter()
-            .zip(&later)
-            .fold(Interval::ZERO, |sum, (&a, &r)| sum + Interval::point(a) * Interval::point(r.magnitude()));
-        let by_path = end[i] + sum + around_zero((length * late).hi());
+    let start = [beside(&motion.center, &begin), beside(&torque.center, &u_p)].concat();
+    let (end, moved) = (path.at(length), flow.at_end.apply(&start));
+    let late = flow.between.map(Interval::point);
+    let later: Vec<_> = later.iter().map(|r| Interval::point(r.magnitude())).collect();
+    let late = late.apply(&[vec![Interval::ZERO; half], later].concat());
+    let center = |i: usize| {
+        let by_path = end[i] + moved[i] + around_zero((length * late[i]).hi());
         // By mean values between motions and where the path begins, instead: better where a damper is faster than a polynomial.
-        let by_start = begin[i] + sum + row[size + n];
+        let by_start = begin[i] + moved[i] + flow.at_end[(i, size + n)];
         by_path.intersection(by_start).unwrap_or(by_path)
     };
-    let center = (0..size).map(moved).collect();
-    let columns = motion.deviations.columns();
-    let deviations = Dense::from_fn(size, columns, |i, j| {
-        let (states, torques) = flow.at_end.row(i)[..size + n].split_at(size);
-        let of = |slopes: &[Interval], all: &Dense<Interval>| {
-            slopes.iter().zip(all.rows()).fold(Interval::ZERO, |sum, (&a, row)| sum + a * row[j])
-        };
-        of(states, &motion.deviations) + of(torques, &torque.deviations)
-    });
-    Some(Spread { center, deviations })
+    let part = |from: usize, count: usize| Dense::from_fn(size, count, |i, j| flow.at_end[(i, from + j)]);
+    let deviations = &(&part(0, size) * &motion.deviations) + &(&part(size, n) * &torque.deviations);
+    Some(Spread { center: (0..size).map(center).collect(), deviations })
 }
 
 /// What the links are over the box `x` of motions, and how links and motors speed up there under the torques `u_m` [rad/s²].
@@ -174,23 +119,23 @@ fn accelerated(
     Some((links, all))
 }
 
-/// A box that no motion from `start` leaves for `length` in s; none if none is found.
+/// A box that no motion from `start` leaves for `length` in s, and the links there; none if none is found.
 fn enclosed(
     system: &dyn TrackingLoop,
     start: &[Interval],
     u_m: &[Interval],
     length: Interval,
-) -> Option<Vec<Interval>> {
+) -> Option<(Vec<Interval>, Links)> {
     let half = start.len() / 2;
     let meanwhile = Interval::ZERO.hull(length);
     let mut tried = start.to_vec();
     for _ in 0..WIDENED {
-        let (_, accelerations) = accelerated(system, &tried, u_m)?;
+        let (links, accelerations) = accelerated(system, &tried, u_m)?;
         let rate = |i: usize| if i < half { tried[half + i] } else { accelerations[i - half] };
         let next: Vec<_> = (0..start.len()).map(|i| start[i] + meanwhile * rate(i)).collect();
         if next.iter().zip(&tried).all(|(next, tried)| tried.contains_interval(*next)) {
             // No motion leaves it, nor what it is mapped to.
-            return Some(next);
+            return Some((next, links));
         }
         let wider = |(next, tried): (&Interval, &Interval)| {
             tried.hull(*next + around_zero(WIDER * next.width() + f64::MIN_POSITIVE))
@@ -198,63 +143,6 @@ fn enclosed(
         tried = next.iter().zip(&tried).map(wider).collect();
     }
     None
-}
-
-/// Of ẋ = J x + J_u u with rates over a box, u held.
-struct Flow {
-    /// What motions and torques at the start make of the motion at the end, and how the path would move on if nothing changed.
-    at_end: Dense<Interval>,
-    /// From above, what a motion at any time makes of one at any later time.
-    between: Dense<f64>,
-}
-
-/// For `length` in s, with the slopes `by_links` of the links' accelerations, by X(1) of ξ' = `length` S J S⁻¹ ξ for motions and torques, S a power of two for velocities so that no entry is
-/// large; none if that is too long.
-fn flow(
-    system: &dyn TrackingLoop,
-    by_links: &Dense<Interval>,
-    path_rates: &[Interval],
-    length: Interval,
-) -> Option<Flow> {
-    let (size, half, n) = (path_rates.len(), path_rates.len() / 2, path_rates.len() / 4);
-    let drive = system.drive();
-    let by_motors = |i: usize, j: usize| {
-        let torque = match j.checked_sub(i) {
-            Some(0) => drive.stiffness[i],
-            Some(by) if by == n => -drive.stiffness[i],
-            Some(by) if by == half + n => -drive.motor_damping[i],
-            Some(by) if by == size => Interval::ONE,
-            _ => return Interval::ZERO,
-        };
-        torque / drive.motor_inertia[i]
-    };
-    let entry = |i: usize, j: usize| match (i, j) {
-        (i, _) if i >= size => Interval::ZERO,
-        (i, j) if j == size + n => path_rates[i],
-        (i, j) if i < half => {
-            if j == half + i {
-                Interval::ONE
-            } else {
-                Interval::ZERO
-            }
-        }
-        (i, j) if i < half + n => {
-            if j < 3 * n {
-                by_links[(i - half, j)]
-            } else {
-                Interval::ZERO
-            }
-        }
-        (i, j) => by_motors(i - half - n, j),
-    };
-    let scale = length.midpoint().log2().round().exp2();
-    let of = |i: usize| if (half..size).contains(&i) { Interval::point(scale) } else { Interval::ONE };
-    let rates = Dense::from_fn(size + n + 1, size + n + 1, |i, j| length * of(i) * entry(i, j) / of(j));
-    let found = fundamental(&rates)?;
-    let at_end = Dense::from_fn(size, size + n + 1, |i, j| found.at_end[(i, j)] * of(j) / of(i));
-    let between =
-        Dense::from_fn(size, size, |i, j| (Interval::point(found.between[(i, j)]) * of(j) / of(i)).hi());
-    Some(Flow { at_end, between })
 }
 
 /// In a piece, the fastest rate of springs and link dampers times its length is at most this, and that of motor dampers at most this.

@@ -3,9 +3,10 @@
 use flexure_core::scalar::{Interval, Jet, Scalar};
 use rayon::prelude::*;
 
-use crate::linalg::{Dense, Symmetric};
+use crate::linalg::Dense;
 use crate::prove::engine::envelope::closed_loop::{Answer, Place, Slope, TrackingLoop};
-use crate::prove::engine::sampled_data::norm::{frobenius, spectral};
+use crate::prove::engine::sampled_data::norm::{around_zero, frobenius, spectral};
+use crate::prove::engine::sampled_data::second::second_derivatives;
 
 /// The torque of the law at an instant at the motions c + L y, |y| ≤ 1: u + G y + η(y), |η_j(y) − η_j(y')| ≤ s_j |y − y'|.
 #[derive(Clone, Debug)]
@@ -24,7 +25,7 @@ impl Instant {
     /// At the time `t` in s, for c and a lower triangular L in `center` and `lower`.
     ///
     /// The gradient of u_j in y is G_j at the middle, and ∫ H_j(θ y) y dθ more at y: s_j is the norm of the second derivatives H_j over the box around
-    /// the ellipsoid. Those along y_i, and along y_i + y_k for each pair, give H_j.
+    /// the ellipsoid.
     pub fn over(system: &dyn TrackingLoop, t: Interval, center: &[f64], lower: &Dense<f64>) -> Self {
         let (n, size) = (system.joints(), center.len());
         let jets = system.reference(t);
@@ -35,7 +36,7 @@ impl Instant {
             .zip(lower.rows())
             .map(|(&c, row)| {
                 let reach = frobenius(row.iter().map(|&x| Interval::point(x)));
-                Interval::point(c) + Interval::new(-reach, reach).unwrap_or(Interval::ENTIRE)
+                Interval::point(c) + around_zero(reach)
             })
             .collect();
         let points: Vec<_> = center.iter().map(|&c| Interval::point(c)).collect();
@@ -52,24 +53,13 @@ impl Instant {
         };
         let middle = along(&points, &[]);
         let first: Vec<Vec<Slope>> = (0..size).into_par_iter().map(|k| along(&points, &[k]).u_m).collect();
-        let pairs: Vec<Vec<usize>> =
-            (0..size).flat_map(|i| (0..=i).map(move |k| if i == k { vec![i] } else { vec![i, k] })).collect();
-        let second: Vec<Vec<Interval>> = pairs
-            .par_iter()
-            .map(|pair| along(&ranges, pair).u_m.iter().map(|u| u.coefficient(2)).collect())
-            .collect();
-        let at = |i: usize, k: usize| &second[i * (i + 1) / 2 + k];
-        let beside = |j: usize| {
-            // u_j has ½ H_ii along y_i, ½ (H_ii + 2 H_ik + H_kk) along y_i + y_k.
-            let hessian = Symmetric::from_fn(size, |i, k| {
-                if i == k { at(i, i)[j] + at(i, i)[j] } else { at(i, k)[j] - at(i, i)[j] - at(k, k)[j] }
-            });
-            spectral(&Dense::from(&hessian))
-        };
+        let second = second_derivatives(size, &|directions| {
+            along(&ranges, directions).u_m.iter().map(|u| u.coefficient(2)).collect()
+        });
         Self {
             torque: middle.u_m.iter().map(|u| u.coefficient(0)).collect(),
             slopes: Dense::from_fn(n, size, |j, k| first[k][j].coefficient(1)),
-            beside: (0..n).map(beside).collect(),
+            beside: second.iter().map(|hessian| spectral(&Dense::from(hessian))).collect(),
             errors: errors_of(&middle),
         }
     }

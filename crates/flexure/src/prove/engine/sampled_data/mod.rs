@@ -16,9 +16,14 @@
 //! directions that Q holds. A torque that would be off by w at each instant is such a Q: it makes the tube as wide as it is asked to be.
 
 pub mod curvature;
+pub mod ellipsoid;
+pub mod flow;
 pub mod fundamental;
 pub mod hold;
 pub mod instant;
 pub mod norm;
+pub mod period;
 pub mod robot;
+pub mod second;
+pub mod spread;
 pub mod tube;

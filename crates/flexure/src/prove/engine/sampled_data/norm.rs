@@ -1,4 +1,4 @@
-//! Norms of matrices of intervals, from above.
+//! Norms of matrices of intervals, from above, and what they bound.
 
 use flexure_core::scalar::{Interval, Scalar};
 
@@ -13,6 +13,11 @@ const SQUARINGS: u32 = 24;
 /// How far the ends of `x` are from its middle, from above.
 pub fn radius(x: Interval) -> Interval {
     Interval::point((x - Interval::point(x.midpoint())).magnitude())
+}
+
+/// [−radius, radius].
+pub fn around_zero(radius: f64) -> Interval {
+    Interval::new(-radius, radius).unwrap_or(Interval::ENTIRE)
 }
 
 /// √Σ x².

@@ -4,8 +4,9 @@ use flexure_core::scalar::{Interval, Jet, Over, Scalar};
 
 use crate::linalg::Dense;
 use crate::prove::engine::envelope::closed_loop::{Drive, Slope, TrackingLoop};
+use crate::prove::engine::sampled_data::norm::around_zero;
 
-/// M_l⁻¹ over a box, and the slopes of the links' accelerations a_l(q_l, q_m, q̇_l) there.
+/// The links over a box: M_l⁻¹, with which their accelerations a_l(q_l, q_m, q̇_l) and slopes of them follow from loads.
 #[derive(Clone, Debug)]
 pub struct Links {
     /// M_l⁻¹ [1/(kg m²)].
@@ -24,10 +25,6 @@ fn slopes(all: &[Interval], moving: Option<usize>) -> Vec<Slope> {
 
 fn values(all: &[Slope]) -> Vec<Interval> {
     all.iter().map(|x| x.coefficient(0)).collect()
-}
-
-fn product(matrix: &Dense<Interval>, x: &[Interval]) -> Vec<Interval> {
-    matrix.rows().map(|row| row.iter().zip(x).fold(Interval::ZERO, |sum, (&a, &x)| sum + a * x)).collect()
 }
 
 impl Links {
@@ -60,7 +57,7 @@ impl Links {
         let largest = |j: usize| (0..n).fold(0.0, |most: f64, i| most.max(first[(i, j)].hi()));
         let inverse_mass = Dense::from_fn(n, n, |i, j| {
             let radius = (first[(i, j)] + later * Interval::point(largest(j))).hi();
-            R[(i, j)] + Interval::new(-radius, radius).unwrap_or(Interval::ENTIRE)
+            R[(i, j)] + around_zero(radius)
         });
         Some(Self { inverse_mass, middle })
     }
@@ -81,15 +78,10 @@ impl Links {
             let load = values(&system.link_load(&at, &moving, &a));
             spring.iter().zip(load).map(|(&torque, load)| torque - load).collect::<Vec<_>>()
         };
-        let middle = |torque: &[Interval]| {
-            let torque: Vec<f64> = torque.iter().map(|x| x.midpoint()).collect();
-            self.middle
-                .rows()
-                .map(|row| row.iter().zip(&torque).map(|(a, x)| a * x).sum())
-                .collect::<Vec<f64>>()
-        };
+        let middle =
+            |torque: &[Interval]| self.middle.apply(&torque.iter().map(|x| x.midpoint()).collect::<Vec<_>>());
         let a = middle(&left(&vec![0.0; q_l.len()]));
-        let rest = product(&self.inverse_mass, &left(&a));
+        let rest = self.inverse_mass.apply(&left(&a));
         a.iter().zip(rest).map(|(&a, rest)| Interval::point(a) + rest).collect()
     }
 
@@ -139,8 +131,7 @@ impl Path {
             let left = path.left(system, &drive, &u_m, Interval::ZERO);
             let left: Vec<f64> = left.iter().map(|x| x.coefficient(usize::from(k)).midpoint()).collect();
             let factor = f64::from((k + 1) * (k + 2));
-            for i in 0..n {
-                let link: f64 = inverse_mass.row(i).iter().zip(&left).map(|(a, x)| a * x).sum();
+            for (i, link) in inverse_mass.apply(&left).into_iter().enumerate() {
                 path.coefficients[i][usize::from(k) + 2] = link / factor;
                 path.coefficients[n + i][usize::from(k) + 2] =
                     left[n + i] / (factor * drive.motor_inertia[i].midpoint());
