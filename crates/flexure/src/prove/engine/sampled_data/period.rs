@@ -55,7 +55,10 @@ const FINEST: usize = 32;
 const CLOSED: f64 = 2e-4;
 
 /// Halves that leave open more than this part of what there was do not help.
-const HELPED: f64 = 0.75;
+const HELPED: f64 = 0.9;
+
+/// Pieces that did not help are tried again when so many times as much is open.
+const AGAIN: f64 = 1.25;
 
 impl Default for Cuts {
     /// As few as are needed.
@@ -69,7 +72,7 @@ impl Cuts {
     pub fn passage(&mut self, of: &HeldLoop<'_>, now: &Ellipsoid, law: &Instant) -> Option<Passage> {
         let mut found = passage(of, now, law, self.finer)?;
         let mut open = openness(&found);
-        while open > 2.0 * self.floor && self.finer < FINEST {
+        while open > AGAIN * self.floor && self.finer < FINEST {
             let Some(halved) = passage(of, now, law, 2 * self.finer) else { break };
             let left = openness(&halved);
             if left > HELPED * open {

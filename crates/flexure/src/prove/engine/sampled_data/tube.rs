@@ -56,8 +56,9 @@ pub enum Why {
     Limited(usize, f64),
 }
 
-/// Of 1 − λ, the part that each of what intervals leave open may take.
-const SHARE: f64 = 0.25;
+/// Of 1 − λ, the parts that what intervals leave open of the law and of the robot may take.
+const LAW: f64 = 0.25;
+const ROBOT: f64 = 0.5;
 
 /// A tube whose links reach so many times as far as was asked for is none: what makes it so wide has taken over.
 const WIDEST: f64 = 10.0;
@@ -181,17 +182,18 @@ fn first(of: &HeldLoop<'_>, request: &TubeRequest, shrink: f64) -> Option<(Ellip
 /// The ellipsoid after `passage`.
 fn next(passage: &Passage, torques: &[f64], shrink: f64) -> Option<Ellipsoid> {
     let (flow, columns) = middles(passage);
-    let room = SHARE * (1.0 - shrink);
+    let [law, robot] = [LAW, ROBOT].map(|part| part * (1.0 - shrink));
     let count = torques.len() as f64;
     let torques: Vec<_> = torques
         .iter()
         .zip(&passage.sizes.others)
-        .map(|(&w, &open)| w.max(open * count.sqrt() / room))
+        .map(|(&w, &open)| w.max(open * count.sqrt() / law))
         .collect();
-    // Of all r with Σ (open/r)² = room², those with the least Σ (r/row)².
+    // Of all r with Σ (open/r)² = robot², those with the least Σ (r/row)².
     let (open, rows) = open_of(passage);
     let parts: f64 = open.iter().zip(&rows).map(|(open, row)| open / row).sum();
-    let open: Vec<_> = open.iter().zip(&rows).map(|(open, row)| (open * row * parts).sqrt() / room).collect();
+    let open: Vec<_> =
+        open.iter().zip(&rows).map(|(open, row)| (open * row * parts).sqrt() / robot).collect();
     let lower = cholesky(&spread(&(&flow * &flow.transposed()), &columns, &torques, shrink, &open))?;
     let center = passage.after.center.iter().map(|c| c.midpoint()).collect();
     Some(Ellipsoid { center, lower })
