@@ -50,7 +50,7 @@ pub enum Why {
     Unbounded,
     /// Motions come closer.
     Grows,
-    /// Links stay as near the run as was asked for, nearly: how far one of them may be [rad].
+    /// Links stay as near the run as was asked for, nearly: how far one of them may be (rad).
     Widens(f64),
     /// The torque of a joint, by index, stays below its limit: its bound [N m].
     Limited(usize, f64),
