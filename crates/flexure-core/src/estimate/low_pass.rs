@@ -37,6 +37,11 @@ impl<C: Float> LowPass<C> {
         })
     }
 
+    /// a₁, a₂, then b₀, b₁ [1/s].
+    pub fn coefficients(&self) -> [[C; 2]; 2] {
+        [self.feedback, self.forward]
+    }
+
     /// The same filter over another number.
     pub fn over<T: Over<C>>(self) -> LowPass<T> {
         LowPass {

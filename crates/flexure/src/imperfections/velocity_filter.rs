@@ -72,10 +72,17 @@ impl Kind for VelocityFilter {
     }
 
     fn effect(&self, setup: Setup) -> Effect<'_> {
+        Effect::Velocities(self.low_pass(setup.period))
+    }
+}
+
+impl VelocityFilter {
+    /// The filter at control periods of `period` in s.
+    pub(crate) fn low_pass(&self, period: f64) -> LowPass<f64> {
         let filter = match *self {
-            Self::First { cutoff } => LowPass::first_order(cutoff, setup.period),
-            Self::Second { cutoff, damping } => LowPass::second_order(cutoff, damping, setup.period),
+            Self::First { cutoff } => LowPass::first_order(cutoff, period),
+            Self::Second { cutoff, damping } => LowPass::second_order(cutoff, damping, period),
         };
-        Effect::Velocities(filter.expect("the reader takes positive numbers only"))
+        filter.expect("the reader takes positive numbers only")
     }
 }

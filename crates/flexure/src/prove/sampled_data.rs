@@ -1,5 +1,5 @@
 //! How far motions of a scenario's sampled loop can be from its run, and how fast they come closer: the law at its control period, with its delay,
-//! its torques held and within limits.
+//! its torques held and within limits, on readings in counts and filtered velocities.
 
 use flexure_core::scalar::{Interval, Scalar};
 use serde::Serialize;
@@ -7,19 +7,20 @@ use serde::Serialize;
 use crate::files::number::{engineering, short};
 use crate::files::{Problem, Problems};
 use crate::imperfections::stages::split;
-use crate::imperfections::{Delay, Imperfection, Saturation};
+use crate::imperfections::{Delay, Encoder, Imperfection, Saturation, Side, VelocityFilter};
 use crate::progress::Progress;
 use crate::prove::closed_loop::along_reference;
-use crate::prove::engine::sampled_data::ellipsoid::Ellipsoid;
 use crate::prove::engine::sampled_data::period::HeldLoop;
+use crate::prove::engine::sampled_data::section::Section;
+use crate::prove::engine::sampled_data::sensors::{Filter, Sensors};
 use crate::prove::engine::sampled_data::tube::{Ends, TubeRequest, Why, tube};
 use crate::sampled;
 use crate::scenario::{Hold, Scenario};
 
-/// A tube around the run, in which motions come closer.
+/// A tube around the run, in which motions come closer. Where readings are off, the run is the one on exact readings.
 #[derive(Clone, Debug, Serialize)]
 pub struct SampledTube {
-    /// Two motions in the tube come closer at this rate in every control period, in its own norms [1/s].
+    /// Two motions in the tube come closer at this rate in every control period, in its own norms [1/s]; where readings are off, two of the same errors.
     pub rate: f64,
     /// On the whole run [1/s].
     pub mean_rate: f64,
@@ -27,8 +28,10 @@ pub struct SampledTube {
     pub error: Vec<f64>,
     /// How far positions of links, then motors, may be off at the start each alone, in rad.
     pub alone: Vec<f64>,
-    /// How far links are from the reference at the control instants of the last quarter of the run, in rad.
+    /// How far links are from the reference at the control instants of the last quarter of the file's run, in rad.
     pub tracking: Vec<f64>,
+    /// How far readings of positions are off at most, links then motors, in rad; empty where they are exact.
+    pub readings: Vec<f64>,
     /// Largest motor torques |u_m| that the law asks for in the tube [N m].
     pub torque: Vec<f64>,
     /// Control period in s.
@@ -39,7 +42,7 @@ pub struct SampledTube {
     pub periods: usize,
     /// The tube at the first and the last control instant.
     #[serde(skip)]
-    pub ends: [Ellipsoid; 2],
+    pub ends: [Section; 2],
 }
 
 /// Why there is none.
@@ -81,8 +84,10 @@ pub fn sampled_tube(
     let limits = scenario.drive_limits();
     let limits: Option<Vec<f64>> =
         limits.map(|limits| limits.iter().map(|&limit| scenario.robot.bounds(limit).lo()).collect());
+    let sensors = sensors(scenario);
     let of = HeldLoop {
         system: &*system,
+        sensors: &sensors,
         period,
         waiting,
         offset: (offset > 0.0).then(|| exact - whole_periods),
@@ -93,49 +98,59 @@ pub fn sampled_tube(
         [&initial.q_l, &initial.q_m, &initial.dq_l, &initial.dq_m].into_iter().flatten().copied().collect();
     // The run begins at the decimals of the file, with the springs holding the links (`simulate::assembly`).
     let exact: Vec<_> = start.iter().map(|&x| scenario.bounds(x)).collect();
-    let springs: Vec<_> = (0..n)
-        .map(|i| scenario.robot.bounds(scenario.robot.stiffness[i]) * (exact[n + i] - exact[i]))
-        .collect();
-    let request = TubeRequest {
-        torque: springs.iter().map(|torque| torque.midpoint()).collect(),
-        periods: scenario.periods() as usize,
-        extents: error.to_vec(),
-        rate,
-        start,
-    };
+    let request = TubeRequest { periods: scenario.periods() as usize, extents: error.to_vec(), rate, start };
     let mut found = Findings::new(n);
-    let begin = [exact, springs.repeat(waiting)].concat();
-    let done = tube(&of, &request, progress, &mut |k, ellipsoid, passage, step| {
-        let run = found.run.map_or_else(|| ellipsoid.reach(&begin), Interval::hi);
+    let begin = of.started(&exact);
+    let on_reference = |k: usize, section: &Section, read: Interval| -> Vec<f64> {
+        let reference = system.reference(period * Interval::point(k as f64));
+        let off = reference.iter().zip(&section.center).zip(section.reaches(read));
+        let off = off.map(|((q, &c), reach)| {
+            (Interval::point((Interval::point(c) - q[0]).magnitude()) + Interval::point(reach)).hi()
+        });
+        off.collect()
+    };
+    let is_late = |k: usize| 4 * k >= 3 * request.periods;
+    let done = tube(&of, &request, progress, &mut |k, section, passage, step| {
+        let [run, read] = found.runs.unwrap_or_else(|| [section.reach(&begin); 2]).map(Interval::point);
         // From below: a growth is known from above.
-        let rate = -Interval::point(step.growth).ln() / period;
+        let [growth, offset, noise] = [step.growth, step.offset, step.noise].map(Interval::point);
+        let rate = -growth.ln() / period;
         found.slowest = found.slowest.min(rate.lo());
         found.rates += rate;
-        found.at(ellipsoid, run);
+        found.at(section, run);
         raise(&mut found.torque, passage.law.largest());
-        if 4 * k >= 3 * request.periods {
-            let off = passage.law.errors.iter().zip(ellipsoid.extents()).take(n);
-            let off = off.map(|(e, extent)| {
-                (Interval::point(e.magnitude()) + Interval::point(extent) * Interval::point(run)).hi()
-            });
-            raise(&mut found.tracking, off);
+        if k == 0 {
+            let on_their_way =
+                section.center.iter().zip(section.reaches(Interval::ONE)).skip(of.before_torques());
+            let on_their_way =
+                on_their_way.map(|(c, reach)| (Interval::point(c.abs()) + Interval::point(reach)).hi());
+            raise(&mut found.torque, on_their_way.take(n));
         }
-        let next = Interval::point(step.growth) * Interval::point(run) + Interval::point(step.offset);
-        found.run = Some(next);
-        found.first.get_or_insert_with(|| ellipsoid.clone());
+        if is_late(k) {
+            raise(&mut found.tracking, on_reference(k, section, read));
+        }
+        found.runs = Some([growth * run + offset, growth * read + offset + noise].map(Interval::hi));
+        found.first.get_or_insert_with(|| section.clone());
     });
     Ok(done.map(|done| {
         let last = done.map_err(|ends| why(scenario, rate, &ends))?;
         let first = found.first.clone().unwrap_or_else(|| last.clone());
-        found.at(&last, found.run.map_or(0.0, Interval::hi));
+        let [run, read] = found.runs.unwrap_or([0.0; 2]).map(Interval::point);
+        found.at(&last, run);
+        raise(&mut found.tracking, on_reference(request.periods, &last, read));
+        let shifted = |i: usize| {
+            let unit = |k: usize| if i == k { Interval::ONE } else { Interval::ZERO };
+            of.started(&(0..4 * n).map(unit).collect::<Vec<_>>())
+        };
         // As far as the run, which need not be in the middle, leaves room.
         let room = Interval::ONE - Interval::point(first.reach(&begin));
         Ok(SampledTube {
             rate: found.slowest,
             mean_rate: (found.rates / Interval::point(request.periods as f64)).lo(),
-            alone: (0..2 * n).map(|i| (Interval::point(first.alone(i)) * room).lo()).collect(),
+            alone: (0..2 * n).map(|i| (Interval::point(first.alone(&shifted(i))) * room).lo()).collect(),
             error: found.largest,
             tracking: found.tracking,
+            readings: sensors.off.clone(),
             torque: found.torque,
             period: seconds,
             delay,
@@ -150,12 +165,12 @@ struct Findings {
     slowest: f64,
     /// The sum of the rates of all periods.
     rates: Interval,
-    /// |y| of the run, which is only nearly the middle.
-    run: Option<Interval>,
+    /// |y| of the run on exact readings, which is only nearly the middle, and of that of the file.
+    runs: Option<[f64; 2]>,
     largest: Vec<f64>,
     tracking: Vec<f64>,
     torque: Vec<f64>,
-    first: Option<Ellipsoid>,
+    first: Option<Section>,
 }
 
 impl Findings {
@@ -163,7 +178,7 @@ impl Findings {
         Self {
             slowest: f64::INFINITY,
             rates: Interval::ZERO,
-            run: None,
+            runs: None,
             largest: vec![0.0; 2 * n],
             tracking: vec![0.0; n],
             torque: vec![0.0; n],
@@ -171,11 +186,35 @@ impl Findings {
         }
     }
 
-    /// An ellipsoid, with the run at |y| = `run`: motions in it are as far from that as from the middle, and the run's own distance more.
-    fn at(&mut self, ellipsoid: &Ellipsoid, run: f64) {
-        let most = Interval::ONE + Interval::point(run);
-        raise(&mut self.largest, ellipsoid.extents().into_iter().map(|e| (Interval::point(e) * most).hi()));
+    /// An section, with the run at |y| = `run`: motions in it are as far from that as from the middle, and the run's own distance more.
+    fn at(&mut self, section: &Section, run: Interval) {
+        raise(&mut self.largest, section.reaches(Interval::ONE + run));
     }
+}
+
+/// What the law of `scenario` sees.
+fn sensors(scenario: &Scenario) -> Sensors {
+    let each = || scenario.imperfections.iter();
+    let mut off = Vec::new();
+    for encoder in each().filter_map(Imperfection::of::<Encoder>) {
+        off.resize(2 * scenario.robot.joint_count(), 0.0);
+        for (side, off) in Side::ALL.into_iter().zip(off.chunks_mut(scenario.robot.joint_count())) {
+            let Some(counts) = encoder.resolution(side) else { continue };
+            // To the nearest count; with dither, half a count is added to a number that far from it.
+            let part = if encoder.dither { 1.0 } else { 0.5 };
+            off.iter_mut().zip(counts).for_each(|(off, &count)| {
+                *off = (Interval::point(part) * scenario.bounds(count)).hi();
+            });
+        }
+    }
+    if off.iter().all(|&off| off == 0.0) {
+        off.clear();
+    }
+    let filter = each().find_map(Imperfection::of::<VelocityFilter>).map(|filter| {
+        let [feedback, forward] = filter.low_pass(scenario.control_period).coefficients();
+        Filter { feedback: feedback.map(Interval::point), forward: forward.map(Interval::point) }
+    });
+    Sensors { off, filter }
 }
 
 fn raise(most: &mut [f64], with: impl IntoIterator<Item = f64>) {
@@ -224,12 +263,19 @@ pub(crate) fn suitable_when_sampled(scenario: &Scenario) -> Result<(), Problems>
 /// What of `scenario` such a proof does not speak of.
 fn unsuitable(scenario: &Scenario) -> Option<Problem> {
     let spoken_of = |imperfection: &&Imperfection| {
-        imperfection.of::<Delay>().is_some() || imperfection.of::<Saturation>().is_some()
+        imperfection.of::<Delay>().is_some()
+            || imperfection.of::<Saturation>().is_some()
+            || imperfection.of::<VelocityFilter>().is_some()
+            || imperfection.of::<Encoder>().is_some()
     };
+    let encoders = || scenario.imperfections.iter().filter_map(Imperfection::of::<Encoder>);
+    let placed = |side: Side| encoders().any(|encoder| encoder.resolution(side).is_some());
     let (key, what) = if scenario.hold == Hold::Continuous {
         ("hold", "acts in continuous time".to_owned())
     } else if let Some(other) = scenario.imperfections.iter().find(|imperfection| !spoken_of(imperfection)) {
         ("imperfection", format!("has imperfections of kind '{}'", other.kind()))
+    } else if placed(Side::Link) != placed(Side::Motor) {
+        ("imperfection", "has encoders on one side of its joints".to_owned())
     } else if scenario.estimator.is_some() {
         ("estimator", "has an estimator".to_owned())
     } else if scenario.disturbance_observer.is_some() {
@@ -242,6 +288,6 @@ fn unsuitable(scenario: &Scenario) -> Option<Problem> {
         return None;
     };
     let message = format!("this loop {what}: tubes of sampled loops do not speak of that");
-    let help = "they are of the law on true states, its torques held, late by a delay, and within limits; leave out --sampled-tube";
+    let help = "they are of the law on true states or on those of encoders and velocity filters, its torques held, late by a delay, and within limits; leave out --sampled-tube";
     Some(scenario.places.problem(key, "unsupported", message, help))
 }

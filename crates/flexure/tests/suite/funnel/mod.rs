@@ -1,7 +1,7 @@
 //! Funnels of the arm with the gains of its hardware: how wide they are, and that the check of a slab can fail.
 
 mod motions;
-pub(crate) mod random;
+pub mod random;
 
 use flexure::core::scalar::{Interval, Scalar};
 use flexure::progress::unwatched;

@@ -1,84 +1,148 @@
-//! What the law asks for at an instant, over an ellipsoid of motions.
+//! What the law asks for at an instant, over an ellipsoid of states.
 
 use flexure_core::scalar::{Interval, Jet, Scalar};
 use rayon::prelude::*;
 
-use crate::linalg::Dense;
-use crate::prove::engine::envelope::closed_loop::{Answer, Place, Slope, TrackingLoop};
-use crate::prove::engine::sampled_data::norm::{around_zero, frobenius, spectral};
+use crate::linalg::{Dense, Symmetric};
+use crate::prove::engine::envelope::closed_loop::{Place, Slope, TrackingLoop};
+use crate::prove::engine::sampled_data::frame::Frame;
+use crate::prove::engine::sampled_data::norm::{frobenius, spectral};
 use crate::prove::engine::sampled_data::second::second_derivatives;
+use crate::prove::engine::sampled_data::spread::{Sizes, Spread};
 
-/// The torque of the law at an instant at the motions c + L y, |y| ≤ 1: u + G y + η(y), |η_j(y) − η_j(y')| ≤ s_j |y − y'|.
+/// The torque of the law at an instant, and what that depends on.
 #[derive(Clone, Debug)]
 pub struct Instant {
-    /// u [N m].
-    pub torque: Vec<Interval>,
-    /// G: n rows.
-    pub slopes: Dense<Interval>,
-    /// s_j, from above.
-    pub beside: Vec<f64>,
-    /// The errors q̃_l, q̃_m in rad, s_l, s_m [rad/s] at c.
+    /// [N m].
+    pub asked: Spread,
+    /// Of all numbers z of the instant: how far torques are beside the middle of their slopes [N m], then how far readings are off.
+    pub sizes: Sizes,
+    /// The errors q̃_l, q̃_m in rad, s_l, s_m [rad/s] at the middle.
     pub errors: Vec<Interval>,
 }
 
-impl Instant {
-    /// At the time `t` in s, for c and a lower triangular L in `center` and `lower`.
-    ///
-    /// The gradient of u_j in y is G_j at the middle, and ∫ H_j(θ y) y dθ more at y: s_j is the norm of the second derivatives H_j over the box around
-    /// the ellipsoid.
-    pub fn over(system: &dyn TrackingLoop, t: Interval, center: &[f64], lower: &Dense<f64>) -> Self {
-        let (n, size) = (system.joints(), center.len());
-        let jets = system.reference(t);
-        let q_ld: Vec<[Slope; 5]> =
-            jets.iter().map(|jet| std::array::from_fn(|k| Slope::value(jet[k]))).collect();
-        let ranges: Vec<_> = center
-            .iter()
-            .zip(lower.rows())
-            .map(|(&c, row)| {
-                let reach = frobenius(row.iter().map(|&x| Interval::point(x)));
-                Interval::point(c) + around_zero(reach)
-            })
-            .collect();
-        let points: Vec<_> = center.iter().map(|&c| Interval::point(c)).collect();
-        let along = |from: &[Interval], directions: &[usize]| {
-            let slope = |i: usize| {
-                let rate =
-                    directions.iter().fold(Interval::ZERO, |sum, &k| sum + Interval::point(lower[(i, k)]));
-                Jet::new([from[i], rate, Interval::ZERO])
-            };
-            let x: Vec<Slope> = (0..size).map(slope).collect();
-            let part = |k: usize| x[k * n..(k + 1) * n].to_vec();
-            let x = Place { q_l: part(0), q_m: part(1), v_l: part(2), v_m: part(3) };
-            system.command(&x, &q_ld)
-        };
-        let middle = along(&points, &[]);
-        let first: Vec<Vec<Slope>> = (0..size).into_par_iter().map(|k| along(&points, &[k]).u_m).collect();
-        let second = second_derivatives(size, &|directions| {
-            along(&ranges, directions).u_m.iter().map(|u| u.coefficient(2)).collect()
+/// The law along a line of motions x = (q_l, q_m, q̇_l, q̇_m) that move at `rates`.
+fn along(
+    system: &dyn TrackingLoop,
+    q_ld: &[[Slope; 5]],
+    x: &[Interval],
+    rates: &[Interval],
+) -> [Vec<Slope>; 2] {
+    let n = x.len() / 4;
+    let slope = |i: usize| Jet::new([x[i], rates[i], Interval::ZERO]);
+    let part = |k: usize| (k * n..(k + 1) * n).map(slope).collect();
+    let x = Place { q_l: part(0), q_m: part(1), v_l: part(2), v_m: part(3) };
+    let answer = system.command(&x, q_ld);
+    let errors = [answer.e_l, answer.e_m, answer.s_l, answer.s_m].concat();
+    [answer.u_m, errors]
+}
+
+/// The sum of so many columns.
+fn columns(lower: &Dense<f64>, of: &[usize]) -> Vec<Interval> {
+    let sum = |row: &[f64]| of.iter().fold(Interval::ZERO, |sum, &k| sum + Interval::point(row[k]));
+    lower.rows().map(sum).collect()
+}
+
+/// Taylor coefficients of the reference over the times `t` in s.
+fn reference(system: &dyn TrackingLoop, t: Interval) -> Vec<[Slope; 5]> {
+    system.reference(t).iter().map(|jet| std::array::from_fn(|k| Slope::value(jet[k]))).collect()
+}
+
+/// Second derivatives of the law's torques by the coordinates of a frame, over a box of motions and some time.
+#[derive(Clone, Debug)]
+pub struct Bends {
+    times: Interval,
+    over: Vec<Interval>,
+    frame: Frame,
+    /// ∂²u_j/∂ξ².
+    of: Vec<Symmetric<Interval>>,
+}
+
+impl Bends {
+    /// Over the `times` in s and the box `over` of motions.
+    pub fn over(system: &dyn TrackingLoop, times: Interval, over: Vec<Interval>, frame: &Frame) -> Self {
+        let q_ld = reference(system, times);
+        let of = second_derivatives(over.len(), &|directions| {
+            let [torques, _] = along(system, &q_ld, &over, &columns(&frame.lower, directions));
+            torques.iter().map(|u| u.coefficient(2)).collect()
         });
-        Self {
-            torque: middle.u_m.iter().map(|u| u.coefficient(0)).collect(),
-            slopes: Dense::from_fn(n, size, |j, k| first[k][j].coefficient(1)),
-            beside: second.iter().map(|hessian| spectral(&Dense::from(hessian))).collect(),
-            errors: errors_of(&middle),
+        Self { times, over, frame: frame.clone(), of }
+    }
+
+    /// Whether they are known at the time `t` in s over all of the box `x`.
+    pub fn cover(&self, t: Interval, x: &[Interval]) -> bool {
+        self.times.contains_interval(t) && self.over.iter().zip(x).all(|(over, x)| over.contains_interval(*x))
+    }
+}
+
+/// The law at the middle of what is seen: its torques [N m], their slopes by the coordinates of a frame and the errors.
+#[derive(Clone, Debug)]
+pub struct Middle<'a> {
+    frame: &'a Frame,
+    torques: Vec<Interval>,
+    slopes: Dense<Interval>,
+    errors: Vec<Interval>,
+}
+
+impl<'a> Middle<'a> {
+    /// At the time `t` in s.
+    pub fn of(system: &dyn TrackingLoop, t: Interval, x: &[Interval], frame: &'a Frame) -> Self {
+        let q_ld = reference(system, t);
+        let values = |all: Vec<Slope>| -> Vec<Interval> { all.iter().map(|u| u.coefficient(0)).collect() };
+        let [torques, errors] = along(system, &q_ld, x, &columns(&frame.lower, &[])).map(values);
+        let one = |k: usize| {
+            let [torques, _] = along(system, &q_ld, x, &columns(&frame.lower, &[k]));
+            torques
+        };
+        let first: Vec<_> = (0..x.len()).into_par_iter().map(one).collect();
+        let slopes = Dense::from_fn(torques.len(), x.len(), |j, k| first[k][j].coefficient(1));
+        Self { frame, torques, slopes, errors }
+    }
+
+    /// Over all that is `seen`, c + A y + B z, |z_i| ≤ r_i of `sizes.most`: u(c) + J (A y + B z) + η with
+    ///
+    /// |η_j| ≤ s_j |y| + o_j, s_j = ‖Aᵀ H_j A‖ + | |Aᵀ H_j| β |, o_j = ½ βᵀ |H_j| β, β = |B| r,
+    ///
+    /// and those of the same z differ by s_j |Δy| at most: ∂η_j/∂y is ∫ (A y + B z)ᵀ H_j A over a way from c, the second derivatives H_j in `bends`.
+    pub fn over(&self, seen: &Spread, sizes: &Sizes, bends: &Bends) -> Instant {
+        let (n, ball) = (self.torques.len(), sizes.ball);
+        let by = bends.frame.coordinates(&seen.deviations);
+        let of_ball = Dense::from_fn(seen.center.len(), ball, |i, j| by[(i, j)]);
+        let across = of_ball.transposed();
+        let by_others = |row: &[Interval]| {
+            let each = row[ball..].iter().zip(&sizes.most);
+            each.fold(Interval::ZERO, |sum, (x, &r)| {
+                sum + Interval::point(x.magnitude()) * Interval::point(r)
+            })
+        };
+        let others: Vec<_> = by.rows().map(by_others).collect();
+        let sized = |all: Dense<Interval>| all.map(|x| Interval::point(x.magnitude()));
+        let dot = |a: &[Interval]| a.iter().zip(&others).fold(Interval::ZERO, |sum, (&a, &b)| sum + a * b);
+        let beside = |bend: &Symmetric<Interval>| {
+            let bend = Dense::from(bend);
+            let half = &across * &bend;
+            let slope = Interval::point(spectral(&(&half * &of_ball)))
+                + Interval::point(frobenius(sized(half).apply(&others).into_iter()));
+            let twice = dot(&sized(bend).apply(&others));
+            [slope.hi(), (twice * Interval::point(0.5)).hi()]
+        };
+        let beside: Vec<_> = bends.of.par_iter().map(beside).collect();
+        let mut sizes = sizes.clone();
+        for (j, [slope, most]) in beside.into_iter().enumerate() {
+            (sizes.slopes[j], sizes.most[j]) = (slope, most);
         }
+        let mut deviations = &self.slopes * &self.frame.coordinates(&seen.deviations);
+        for j in 0..n {
+            deviations[(j, ball + j)] = Interval::ONE;
+        }
+        let asked = Spread { center: self.torques.clone(), deviations };
+        Instant { asked, sizes, errors: self.errors.clone() }
     }
 }
 
 impl Instant {
     /// The largest |u_j| of all those motions [N m], from above.
     pub fn largest(&self) -> Vec<f64> {
-        let of = |((torque, row), &beside): ((&Interval, &[Interval]), &f64)| {
-            (Interval::point(torque.magnitude())
-                + Interval::point(frobenius(row.iter().copied()))
-                + Interval::point(beside))
-            .hi()
-        };
-        self.torque.iter().zip(self.slopes.rows()).zip(&self.beside).map(of).collect()
+        self.asked.ranges(&self.sizes).iter().map(|u| u.magnitude()).collect()
     }
-}
-
-fn errors_of(answer: &Answer) -> Vec<Interval> {
-    let all = [&answer.e_l, &answer.e_m, &answer.s_l, &answer.s_m];
-    all.into_iter().flatten().map(|e| e.coefficient(0)).collect()
 }

@@ -4,10 +4,11 @@ use flexure_core::scalar::{Interval, Scalar};
 
 use crate::linalg::Dense;
 use crate::prove::engine::envelope::closed_loop::TrackingLoop;
-use crate::prove::engine::sampled_data::ellipsoid::Ellipsoid;
 use crate::prove::engine::sampled_data::hold::{held, pace};
 use crate::prove::engine::sampled_data::instant::Instant;
 use crate::prove::engine::sampled_data::norm::radius;
+use crate::prove::engine::sampled_data::section::Section;
+use crate::prove::engine::sampled_data::sensors::Sensors;
 use crate::prove::engine::sampled_data::spread::{Sizes, Spread};
 
 /// A loop that acts at instants.
@@ -15,6 +16,8 @@ use crate::prove::engine::sampled_data::spread::{Sizes, Spread};
 pub struct HeldLoop<'a> {
     /// Its law and its robot.
     pub system: &'a dyn TrackingLoop,
+    /// What the law sees.
+    pub sensors: &'a Sensors,
     /// Control period in s.
     pub period: Interval,
     /// Torques on their way at an instant, before the law has asked for another.
@@ -25,19 +28,69 @@ pub struct HeldLoop<'a> {
     pub limits: Option<&'a [f64]>,
 }
 
-/// What becomes of an ellipsoid in a control period.
+impl HeldLoop<'_> {
+    /// Numbers of a motion.
+    pub fn motion(&self) -> usize {
+        4 * self.system.joints()
+    }
+
+    /// Where a loop begins at the motion (q_l, q_m, q̇_l, q̇_m): filters as [`Sensors::start`] says, the torques on their way hold the motors against their springs. All of it
+    /// is proportional to the motion.
+    pub fn started(&self, motion: &[Interval]) -> Vec<Interval> {
+        let n = self.system.joints();
+        let stiffness = self.system.drive().stiffness;
+        let springs: Vec<_> = (0..n).map(|i| stiffness[i] * (motion[n + i] - motion[i])).collect();
+        [motion.to_vec(), self.sensors.start(motion, self.period), springs.repeat(self.waiting)].concat()
+    }
+
+    /// Numbers of a motion and of what is remembered of readings: torques on their way follow.
+    pub fn before_torques(&self) -> usize {
+        self.motion() + self.sensors.remembered(self.system.joints())
+    }
+}
+
+/// What is at an instant before the law is asked.
+#[derive(Clone, Debug)]
+pub struct Before {
+    /// Motions, what is remembered, torques on their way.
+    pub state: Spread,
+    /// What the law is given.
+    pub seen: Spread,
+    /// What is remembered after it.
+    pub remembered: Spread,
+    /// What is known of y and z so far: nothing of the law's torques.
+    pub sizes: Sizes,
+}
+
+impl Before {
+    /// In `now`. Columns are those of y, of each η_j, of readings before, of those of now.
+    pub fn over(of: &HeldLoop<'_>, now: &Section) -> Self {
+        let (n, ball, off) = (of.system.joints(), now.center.len(), &of.sensors.off);
+        let (first, count) = (ball + n, now.past.columns());
+        let deviations = Dense::from_fn(ball, first + count + off.len(), |i, j| {
+            if j < ball {
+                Interval::point(now.lower[(i, j)])
+            } else if (first..first + count).contains(&j) {
+                Interval::point(now.past[(i, j - first)])
+            } else {
+                Interval::ZERO
+            }
+        });
+        let center = now.center.iter().map(|&c| Interval::point(c)).collect();
+        let state = Spread { center, deviations };
+        let [seen, remembered] = of.sensors.seen(&state, n, first + count);
+        let most = [vec![0.0; n], vec![1.0; count], off.clone()].concat();
+        Self { state, seen, remembered, sizes: Sizes { ball, slopes: vec![0.0; most.len()], most } }
+    }
+}
+
+/// What becomes of a section in a control period.
 #[derive(Clone, Debug)]
 pub struct Passage {
     /// The law at its beginning.
     pub law: Instant,
-    /// Motions and torques on their way at its end.
+    /// Motions, what is remembered and torques on their way at its end.
     pub after: Spread,
-    /// What they are by: y, and how far the law is beside the middle of its slopes.
-    pub sizes: Sizes,
-}
-
-fn points(all: &[f64]) -> Vec<Interval> {
-    all.iter().map(|&x| Interval::point(x)).collect()
 }
 
 /// Into how many pieces holds are cut.
@@ -68,12 +121,12 @@ impl Default for Cuts {
 }
 
 impl Cuts {
-    /// The period from `now` under `law`, in pieces that leave little open, as far as pieces can.
-    pub fn passage(&mut self, of: &HeldLoop<'_>, now: &Ellipsoid, law: &Instant) -> Option<Passage> {
-        let mut found = passage(of, now, law, self.finer)?;
+    /// The period after `before` under `law`, in pieces that leave little open, as far as pieces can.
+    pub fn passage(&mut self, of: &HeldLoop<'_>, before: &Before, law: &Instant) -> Option<Passage> {
+        let mut found = passage(of, before, law, self.finer)?;
         let mut open = openness(&found);
         while open > AGAIN * self.floor && self.finer < FINEST {
-            let Some(halved) = passage(of, now, law, 2 * self.finer) else { break };
+            let Some(halved) = passage(of, before, law, 2 * self.finer) else { break };
             let left = openness(&halved);
             if left > HELPED * open {
                 self.floor = open.max(CLOSED);
@@ -91,7 +144,7 @@ impl Cuts {
 
 /// Lengths of what the rows of y leave open, and of the rows.
 pub fn open_of(passage: &Passage) -> (Vec<f64>, Vec<f64>) {
-    let ball = passage.sizes.ball;
+    let ball = passage.law.sizes.ball;
     let length = |row: &[Interval], of: &dyn Fn(Interval) -> f64| {
         row[..ball].iter().map(|&x| of(x).powi(2)).sum::<f64>().sqrt()
     };
@@ -106,51 +159,21 @@ fn openness(passage: &Passage) -> f64 {
     open.iter().zip(&rows).map(|(open, row)| open / row).sum()
 }
 
-/// The law at instant `k` over `now`.
-pub fn law_at(of: &HeldLoop<'_>, k: usize, now: &Ellipsoid) -> Instant {
-    let size = 4 * of.system.joints();
-    let square = Dense::from_fn(size, size, |i, j| now.lower[(i, j)]);
-    Instant::over(of.system, of.period * Interval::point(k as f64), &now.center[..size], &square)
-}
-
-/// A period from `now` under `law`, in so many times as many pieces as are needed; none if motions are not shown to exist.
-pub fn passage(of: &HeldLoop<'_>, now: &Ellipsoid, law: &Instant, finer: usize) -> Option<Passage> {
-    let (n, ball) = (of.system.joints(), now.center.len());
-    let size = 4 * n;
-    let lower = now.lower.map(Interval::point);
-    let motion = Spread { center: points(&now.center[..size]), deviations: rows(&lower, 0, size) };
-    let sizes = Sizes { ball, others: law.beside.clone() };
-    let wide = |all: &Dense<Interval>, own: bool| {
-        Dense::from_fn(all.rows().len(), ball + n, |i, j| match j.checked_sub(ball) {
-            None => all[(i, j)],
-            Some(j) if own && i == j => Interval::ONE,
-            Some(_) => Interval::ZERO,
-        })
-    };
-    // L is lower triangular: motions have nothing to do with the last numbers of y.
-    let slopes = Dense::from_fn(n, ball, |j, k| if k < size { law.slopes[(j, k)] } else { Interval::ZERO });
-    let asked = Spread { center: law.torque.clone(), deviations: wide(&slopes, true) };
-    let waiting = |m: usize| Spread {
-        center: points(&now.center[size + m * n..size + (m + 1) * n]),
-        deviations: wide(&rows(&lower, size + m * n, n), false),
-    };
-    let queue: Vec<Spread> = (0..of.waiting).map(waiting).chain([asked]).collect();
-    let motion = Spread { center: motion.center, deviations: wide(&motion.deviations, false) };
+/// A period after `before` under `law`, in so many times as many pieces as are needed; none if motions are not shown to exist.
+pub fn passage(of: &HeldLoop<'_>, before: &Before, law: &Instant, finer: usize) -> Option<Passage> {
+    let (n, size, from) = (of.system.joints(), of.motion(), of.before_torques());
+    let waiting = |m: usize| before.state.part(from + m * n, n);
+    let queue: Vec<Spread> = (0..of.waiting).map(waiting).chain([law.asked.clone()]).collect();
     let holds = |motion: Spread, torque: &Spread, length: Interval| {
         let pieces = finer * pace(of.system, &motion.center, length);
-        held(of.system, motion, torque, &sizes, length, pieces)
+        held(of.system, motion, torque, &law.sizes, length, pieces)
     };
+    let motion = before.state.part(0, size);
     let moved = match of.offset {
         None => holds(motion, &queue[0], of.period)?,
         Some(offset) => holds(holds(motion, &queue[0], offset)?, &queue[1], of.period - offset)?,
     };
-    let all: Vec<&Spread> = [&moved].into_iter().chain(&queue[1..]).collect();
-    let center = all.iter().flat_map(|part| part.center.iter().copied()).collect();
-    let each: Vec<&[Interval]> = all.iter().flat_map(|part| part.deviations.rows()).collect();
-    let deviations = Dense::from_fn(ball, ball + n, |i, j| each[i][j]);
-    Some(Passage { law: law.clone(), after: Spread { center, deviations }, sizes })
-}
-
-fn rows(of: &Dense<Interval>, from: usize, count: usize) -> Dense<Interval> {
-    Dense::from_fn(count, of.columns(), |i, j| of[(from + i, j)])
+    let known = moved.followed_by(&before.remembered);
+    let after = queue[1..].iter().fold(known, |all, torque| all.followed_by(torque));
+    Some(Passage { law: law.clone(), after })
 }

@@ -5,31 +5,39 @@ use flexure_core::scalar::{Interval, Scalar};
 use crate::linalg::Dense;
 use crate::prove::engine::sampled_data::norm::{around_zero, frobenius};
 
-/// Numbers c + M (y, η) with |y| ≤ 1 and |η_j| ≤ s_j; of another y and η, they differ by some N (Δy, Δη), N in the same intervals.
+/// Numbers c + M (y, z) with |y| ≤ 1 and z as [`Sizes`] says; of another y and z, they differ by some N (Δy, Δz), N in the same intervals.
 #[derive(Clone, Debug)]
 pub struct Spread {
     /// c.
     pub center: Vec<Interval>,
-    /// M: columns of y, then of η.
+    /// M: columns of y, then of z.
     pub deviations: Dense<Interval>,
 }
 
-/// What the y and η are.
+/// What y and z are: |z_j| ≤ slopes_j |y| + most_j, and two z_j of the same readings differ by slopes_j |Δy| at most.
 #[derive(Clone, Debug)]
 pub struct Sizes {
     /// Numbers in y.
     pub ball: usize,
-    /// s_j, from above.
-    pub others: Vec<f64>,
+    /// For each z_j, from above.
+    pub slopes: Vec<f64>,
+    /// For each z_j, from above.
+    pub most: Vec<f64>,
 }
 
 impl Sizes {
-    /// How far |row·(y, η)| goes, from above.
+    /// How far row·(y, z) goes, from above.
     pub fn reach(&self, row: &[Interval]) -> f64 {
         let (y, others) = row.split_at(self.ball);
-        let others = others.iter().zip(&self.others).fold(Interval::ZERO, |sum, (x, &size)| {
-            sum + Interval::point(x.magnitude()) * Interval::point(size)
-        });
+        let sizes = self
+            .slopes
+            .iter()
+            .zip(&self.most)
+            .map(|(&slope, &most)| Interval::point(slope) + Interval::point(most));
+        let others = others
+            .iter()
+            .zip(sizes)
+            .fold(Interval::ZERO, |sum, (x, size)| sum + Interval::point(x.magnitude()) * size);
         (Interval::point(frobenius(y.iter().copied())) + others).hi()
     }
 }
@@ -39,5 +47,34 @@ impl Spread {
     pub fn ranges(&self, sizes: &Sizes) -> Vec<Interval> {
         let range = |(&c, row): (&Interval, &[Interval])| c + around_zero(sizes.reach(row));
         self.center.iter().zip(self.deviations.rows()).map(range).collect()
+    }
+
+    /// `count` of the numbers.
+    pub fn part(&self, from: usize, count: usize) -> Self {
+        let deviations =
+            Dense::from_fn(count, self.deviations.columns(), |i, j| self.deviations[(from + i, j)]);
+        Self { center: self.center[from..from + count].to_vec(), deviations }
+    }
+
+    /// These numbers, then others.
+    #[must_use]
+    pub fn followed_by(&self, others: &Self) -> Self {
+        let rows: Vec<_> = self.deviations.rows().chain(others.deviations.rows()).collect();
+        let deviations = Dense::from_fn(rows.len(), self.deviations.columns(), |i, j| rows[i][j]);
+        Self { center: [&self.center[..], &others.center].concat(), deviations }
+    }
+
+    /// Number by number, the sum of the parts, each times its factor.
+    pub fn sum(parts: &[(Interval, &Self)]) -> Self {
+        let of = |at: &dyn Fn(&Self) -> Interval| {
+            parts.iter().fold(Interval::ZERO, |sum, &(factor, part)| sum + factor * at(part))
+        };
+        let all = &parts[0].1.deviations;
+        Self {
+            center: (0..parts[0].1.center.len()).map(|i| of(&|part| part.center[i])).collect(),
+            deviations: Dense::from_fn(all.rows().len(), all.columns(), |i, j| {
+                of(&|part| part.deviations[(i, j)])
+            }),
+        }
     }
 }

@@ -1,0 +1,85 @@
+//! The law's second derivatives, over boxes that last for some instants.
+
+use flexure_core::scalar::{Interval, Scalar};
+
+use crate::linalg::Dense;
+use crate::prove::engine::sampled_data::frame::Frame;
+use crate::prove::engine::sampled_data::instant::{Bends, Instant, Middle};
+use crate::prove::engine::sampled_data::norm::around_zero;
+use crate::prove::engine::sampled_data::period::HeldLoop;
+use crate::prove::engine::sampled_data::spread::{Sizes, Spread};
+
+/// Instants that boxes are made for at most.
+const LONGEST: f64 = 64.0;
+
+/// How much more than from one instant to the next motions are taken to move in each of those, and how much of its own width a box has beside it.
+const MORE: f64 = 1.25;
+
+/// Of what a tube can take to be left open, boxes for instants to come may leave this part, and are made for more of them where they leave that.
+const MOST: f64 = 0.1;
+const LITTLE: f64 = 0.05;
+
+/// The columns by which motions are seen, those of readings as long as they may be off.
+fn by(seen: &Spread, sizes: &Sizes) -> Dense<f64> {
+    let all = &seen.deviations;
+    Dense::from_fn(all.rows().len(), all.columns(), |i, j| {
+        let size = j.checked_sub(sizes.ball).map_or(1.0, |k| sizes.most[k]);
+        all[(i, j)].midpoint() * size
+    })
+}
+
+/// What is known from instants before.
+#[derive(Default)]
+pub struct Ahead {
+    bends: Option<Bends>,
+    before: Option<Vec<f64>>,
+    /// Instants that boxes are made for, beside the one where they are.
+    instants: f64,
+}
+
+impl Ahead {
+    /// The law at the time `t` in s over what is `seen`. Boxes are as long as all |η_j| have slopes up to `enough`, which cost a tube nothing.
+    pub fn law(
+        &mut self,
+        of: &HeldLoop<'_>,
+        t: Interval,
+        seen: &Spread,
+        sizes: &Sizes,
+        enough: &[f64],
+    ) -> Instant {
+        let frame = Frame::of(&by(seen, sizes));
+        let middle = Middle::of(of.system, t, &seen.center, &frame);
+        let ranges = seen.ranges(sizes);
+        let now: Vec<_> = seen.center.iter().map(|c| c.midpoint()).collect();
+        let before = self.before.replace(now.clone()).unwrap_or_else(|| now.clone());
+        let within = |instant: &Instant, part: f64| {
+            instant.sizes.slopes.iter().zip(enough).all(|(slope, enough)| *slope <= part * enough)
+        };
+        if let Some(bends) = self.bends.as_ref().filter(|bends| bends.cover(t, &ranges)) {
+            let instant = middle.over(seen, sizes, bends);
+            if within(&instant, MOST) {
+                return instant;
+            }
+        }
+        loop {
+            let some = Interval::ZERO.hull(Interval::point(self.instants));
+            let times = t.hull(t + some * of.period);
+            let roomy = |(x, (now, before)): (&Interval, (&f64, &f64))| {
+                let way = Interval::point(MORE * (now - before));
+                *x + some * way + around_zero((MORE - 1.0) * x.width())
+            };
+            let boxes = || ranges.iter().zip(now.iter().zip(&before));
+            let over = if self.instants > 0.0 { boxes().map(roomy).collect() } else { ranges.clone() };
+            let bends = Bends::over(of.system, times, over, &frame);
+            let instant = middle.over(seen, sizes, &bends);
+            if self.instants == 0.0 || within(&instant, MOST) {
+                if within(&instant, LITTLE) {
+                    self.instants = (2.0 * self.instants).clamp(1.0, LONGEST);
+                }
+                self.bends = Some(bends);
+                return instant;
+            }
+            self.instants = (0.5 * self.instants).floor();
+        }
+    }
+}
