@@ -43,7 +43,7 @@ pub struct Certify {
     #[arg(long, value_name = "S", value_delimiter = ',', allow_negative_numbers = true)]
     pub velocity_error: Option<Vec<f64>>,
     /// How far links reach in a tube around the run in rad, one number or one per link: proves how fast motions in it come closer in the sampled loop,
-    /// with the control period, the delay and the torque limits of the file. 1e-5 is a beginning.
+    /// with the control period, delay, encoders, velocity filter, guard and limits of the file. Begin with 1e-5 and try smaller and larger ones.
     #[arg(long, value_name = "E", value_delimiter = ',', allow_negative_numbers = true)]
     pub sampled_tube: Option<Vec<f64>>,
     /// Prove the certified contraction rate once more, from the full inequality; of theorems only that the rate of the mass matrix cancels.

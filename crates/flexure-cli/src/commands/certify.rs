@@ -125,7 +125,7 @@ fn question(options: &Certify, scenario: &Scenario) -> Result<Question, Problem>
 /// file; 3 for what could not be decided.
 fn ending(scenario: &Scenario, standing: Standing<'_>, strict: bool) -> Result<(), Failure> {
     let problem = match standing {
-        Standing::Proved => return Ok(()),
+        Standing::Proved | Standing::Near => return Ok(()),
         Standing::Ideal(_) if !strict => return Ok(()),
         Standing::Ideal(conditions) => {
             let outside = outside_of_proofs(&conditions).unwrap_or_default();

@@ -7,15 +7,19 @@ use serde::Serialize;
 use crate::files::number::{engineering, short};
 use crate::files::{Problem, Problems};
 use crate::imperfections::stages::split;
-use crate::imperfections::{Delay, Encoder, Imperfection, Saturation, Side, VelocityFilter};
+use crate::imperfections::{
+    Bias, Delay, Encoder, Imperfection, Saturation, Side, TorqueRate, VelocityFilter,
+};
 use crate::progress::Progress;
 use crate::prove::closed_loop::along_reference;
 use crate::prove::engine::sampled_data::period::HeldLoop;
 use crate::prove::engine::sampled_data::section::Section;
 use crate::prove::engine::sampled_data::sensors::{Filter, Sensors};
 use crate::prove::engine::sampled_data::tube::{Ends, TubeRequest, Why, tube};
+use crate::prove::engine::sampled_data::watch::{Beyond, Limit, Passes, Readings};
 use crate::sampled;
-use crate::scenario::{Hold, Scenario};
+use crate::scenario::{GuardSettings, Hold, Scenario};
+use crate::simulate::acting_limits;
 
 /// A tube around the run, in which motions come closer. Where readings are off, the run is the one on exact readings.
 #[derive(Clone, Debug, Serialize)]
@@ -32,6 +36,8 @@ pub struct SampledTube {
     pub tracking: Vec<f64>,
     /// How far readings of positions are off at most, links then motors, in rad; empty where they are exact.
     pub readings: Vec<f64>,
+    /// Whether velocities are filtered differences of readings.
+    pub filtered: bool,
     /// Largest motor torques |u_m| that the law asks for in the tube [N m].
     pub torque: Vec<f64>,
     /// Control period in s.
@@ -69,7 +75,7 @@ pub fn sampled_tube(
     let rate = match sampled::probe(scenario)? {
         Some(found) if found.stable => PART * found.rate,
         Some(_) => return none("small errors do not shrink in it".to_owned()),
-        None => return none(sampled::not_looked_at(scenario).unwrap_or_default()),
+        None => return none(not_looked_at(scenario)),
     };
     let n = scenario.robot.joint_count();
     let system = along_reference(scenario)?;
@@ -81,9 +87,7 @@ pub fn sampled_tube(
         sum + scenario.bounds(delay.computation) + scenario.bounds(delay.actuation)
     });
     let whole_periods = Interval::point(waiting.saturating_sub(1) as f64) * period;
-    let limits = scenario.drive_limits();
-    let limits: Option<Vec<f64>> =
-        limits.map(|limits| limits.iter().map(|&limit| scenario.robot.bounds(limit).lo()).collect());
+    let passes = passes(scenario);
     let sensors = sensors(scenario);
     let of = HeldLoop {
         system: &*system,
@@ -91,7 +95,7 @@ pub fn sampled_tube(
         period,
         waiting,
         offset: (offset > 0.0).then(|| exact - whole_periods),
-        limits: limits.as_deref(),
+        passes: &passes,
     };
     let initial = &scenario.initial;
     let start: Vec<f64> =
@@ -151,6 +155,7 @@ pub fn sampled_tube(
             error: found.largest,
             tracking: found.tracking,
             readings: sensors.off.clone(),
+            filtered: sensors.filter.is_some(),
             torque: found.torque,
             period: seconds,
             delay,
@@ -192,6 +197,43 @@ impl Findings {
     }
 }
 
+/// What guard and drives of `scenario` do nothing about.
+fn passes(scenario: &Scenario) -> Passes {
+    let n = scenario.robot.joint_count();
+    let below = |all: &[f64]| -> Vec<f64> {
+        all.iter().map(|&x| if x.is_finite() { scenario.bounds(x).lo() } else { x }).collect()
+    };
+    let rates =
+        scenario.imperfections.iter().filter_map(Imperfection::of::<TorqueRate>).map(|rate| &rate.limit);
+    let rates = rates.chain(scenario.guard.as_ref().map(|guard| &guard.torque_rate_limit));
+    let mut step = vec![f64::INFINITY; n];
+    for rate in rates {
+        step.iter_mut().zip(rate).for_each(|(step, &rate)| *step = step.min(rate));
+    }
+    let in_a_period = |rate: &f64| {
+        if rate.is_finite() {
+            (scenario.bounds(*rate) * scenario.bounds(scenario.control_period)).lo()
+        } else {
+            *rate
+        }
+    };
+    let readings = scenario.guard.as_ref().map(|guard| {
+        let believed = &guard.believed;
+        Readings {
+            position: believed.position.clone(),
+            speed: below(&believed.speed),
+            deflection: below(&believed.deflection),
+            jump: below(&believed.jump),
+            travel: scenario.bounds(believed.frozen.1).lo(),
+        }
+    });
+    Passes {
+        torque: below(&acting_limits(scenario)),
+        torque_step: step.iter().map(in_a_period).collect(),
+        readings,
+    }
+}
+
 /// What the law of `scenario` sees.
 fn sensors(scenario: &Scenario) -> Sensors {
     let each = || scenario.imperfections.iter();
@@ -207,6 +249,12 @@ fn sensors(scenario: &Scenario) -> Sensors {
             });
         }
     }
+    for Bias { link, motor } in each().filter_map(Imperfection::of::<Bias>) {
+        off.resize(2 * scenario.robot.joint_count(), 0.0);
+        off.iter_mut().zip(link.iter().chain(motor)).for_each(|(off, &bias)| {
+            *off = (Interval::point(*off) + Interval::point(scenario.bounds(bias).magnitude())).hi();
+        });
+    }
     if off.iter().all(|&off| off == 0.0) {
         off.clear();
     }
@@ -219,6 +267,12 @@ fn sensors(scenario: &Scenario) -> Sensors {
 
 fn raise(most: &mut [f64], with: impl IntoIterator<Item = f64>) {
     most.iter_mut().zip(with).for_each(|(most, x)| *most = most.max(x));
+}
+
+/// Why nobody looks at small errors.
+fn not_looked_at(scenario: &Scenario) -> String {
+    let why = sampled::not_looked_at(scenario).unwrap_or_default();
+    why.strip_prefix("sampled loop: ").map_or(why.clone(), str::to_owned)
 }
 
 /// Where a tube ends, in words.
@@ -238,15 +292,44 @@ fn why(scenario: &Scenario, rate: f64, ends: &Ends) -> NoTube {
             format!("at t = {time} s motions in it were not shown to come closer; {small}")
         }
         Why::Widens(reach) => format!(
-            "at t = {time} s a tube of motions that come closer was shown only with links up to {} rad from the run; {small}",
+            "at t = {time} s it would have to be so wide that links are up to {} rad from the run; {small}",
             engineering(reach)
         ),
-        Why::Limited(joint, torque) => format!(
-            "at t = {time} s the torque of joint {} may come to {} N m, beyond its limit of {} N m",
-            joint + 1,
-            short(torque, 5),
-            scenario.drive_limits().map_or(f64::INFINITY, |limits| limits[joint])
-        ),
+        Why::Missed => {
+            format!(
+                "at t = {time} s rounding of its middle is as much as motions come closer by; a larger one may have one"
+            )
+        }
+        Why::Beyond(Beyond { limit, joint, found, passes }) => {
+            let joint = joint + 1;
+            let (found, passes) = (short(found, 5), short(passes, 5));
+            match limit {
+                Limit::Torque => format!(
+                    "at t = {time} s the torque of joint {joint} may come to {found} N m, beyond its limit of {passes} N m"
+                ),
+                Limit::TorqueStep => format!(
+                    "at t = {time} s the torque of joint {joint} may change by {found} N m from one control instant to the next, beyond its limit of {passes} N m"
+                ),
+                Limit::Highest => format!(
+                    "at t = {time} s a reading of joint {joint} may be {found} rad, and the guard believes up to {passes} rad"
+                ),
+                Limit::Lowest => format!(
+                    "at t = {time} s a reading of joint {joint} may be −{found} rad, and the guard believes down to −{passes} rad"
+                ),
+                Limit::Speed => format!(
+                    "at t = {time} s a velocity of joint {joint} may be read as {found} rad/s, and the guard believes up to {passes} rad/s"
+                ),
+                Limit::Deflection => format!(
+                    "at t = {time} s the spring of joint {joint} may be read as wound by {found} rad, and the guard believes up to {passes} rad"
+                ),
+                Limit::Jump => format!(
+                    "at t = {time} s a reading of joint {joint} may change by {found} rad from one control instant to the next, and the guard believes up to {passes} rad"
+                ),
+                Limit::Travel => format!(
+                    "at t = {time} s a reading of joint {joint} may have stayed the same while its other side or the reference moved by {found} rad, and the guard takes it to be frozen from {passes} rad on"
+                ),
+            }
+        }
     };
     NoTube { at }
 }
@@ -260,6 +343,20 @@ pub(crate) fn suitable_when_sampled(scenario: &Scenario) -> Result<(), Problems>
     }
 }
 
+/// The key of what a guard watches that a tube says nothing of.
+fn watches_more(guard: &GuardSettings) -> Option<&'static str> {
+    let is_finite = |all: &[f64]| all.iter().any(|x| x.is_finite());
+    if guard.collision.is_some() {
+        Some("collision")
+    } else if is_finite(&guard.believed.motor_residual) {
+        Some("motor_residual")
+    } else if is_finite(&guard.believed.velocity_gap) {
+        Some("velocity_gap")
+    } else {
+        None
+    }
+}
+
 /// What of `scenario` such a proof does not speak of.
 fn unsuitable(scenario: &Scenario) -> Option<Problem> {
     let spoken_of = |imperfection: &&Imperfection| {
@@ -267,27 +364,33 @@ fn unsuitable(scenario: &Scenario) -> Option<Problem> {
             || imperfection.of::<Saturation>().is_some()
             || imperfection.of::<VelocityFilter>().is_some()
             || imperfection.of::<Encoder>().is_some()
+            || imperfection.of::<Bias>().is_some()
+            || imperfection.of::<TorqueRate>().is_some()
     };
     let encoders = || scenario.imperfections.iter().filter_map(Imperfection::of::<Encoder>);
     let placed = |side: Side| encoders().any(|encoder| encoder.resolution(side).is_some());
-    let (key, what) = if scenario.hold == Hold::Continuous {
-        ("hold", "acts in continuous time".to_owned())
-    } else if let Some(other) = scenario.imperfections.iter().find(|imperfection| !spoken_of(imperfection)) {
-        ("imperfection", format!("has imperfections of kind '{}'", other.kind()))
-    } else if placed(Side::Link) != placed(Side::Motor) {
-        ("imperfection", "has encoders on one side of its joints".to_owned())
-    } else if scenario.estimator.is_some() {
-        ("estimator", "has an estimator".to_owned())
-    } else if scenario.disturbance_observer.is_some() {
-        ("disturbance_observer", "has a disturbance observer".to_owned())
-    } else if scenario.guard.is_some() {
-        ("guard", "has a guard".to_owned())
-    } else if let Some(option) = scenario.plant.options().first() {
-        ("plant", format!("has plant.{option}"))
-    } else {
-        return None;
+    let mut found: Vec<(&str, String)> = Vec::new();
+    let mut add = |is_there: bool, key: &'static str, what: &str| {
+        if is_there {
+            found.push((key, what.to_owned()));
+        }
     };
-    let message = format!("this loop {what}: tubes of sampled loops do not speak of that");
-    let help = "they are of the law on true states or on those of encoders and velocity filters, its torques held, late by a delay, and within limits; leave out --sampled-tube";
+    add(scenario.hold == Hold::Continuous, "hold", "acts in continuous time");
+    for other in scenario.imperfections.iter().filter(|imperfection| !spoken_of(imperfection)) {
+        add(true, "imperfection", &format!("has imperfections of kind '{}'", other.kind()));
+    }
+    add(placed(Side::Link) != placed(Side::Motor), "imperfection", "has encoders on one side of its joints");
+    add(scenario.estimator.is_some(), "estimator", "has an estimator");
+    add(scenario.disturbance_observer.is_some(), "disturbance_observer", "has a disturbance observer");
+    if let Some(key) = scenario.guard.as_ref().and_then(watches_more) {
+        add(true, "guard", &format!("has a guard with {key}"));
+    }
+    for option in scenario.plant.options() {
+        add(true, "plant", &format!("has plant.{option}"));
+    }
+    let &(key, _) = found.first()?;
+    let all: Vec<_> = found.into_iter().map(|(_, what)| what).collect();
+    let message = format!("this loop {}: tubes of sampled loops do not speak of that", all.join(", "));
+    let help = "they are of the law on true states or on encoders and velocity filters, its torques held, late by a delay, under a guard and within limits; leave out --sampled-tube";
     Some(scenario.places.problem(key, "unsupported", message, help))
 }

@@ -10,6 +10,8 @@ use crate::scenario::Scenario;
 pub enum Standing<'a> {
     /// Everything that was asked is proved, and nothing is left out but what the file's assumptions list.
     Proved,
+    /// It is proved, and of the loop in the file, as sampled, that motions near its run stay there and come closer.
+    Near,
     /// It is proved of the ideal loop; the one in the file has these too.
     Ideal(Vec<&'static str>),
     /// The loop that holds its torque for a control period is unstable, whatever is proved in continuous time.
@@ -30,8 +32,13 @@ impl<'a> Standing<'a> {
     pub fn of(scenario: &Scenario, proof: &Proof, sampled: Option<&'a Sampled>) -> Self {
         match (proof.complaint(scenario), sampled.filter(|sampled| !sampled.stable)) {
             (Some((problem, true)), _) => Self::Refuted(problem),
-            (open, Some(sampled)) => Self::Unstable { sampled, proved: open.is_none() },
+            (open, Some(sampled)) => {
+                let of_law = Proof { sampled_tube: None, ..proof.clone() };
+                let proved = open.is_none() || of_law.complaint(scenario).is_none();
+                Self::Unstable { sampled, proved }
+            }
             (Some((problem, false)), None) => Self::Undecided(problem),
+            (None, None) if matches!(proof.sampled_tube, Some(Ok(_))) => Self::Near,
             (None, None) => match scenario.beyond_ideal() {
                 nothing if nothing.is_empty() => Self::Proved,
                 conditions => Self::Ideal(conditions),
@@ -43,6 +50,7 @@ impl<'a> Standing<'a> {
     pub fn words(&self) -> &'static str {
         match self {
             Self::Proved => "proved",
+            Self::Near => "proved (sampled loop, near its run)",
             Self::Ideal(_) => "proved (ideal loop)",
             Self::Unstable { proved: true, .. } => "proved for continuous time; unstable as sampled",
             Self::Unstable { proved: false, .. } => "undecided for continuous time; unstable as sampled",

@@ -8,9 +8,9 @@ use super::certificates::{self, CertificateReport};
 use super::kit::{Page, Section, Verdict, figure, made};
 use super::runs::symbols;
 use crate::files::Problems;
-use crate::files::number::short;
+use crate::files::number::{rounded_down, rounded_up, short};
 use crate::prove::standing::Standing;
-use crate::prove::summary::{FunnelSummary, ProofSummary};
+use crate::prove::summary::{FunnelSummary, ProofSummary, SampledTubeSummary};
 use crate::report::draw::scene::Scene;
 use crate::report::tables::proof::statements;
 use crate::report::tables::summary::proved_rate;
@@ -47,6 +47,9 @@ pub fn proof_verdict(
             }
             (None, None) => Verdict { good: Some(true), words: format!("Proved: {proved}") },
         },
+        Standing::Near => {
+            Verdict { good: Some(true), words: near(summary) + &format!(" Of the ideal loop: {proved}") }
+        }
         Standing::Ideal(conditions) => Verdict {
             good: strict.then_some(false),
             words: format!(
@@ -67,13 +70,29 @@ pub fn proof_verdict(
     }
 }
 
+/// What is proved of the loop in the file, as sampled.
+fn near(summary: &ProofSummary) -> String {
+    let Some(SampledTubeSummary::Proved(found)) = &summary.sampled_tube else { return String::new() };
+    format!(
+        "Proved of the loop in the file, as sampled: motions that start in a tube around its run, which links reach at most {} {} from it in, stay there for all of \
+         it, and come closer at {} 1/s or faster.",
+        largest(&found.error[..found.tracking.len()]),
+        summary.unit(units::ANGLE),
+        proved_rate(Some(found.rate))
+    )
+}
+
+/// The largest of them, from above.
+fn largest(all: &[f64]) -> String {
+    short(rounded_up(all.iter().copied().fold(0.0, f64::max), 3), 3)
+}
+
 /// The rates that are proved, and where.
 fn rates(summary: &ProofSummary) -> String {
-    let largest = |errors: &Vec<f64>| short(errors.iter().copied().fold(0.0, f64::max), 3);
     let region = summary.region.as_ref();
     let errors = region.and_then(|region| region.level).map_or_else(
         || "errors of any size".to_owned(),
-        |level| format!("errors that start with W ≤ {} J", short(level, 3)),
+        |level| format!("errors that start with W ≤ {} J", short(rounded_down(level, 3), 3)),
     );
     let place = region.and_then(|region| region.error.as_ref()).map_or_else(String::new, |errors| {
         format!(" where position errors are up to {} {}", largest(errors), summary.unit(units::ANGLE))

@@ -22,7 +22,7 @@ pub fn proof_table(summary: &ProofSummary, width: usize) -> String {
     if let Some(outside) = outside_of_proofs(&summary.left_out) {
         let but = match &summary.sampled_tube {
             Some(SampledTubeSummary::Proved(_)) => {
-                "; the sampled tube, below, is of the loop with its control period, delay and torque limits"
+                "; the sampled tube, below, is of the loop in the file, with all of them"
             }
             _ => "",
         };
@@ -298,18 +298,26 @@ fn sampled_tube(found: &SampledTubeSummary, summary: &ProofSummary) -> Vec<Strin
     let alone = &found.alone[..links.len()];
     let late = if found.delay > 0.0 { format!(" and {} s late", found.delay) } else { String::new() };
     let held = format!("its torque held for {} s{late}", found.period);
-    vec![
-        format!(
-            "sampled      the loop with {held}, on true states: {} control periods, one by one",
-            found.periods
+    let velocities = if found.filtered { "filtered velocities" } else { "true velocities" };
+    let (seen, run, of_readings) = match found.readings[..] {
+        [] if found.filtered => (format!("on true positions and {velocities}"), "the run", ""),
+        [] => ("on true states".to_owned(), "the run", ""),
+        [..] => (
+            format!("on positions up to {} {rad} off and {velocities}", at_most(&found.readings)),
+            "the run on exact readings",
+            ", of the same errors of readings,",
         ),
+    };
+    let s = if found.periods == 1 { "" } else { "s" };
+    vec![
+        format!("sampled      the loop with {held}, {seen}: {} control period{s}, one by one", found.periods),
         format!(
-            "sampled      motions in a tube around the run, |q_l − run| ≤ {} {rad}, |q_m − run| ≤ {} {rad}, are in it at every control instant",
+            "sampled      motions that start in a tube around {run} stay in it, |q_l − run| ≤ {} {rad}, |q_m − run| ≤ {} {rad} at every control instant",
             at_most(links),
             at_most(motors)
         ),
         format!(
-            "sampled      and any two of them come closer, in its norms, at {} 1/s or faster in every period; with the numbers of the files, without tolerances",
+            "sampled      and any two of them{of_readings} come closer, in its norms, at {} 1/s or faster in every period; with the numbers of the files, without tolerances",
             significant(rounded_down(found.rate, 4), 4)
         ),
         format!(
@@ -375,7 +383,7 @@ fn limit(limit: &Limit, kinds: &[JointKind]) -> Option<String> {
         (limit.joint + 1, limit.key, Unit::of_key(limit.key).unwrap_or(units::NONE).of(kind).plain);
     let verdict = match &limit.verdict {
         Verdict::Proved(bound) => {
-            format!("never reached in the ideal loop, at most {} {unit}", short(*bound, 3))
+            format!("never reached in the ideal loop, at most {} {unit}", short(above(*bound), 3))
         }
         Verdict::Refuted(state) => {
             format!("exceeded: {} {unit} at t = {} s", short(state.value, 3), short(state.t, 4))

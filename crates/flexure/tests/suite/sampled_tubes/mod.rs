@@ -1,11 +1,12 @@
 //! Tubes of sampled loops against simulated ones: what starts in a tube ends where it was said to, and no tube is found where none is.
 
 mod random;
+mod readings;
 
 use flexure::files::{Change, Reading};
 use flexure::imperfections::{Delay, Imperfection};
 use flexure::progress::unwatched;
-use flexure::prove::engine::sampled_data::ellipsoid::Ellipsoid;
+use flexure::prove::engine::sampled_data::section::Section;
 use flexure::prove::sampled_data::{NoTube, SampledTube, sampled_tube};
 use flexure::scenario::{Scenario, load_scenario_with};
 use flexure::simulate::Observed;
@@ -55,7 +56,7 @@ fn end(scenario: &Scenario, start: &[f64]) -> Vec<f64> {
 }
 
 /// A state at |y| = 1, in a random direction of motions, the torques on their way as in the middle.
-fn on_the_surface(tube: &Ellipsoid, n: usize, random: &mut Random) -> Vec<f64> {
+fn on_the_surface(tube: &Section, n: usize, random: &mut Random) -> Vec<f64> {
     let y: Vec<f64> = (0..4 * n).map(|_| random.next()).collect();
     let mut off: Vec<f64> =
         (0..4 * n).map(|i| (0..=i).map(|k| tube.lower[(i, k)] * y[k]).sum::<f64>()).collect();
@@ -111,7 +112,8 @@ fn no_tube_is_found_where_there_is_none() {
 #[test]
 fn loops_with_more_are_refused() {
     for (name, changes, what) in [
-        ("two-link-hardware", &[][..], "imperfections of kind 'encoder'"),
+        ("two-link-everything", &[][..], "imperfections of kind"),
+        ("two-link-hardware", &["guard.velocity_gap = 1.0"], "has a guard with velocity_gap"),
         ("two-link-tanh-smooth", &["hold = \"continuous\""], "acts in continuous time"),
         ("two-link-tanh-smooth", &["plant.spring_hardening = [1.0, 1.0]"], "plant.spring_hardening"),
     ] {

@@ -48,7 +48,7 @@ impl Ahead {
         enough: &[f64],
     ) -> Instant {
         let frame = Frame::of(&by(seen, sizes));
-        let middle = Middle::of(of.system, t, &seen.center, &frame);
+        let middle = Middle::of(of.system, t, &seen.center, frame.clone());
         let ranges = seen.ranges(sizes);
         let now: Vec<_> = seen.center.iter().map(|c| c.midpoint()).collect();
         let before = self.before.replace(now.clone()).unwrap_or_else(|| now.clone());

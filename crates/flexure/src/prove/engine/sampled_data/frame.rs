@@ -35,8 +35,8 @@ impl Frame {
                 lower[(i, j)] = along;
             }
             let length = dot(&left, &left).sqrt();
-            left.iter_mut().for_each(|x| *x /= length.max(f64::MIN_POSITIVE));
-            found.push(left);
+            let unit = left.iter().map(|x| x / length.max(f64::MIN_POSITIVE));
+            found.push(unit.collect());
             lower[(i, i)] = length.max(DEPENDENT * long).max(f64::MIN_POSITIVE.sqrt());
         }
         let (root, off) = near_inverse(&lower);

@@ -13,28 +13,19 @@ use crate::prove::engine::sampled_data::spread::{Sizes, Spread};
 /// The torque of the law at an instant, and what that depends on.
 #[derive(Clone, Debug)]
 pub struct Instant {
+    middle: Middle,
     /// [N m].
     pub asked: Spread,
     /// Of all numbers z of the instant: how far torques are beside the middle of their slopes [N m], then how far readings are off.
     pub sizes: Sizes,
-    /// The errors q̃_l, q̃_m in rad, s_l, s_m [rad/s] at the middle.
-    pub errors: Vec<Interval>,
 }
 
-/// The law along a line of motions x = (q_l, q_m, q̇_l, q̇_m) that move at `rates`.
-fn along(
-    system: &dyn TrackingLoop,
-    q_ld: &[[Slope; 5]],
-    x: &[Interval],
-    rates: &[Interval],
-) -> [Vec<Slope>; 2] {
+/// The law's torques [N m] along a line of motions x = (q_l, q_m, q̇_l, q̇_m) that move at `rates`.
+fn along(system: &dyn TrackingLoop, q_ld: &[[Slope; 5]], x: &[Interval], rates: &[Interval]) -> Vec<Slope> {
     let n = x.len() / 4;
     let slope = |i: usize| Jet::new([x[i], rates[i], Interval::ZERO]);
     let part = |k: usize| (k * n..(k + 1) * n).map(slope).collect();
-    let x = Place { q_l: part(0), q_m: part(1), v_l: part(2), v_m: part(3) };
-    let answer = system.command(&x, q_ld);
-    let errors = [answer.e_l, answer.e_m, answer.s_l, answer.s_m].concat();
-    [answer.u_m, errors]
+    system.command(&Place { q_l: part(0), q_m: part(1), v_l: part(2), v_m: part(3) }, q_ld).u_m
 }
 
 /// The sum of so many columns.
@@ -63,7 +54,7 @@ impl Bends {
     pub fn over(system: &dyn TrackingLoop, times: Interval, over: Vec<Interval>, frame: &Frame) -> Self {
         let q_ld = reference(system, times);
         let of = second_derivatives(over.len(), &|directions| {
-            let [torques, _] = along(system, &q_ld, &over, &columns(&frame.lower, directions));
+            let torques = along(system, &q_ld, &over, &columns(&frame.lower, directions));
             torques.iter().map(|u| u.coefficient(2)).collect()
         });
         Self { times, over, frame: frame.clone(), of }
@@ -75,28 +66,24 @@ impl Bends {
     }
 }
 
-/// The law at the middle of what is seen: its torques [N m], their slopes by the coordinates of a frame and the errors.
+/// The law at the middle of what is seen: its torques [N m] and their slopes by the coordinates of a frame.
 #[derive(Clone, Debug)]
-pub struct Middle<'a> {
-    frame: &'a Frame,
+pub struct Middle {
+    at: Vec<Interval>,
+    frame: Frame,
     torques: Vec<Interval>,
     slopes: Dense<Interval>,
-    errors: Vec<Interval>,
 }
 
-impl<'a> Middle<'a> {
-    /// At the time `t` in s.
-    pub fn of(system: &dyn TrackingLoop, t: Interval, x: &[Interval], frame: &'a Frame) -> Self {
+impl Middle {
+    /// At the time `t` in s and the motion `x`.
+    pub fn of(system: &dyn TrackingLoop, t: Interval, x: &[Interval], frame: Frame) -> Self {
         let q_ld = reference(system, t);
-        let values = |all: Vec<Slope>| -> Vec<Interval> { all.iter().map(|u| u.coefficient(0)).collect() };
-        let [torques, errors] = along(system, &q_ld, x, &columns(&frame.lower, &[])).map(values);
-        let one = |k: usize| {
-            let [torques, _] = along(system, &q_ld, x, &columns(&frame.lower, &[k]));
-            torques
-        };
-        let first: Vec<_> = (0..x.len()).into_par_iter().map(one).collect();
+        let one = |directions: &[usize]| along(system, &q_ld, x, &columns(&frame.lower, directions));
+        let torques: Vec<_> = one(&[]).iter().map(|u| u.coefficient(0)).collect();
+        let first: Vec<_> = (0..x.len()).into_par_iter().map(|k| one(&[k])).collect();
         let slopes = Dense::from_fn(torques.len(), x.len(), |j, k| first[k][j].coefficient(1));
-        Self { frame, torques, slopes, errors }
+        Self { at: x.to_vec(), frame, torques, slopes }
     }
 
     /// Over all that is `seen`, c + A y + B z, |z_i| ≤ r_i of `sizes.most`: u(c) + J (A y + B z) + η with
@@ -136,11 +123,22 @@ impl<'a> Middle<'a> {
             deviations[(j, ball + j)] = Interval::ONE;
         }
         let asked = Spread { center: self.torques.clone(), deviations };
-        Instant { asked, sizes, errors: self.errors.clone() }
+        Instant { middle: self.clone(), asked, sizes }
     }
 }
 
 impl Instant {
+    /// The torques for what is `seen`, in other columns than those of `asked`, but for η.
+    pub fn at(&self, seen: &Spread) -> Spread {
+        let Middle { at, frame, torques, slopes } = &self.middle;
+        let off = Dense::from_fn(at.len(), 1, |i, _| seen.center[i] - at[i]);
+        let moved = slopes * &frame.coordinates(&off);
+        Spread {
+            center: torques.iter().zip(moved.rows()).map(|(&u, row)| u + row[0]).collect(),
+            deviations: slopes * &frame.coordinates(&seen.deviations),
+        }
+    }
+
     /// The largest |u_j| of all those motions [N m], from above.
     pub fn largest(&self) -> Vec<f64> {
         self.asked.ranges(&self.sizes).iter().map(|u| u.magnitude()).collect()

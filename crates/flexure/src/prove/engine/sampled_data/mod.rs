@@ -32,3 +32,4 @@ pub mod section;
 pub mod sensors;
 pub mod spread;
 pub mod tube;
+pub mod watch;

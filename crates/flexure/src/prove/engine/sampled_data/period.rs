@@ -10,6 +10,7 @@ use crate::prove::engine::sampled_data::norm::radius;
 use crate::prove::engine::sampled_data::section::Section;
 use crate::prove::engine::sampled_data::sensors::Sensors;
 use crate::prove::engine::sampled_data::spread::{Sizes, Spread};
+use crate::prove::engine::sampled_data::watch::Passes;
 
 /// A loop that acts at instants.
 #[derive(Clone, Copy)]
@@ -24,8 +25,8 @@ pub struct HeldLoop<'a> {
     pub waiting: usize,
     /// How long into a period the next of them begins to act in s; none if from its beginning.
     pub offset: Option<Interval>,
-    /// Largest torques of the drives [N m], from below; none if nothing limits them.
-    pub limits: Option<&'a [f64]>,
+    /// What its guard and its drives do nothing about.
+    pub passes: &'a Passes,
 }
 
 impl HeldLoop<'_> {

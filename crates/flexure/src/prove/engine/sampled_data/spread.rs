@@ -56,6 +56,16 @@ impl Spread {
         Self { center: self.center[from..from + count].to_vec(), deviations }
     }
 
+    /// The same with so many columns more, which do nothing.
+    #[must_use]
+    pub fn widened(&self, count: usize) -> Self {
+        let all = &self.deviations;
+        let deviations = Dense::from_fn(self.center.len(), all.columns() + count, |i, j| {
+            if j < all.columns() { all[(i, j)] } else { Interval::ZERO }
+        });
+        Self { center: self.center.clone(), deviations }
+    }
+
     /// These numbers, then others.
     #[must_use]
     pub fn followed_by(&self, others: &Self) -> Self {

@@ -8,6 +8,7 @@ use crate::prove::engine::sampled_data::ahead::Ahead;
 use crate::prove::engine::sampled_data::norm::{frobenius, spectral};
 use crate::prove::engine::sampled_data::period::{Before, Cuts, HeldLoop, Passage, open_of, passage};
 use crate::prove::engine::sampled_data::section::{Section, inverse_of};
+use crate::prove::engine::sampled_data::watch::{Beyond, Watch};
 
 /// What tube is asked for.
 #[derive(Clone, Debug)]
@@ -51,10 +52,12 @@ pub enum Why {
     Unbounded,
     /// Motions come closer.
     Grows,
+    /// They come closer by more than the middle is rounded.
+    Missed,
     /// Links stay as near the run as was asked for, nearly: how far one of them may be (rad).
     Widens(f64),
-    /// The torque of a joint, by index, stays below its limit: its bound [N m].
-    Limited(usize, f64),
+    /// Nothing of it is limited or doubted.
+    Beyond(Beyond),
 }
 
 /// Of 1 − λ, the parts for what intervals leave open of the law and of the robot, and for readings that are off.
@@ -67,7 +70,7 @@ struct Shares {
 
 /// Where readings are exact, and where they are off.
 const EXACT: Shares = Shares { law: 0.25, robot: 0.5, readings: 0.0 };
-const OFF: Shares = Shares { law: 0.2, robot: 0.25, readings: 0.3 };
+const OFF: Shares = Shares { law: 0.25, robot: 0.3, readings: 0.4 };
 
 /// A tube whose links reach so many times as far as was asked for is none: what makes it so wide has taken over.
 const WIDEST: f64 = 10.0;
@@ -94,13 +97,7 @@ pub fn tube(
     let ends = |period: usize, why: Why| Some(Err(Ends { period, why }));
     let shrink = (-request.rate * of.period.midpoint()).exp();
     let Some((mut now, off)) = first(of, request, shrink) else { return ends(0, Why::NotStable) };
-    let on_their_way = now.center.iter().zip(now.reaches(Interval::ONE)).skip(of.before_torques());
-    let on_their_way =
-        on_their_way.map(|(c, extent)| (Interval::point(c.abs()) + Interval::point(extent)).hi());
-    if let Some(limited) = beyond(of, on_their_way) {
-        return ends(0, limited);
-    }
-    let (mut cuts, mut ahead) = (Cuts::default(), Ahead::default());
+    let (mut cuts, mut ahead, mut watch) = (Cuts::default(), Ahead::default(), Watch::default());
     // Torques beside the law's that hold the tube open anyway leave this much to |η|.
     let count = (off.len() as f64).sqrt();
     let enough: Vec<_> = off.iter().map(|w| w * shares(of).law * (1.0 - shrink) / count).collect();
@@ -119,8 +116,8 @@ pub fn tube(
         let before = Before::over(of, &now);
         let t = of.period * Interval::point(k as f64);
         let law = ahead.law(of, t, &before.seen, &before.sizes, &enough);
-        if let Some(limited) = beyond(of, law.largest()) {
-            return ends(k, limited);
+        if let Some(beyond) = watch.look(of, t, &before, &law) {
+            return ends(k, Why::Beyond(beyond));
         }
         let Some(passage) = cuts.passage(of, &before, &law) else { return ends(k, Why::Unbounded) };
         let Some((next, dropped)) = next(&passage, &off, shrink, shares(of)) else {
@@ -130,19 +127,14 @@ pub fn tube(
         let Step { growth, offset, noise } = step;
         let most = (Interval::point(growth) + Interval::point(offset) + Interval::point(noise)).hi();
         if most.is_nan() || most > 1.0 {
-            return ends(k, Why::Grows);
+            let missed = (Interval::point(growth) + Interval::point(noise)).hi() <= 1.0;
+            return ends(k, if missed { Why::Missed } else { Why::Grows });
         }
         each(k, &now, &passage, step);
+        watch.passed(&before, &passage, off.len());
         now = next;
     }
     Some(Ok(now))
-}
-
-/// The first torque, of those of all joints one instant after the other [N m], that is beyond its limit.
-fn beyond(of: &HeldLoop<'_>, torques: impl IntoIterator<Item = f64>) -> Option<Why> {
-    let limits = of.limits?.iter().enumerate().cycle();
-    let found = torques.into_iter().zip(limits).find(|(torque, (_, limit))| torque > limit);
-    found.map(|(torque, (joint, _))| Why::Limited(joint, torque))
 }
 
 fn shares(of: &HeldLoop<'_>) -> Shares {

@@ -1,0 +1,138 @@
+//! Tubes of loops that read counts: whatever readings are off by, runs keep to what was said of them.
+
+use std::path::Path;
+
+use flexure::imperfections::{Bias, Imperfection};
+use flexure::scenario::{Scenario, scenario_from_text};
+use flexure::simulate::Observed;
+
+use crate::common::Random;
+use crate::sampled_tubes::found;
+
+/// Half a count in rad.
+const OFF: f64 = 5e-5;
+
+/// The arm as its hardware runs it, from rest at an end of its sine, for half a second, and counts of 0.1 mrad. Its reference does not depend on its start. `changes` are of its text.
+fn hardware(changes: &[(&str, &str)]) -> Scenario {
+    let changes = [
+        (
+            "[reference.smooth_start]\nduration = 4.0                     # s",
+            "phase = [1.5707963267948966, 1.5707963267948966]\n\n[initial]\nq_l = [1.0, 1.0]\nq_m = [1.0, 1.0]\ndq_l = [0.0, 0.0]\ndq_m = [0.0, 0.0]",
+        ),
+        ("\"reference.smooth_start\" = \"assumed\"\n", ""),
+        ("duration = 20.0", "duration = 0.5"),
+        ("resolution = 1.5339807878856412e-3", "resolution = 1e-4"),
+    ]
+    .iter()
+    .chain(changes);
+    let text = include_str!("../../../../../scenarios/two-link-hardware.toml").to_owned();
+    let text = changes.fold(text, |text, (from, to)| {
+        assert!(text.contains(from), "{from}");
+        text.replacen(from, to, 1)
+    });
+    scenario_from_text("scenario.toml", &text, Path::new(".")).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+/// The motions of a run at its control instants, from the first, with the torques that its law asks for.
+fn run(scenario: &Scenario) -> Vec<(Vec<f64>, Vec<f64>)> {
+    let n = scenario.robot.joint_count();
+    let mut held = scenario.open().expect("a loop");
+    let mut observed = Observed::new(n);
+    let mut all = Vec::new();
+    for _ in 0..=scenario.periods() {
+        held.step().expect("it follows");
+        held.observe(&mut observed).expect("of its size");
+        all.push((observed.motion[..2 * n].to_vec(), observed.command.clone()));
+    }
+    all
+}
+
+/// With counts of all sizes up to those of the file, and readings that are off by as much as counts allow all the time, and positions that start off: nowhere farther from the
+/// run on exact readings, or from the reference, than was said, and no larger torques.
+#[test]
+fn readings_that_are_off_move_no_run_out_of_its_tube() {
+    let scenario = hardware(&[]);
+    let tube = found(&scenario, 5e-4).unwrap_or_else(|none| panic!("{}", none.at));
+    assert!(
+        tube.rate > 2.0 && tube.readings.iter().all(|&off| (OFF..1.001 * OFF).contains(&off)),
+        "{tube:?}"
+    );
+    let n = scenario.robot.joint_count();
+    let with = |change: &dyn Fn(&mut Scenario)| {
+        let mut scenario = hardware(&[]);
+        change(&mut scenario);
+        run(&scenario)
+    };
+    let exact =
+        with(&|scenario| scenario.imperfections.retain(|part| !matches!(part, Imperfection::Encoder(_))));
+    let mut random = Random(7);
+    let (mut largest, mut reached) = (vec![0.0_f64; 2 * n], 0.0_f64);
+    for number in 0..24 {
+        let sign = |bit: usize| if number >> bit & 1 == 1 { OFF } else { -OFF };
+        let part = 0.5 * (1.0 + random.next());
+        let moved = [0.999 * tube.alone[number % 4], 0.0][number / 4 % 2];
+        let runs = with(&|scenario| {
+            for part_of in &mut scenario.imperfections {
+                let Imperfection::Encoder(encoder) = part_of else { continue };
+                if number % 3 == 0 {
+                    *part_of = Imperfection::Bias(Bias {
+                        link: vec![sign(0), sign(1)],
+                        motor: vec![sign(2), sign(3)],
+                    });
+                } else {
+                    encoder
+                        .link
+                        .iter_mut()
+                        .chain(&mut encoder.motor)
+                        .flatten()
+                        .for_each(|count| *count *= part);
+                }
+            }
+            let start = if number % 4 < n { &mut scenario.initial.q_l } else { &mut scenario.initial.q_m };
+            start[number % n] += moved;
+        });
+        for ((q, u), (exact, _)) in runs.iter().zip(&exact) {
+            for i in 0..2 * n {
+                largest[i] = largest[i].max((q[i] - exact[i]).abs() / tube.error[i]);
+            }
+            assert!(
+                u.iter().zip(&tube.torque).all(|(u, most)| u.abs() <= *most),
+                "{number}: {u:?} of {:?}",
+                tube.torque
+            );
+        }
+        let periods = runs.len() - 1;
+        for (k, (q, _)) in runs.iter().enumerate().filter(|(k, _)| 4 * k >= 3 * periods) {
+            // The run of the file starts where the file says.
+            if moved == 0.0 {
+                let reference = (0.6 * k as f64 * scenario.control_period).cos();
+                for i in 0..n {
+                    reached = reached.max((q[i] - reference).abs() / tube.tracking[i]);
+                }
+            }
+        }
+    }
+    println!("of what the tube says runs reach {largest:?}, of how near the reference {reached}");
+    assert!(largest.iter().all(|&part| part < 1.0) && reached < 1.0, "{largest:?} {reached}");
+    // It says something.
+    assert!(largest.iter().all(|&part| part > 0.3) && reached > 0.1, "{largest:?} {reached}");
+}
+
+/// A guard that would limit the torque's rate, or doubt a reading, is not said to do nothing.
+#[test]
+fn guards_that_would_act_are_named() {
+    let rejoin = "rejoin_duration = 1.0              # s";
+    for (change, what) in [
+        ("torque_rate_limit = [20.0, 20.0]", "may change by"),
+        ("speed = 0.1", "the guard believes up to 0.1 rad/s"),
+        ("deflection = 1e-4", "may be read as wound by"),
+        ("jump = 1e-4", "may change by"),
+        ("frozen_travel = 1e-4", "takes it to be frozen"),
+        ("torque_limit = [0.05, 0.05]", "beyond its limit of 0.05 N m"),
+    ] {
+        let limit = "torque_rate_limit = [2000.0, 400.0] # N m/s";
+        let from = if change.starts_with("torque_rate") { limit } else { rejoin };
+        let none = found(&hardware(&[(from, change)]), 5e-4).unwrap_err();
+        assert!(none.at.contains(what), "{change}: {}", none.at);
+    }
+}
