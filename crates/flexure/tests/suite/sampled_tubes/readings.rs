@@ -42,7 +42,7 @@ fn run(scenario: &Scenario) -> Vec<(Vec<f64>, Vec<f64>)> {
     for _ in 0..=scenario.periods() {
         held.step().expect("it follows");
         held.observe(&mut observed).expect("of its size");
-        all.push((observed.motion[..2 * n].to_vec(), observed.command.clone()));
+        all.push((observed.motion[..2 * n].to_vec(), [&observed.command[..], &observed.applied].concat()));
     }
     all
 }
@@ -51,15 +51,26 @@ fn run(scenario: &Scenario) -> Vec<(Vec<f64>, Vec<f64>)> {
 /// run on exact readings, or from the reference, than was said, and no larger torques.
 #[test]
 fn readings_that_are_off_move_no_run_out_of_its_tube() {
-    let scenario = hardware(&[]);
-    let tube = found(&scenario, 5e-4).unwrap_or_else(|none| panic!("{}", none.at));
+    keeps_to_its_tube(&[]);
+}
+
+/// The same a millisecond late: the torque that acts until the first command is that of the springs where the run starts.
+#[test]
+fn nor_do_they_late() {
+    let late = "[[imperfection]]\nkind = \"delay\"\ncomputation = 1e-3\n\n[sources]";
+    keeps_to_its_tube(&[("[sources]", late)]);
+}
+
+fn keeps_to_its_tube(changes: &[(&str, &str)]) {
+    let scenario = hardware(changes);
+    let tube = found(&scenario, 5e-5).unwrap_or_else(|none| panic!("{}", none.at));
     assert!(
         tube.rate > 2.0 && tube.readings.iter().all(|&off| (OFF..1.001 * OFF).contains(&off)),
         "{tube:?}"
     );
     let n = scenario.robot.joint_count();
     let with = |change: &dyn Fn(&mut Scenario)| {
-        let mut scenario = hardware(&[]);
+        let mut scenario = hardware(changes);
         change(&mut scenario);
         run(&scenario)
     };
@@ -96,7 +107,7 @@ fn readings_that_are_off_move_no_run_out_of_its_tube() {
                 largest[i] = largest[i].max((q[i] - exact[i]).abs() / tube.error[i]);
             }
             assert!(
-                u.iter().zip(&tube.torque).all(|(u, most)| u.abs() <= *most),
+                u.iter().zip(tube.torque.iter().cycle()).all(|(u, most)| u.abs() <= *most),
                 "{number}: {u:?} of {:?}",
                 tube.torque
             );
