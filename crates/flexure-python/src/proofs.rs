@@ -137,16 +137,26 @@ pub fn verify<'py>(
     Ok(found)
 }
 
-/// How much delay, torque gain, stiffness error and noise the loop bears, as `flexure margins`: a dict.
+/// How much delay, torque gain, stiffness error and noise the loop bears, as `flexure margins`: a dict. With `sampled_tube`, a list of rad, also the delay up to which a tube of
+/// the sampled loop is proved.
 #[pyfunction]
-#[pyo3(signature = (scenario, *, progress = None))]
+#[pyo3(signature = (scenario, *, sampled_tube = None, progress = None))]
 pub fn margins<'py>(
     py: Python<'py>,
     scenario: &Scenario,
+    sampled_tube: Option<&Bound<'py, PyAny>>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    let sampled_tube = list("sampled_tube", sampled_tube)?;
     let loaded = scenario.loaded.clone();
-    let found = watched(py, progress, |progress| flexure::margins::margins(&loaded, progress))?
-        .map_err(|problems| raised(py, &problems))?;
+    let found = watched(py, progress, |progress| {
+        sampled_tube.as_ref().map_or(Ok(()), |error| flexure::margins::check_tube(&loaded, error))?;
+        let mut found = flexure::margins::margins(&loaded, progress)?;
+        if let Some(error) = sampled_tube.as_ref().filter(|_| !found.broken_off) {
+            found.prove_delay(&loaded, error, progress)?;
+        }
+        Ok(found)
+    })?
+    .map_err(|problems| raised(py, &problems))?;
     if found.broken_off { Err(PyKeyboardInterrupt::new_err(())) } else { document(py, &found) }
 }

@@ -155,6 +155,10 @@ pub struct Margins {
     /// With --controllers: seed of the search.
     #[arg(long, default_value_t = 0, requires = "controllers")]
     pub seed: u64,
+    /// How far links reach in a tube around the run in rad, as for `certify`: looks for the largest delay with which it is proved, beside the one that is
+    /// simulated.
+    #[arg(long, value_name = "E", value_delimiter = ',', allow_negative_numbers = true)]
+    pub sampled_tube: Option<Vec<f64>>,
     #[command(flatten)]
     pub paged: Paged,
 }

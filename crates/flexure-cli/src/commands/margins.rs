@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use flexure::compare::{Entrant, check_budget, entrants};
-use flexure::files::number::{short, significant};
+use flexure::files::number::{engineering, rounded_down, short, significant};
 use flexure::files::{Problems, Reading};
-use flexure::margins::{Margins as Found, margins as margins_of};
+use flexure::margins::{Margins as Found, ProvedDelay, check_tube, margins as margins_of};
 use flexure::progress::{PartProgress, Progress as Progressing};
 use flexure::report::{margins_table, write_margins};
 use flexure::scenario::{Scenario, load_scenario_with};
@@ -35,10 +35,11 @@ pub fn margins(options: &Margins, reading: Reading<'_>, json: bool) -> Result<()
     let chosen = if options.controllers.is_empty() { Vec::new() } else { entrants(&options.controllers)? };
     let scenario = load_scenario_with(&options.scenario, reading)?;
     say(&scenario.warnings);
+    options.sampled_tube.as_ref().map_or(Ok(()), |error| check_tube(&scenario, error))?;
     options.paged.prepare(&scenario.name, "margins", chosen.len().max(1), &[""; 0])?;
     let (loops, is_whole) = {
         let each = [options.budget as f64, RUNS];
-        let weights = if chosen.is_empty() { vec![RUNS] } else { each.repeat(chosen.len()) };
+        let weights = if chosen.is_empty() { vec![RUNS, RUNS] } else { each.repeat(chosen.len()) };
         let progress = Progress::new(&scenario.name, weights);
         measured(&scenario, &chosen, options, &|part, fraction| progress.set(part, fraction))?
     };
@@ -68,8 +69,34 @@ pub fn margins(options: &Margins, reading: Reading<'_>, json: bool) -> Result<()
     Err(Failure::No(objections.into_iter().map(Into::into).collect()))
 }
 
+/// Up to which delay there is a tube.
+fn proved(found: &ProvedDelay, loop_: &Found) -> String {
+    let reach = engineering(found.error.iter().copied().fold(0.0, f64::max));
+    let tube = format!(
+        "a tube of the sampled loop, links up to {reach} {} from its run",
+        loop_.unit(units::ANGLE, "")
+    );
+    let why = found.at.as_ref().map_or_else(String::new, |at| format!("; later: {at}"));
+    match (found.holds, found.rate) {
+        (Some(holds), Some(rate)) => {
+            let part = found.part.map_or_else(String::new, |part| {
+                format!(", {} % of what it bears in simulation", short(rounded_down(100.0 * part, 3), 3))
+            });
+            format!(
+                "{tube}, is proved with up to {} ms of delay more{part}; at {} 1/s there{why}",
+                short(rounded_down(1e3 * holds, 4), 4),
+                significant(rounded_down(rate, 4), 4)
+            )
+        }
+        _ => format!("{tube}, was not found: {}", found.at.as_deref().unwrap_or_default()),
+    }
+}
+
 /// What the table does not say.
 fn show(found: &Found) -> Result<(), Failure> {
+    if let Some(delay) = &found.delay_proved {
+        print::line(&proved(delay, found))?;
+    }
     let torque = found.unit(units::TORQUE, "");
     print::line(&format!(
         "{} holds: it follows, with an rms error of at most {} {} and torques of at most {} {torque}\n\
@@ -94,14 +121,24 @@ fn measured(
     progress: PartProgress<'_>,
 ) -> Result<(Vec<Found>, bool), Problems> {
     if chosen.is_empty() {
-        let found = margins_of(scenario, &|fraction| progress(0, fraction))?;
+        let mut found = margins_of(scenario, &|fraction| progress(0, fraction))?;
+        if let Some(error) = &options.sampled_tube {
+            found.prove_delay(scenario, error, &|fraction| progress(1, fraction))?;
+        }
         let is_whole = !found.broken_off;
         return Ok((vec![found], is_whole));
     }
     let mut loops = Vec::new();
     for (i, entrant) in chosen.iter().enumerate() {
-        let found = tuned(scenario, *entrant, options, &|fraction| progress(2 * i, fraction))
-            .and_then(|scenario| margins_of(&scenario, &|fraction| progress(2 * i + 1, fraction)));
+        let found =
+            tuned(scenario, *entrant, options, &|fraction| progress(2 * i, fraction)).and_then(|scenario| {
+                let told = |fraction| progress(2 * i + 1, fraction);
+                let mut found = margins_of(&scenario, &told)?;
+                if let Some(error) = &options.sampled_tube {
+                    found.prove_delay(&scenario, error, &told)?;
+                }
+                Ok(found)
+            });
         match found {
             Err(problems) if problems.is_interrupted() && !loops.is_empty() => return Ok((loops, false)),
             found => loops.push(found?),

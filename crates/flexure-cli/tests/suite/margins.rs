@@ -28,6 +28,36 @@ fn margins_are_brackets_around_where_the_loop_stops_holding() {
     assert!(table.contains("vcbc tanh") && table.lines().all(|line| line.chars().count() <= 110), "{table}");
 }
 
+/// The delay up to which a tube is proved is less than the one that is borne, and not much; sensors that a tube does not speak of are refused by name.
+#[test]
+fn delays_are_proved_beside_those_that_are_simulated() {
+    let place = Place::new();
+    place.write(
+        "short.toml",
+        short()
+            .replace("duration = 0.5\n[controller]", "duration = 0.1\n[controller]")
+            .replace("duration = 0.5", "duration = 0.15"),
+    );
+    let asked =
+        |options: &[&str]| place.run(&[&["margins", "short.toml", "--sampled-tube"], options].concat());
+    let json = asked(&["1e-5", "--json"]).done().json();
+    let (delay, proved) = (&json["loops"][0]["delay"], &json["loops"][0]["delay_proved"]);
+    let [holds, borne] = [&proved["holds"], &delay["holds"]].map(|x| x.as_f64().unwrap());
+    assert!(holds <= borne && holds >= 0.7 * borne, "{json}");
+    assert!((proved["part"].as_f64().unwrap() - holds / borne).abs() < 1e-12, "{json}");
+    assert!(proved["rate"].as_f64().unwrap() > 0.0 && proved["tried"].as_u64().unwrap() > 3, "{json}");
+    let said = asked(&["1e-5"]).done().stdout;
+    assert!(
+        said.contains("ms of delay more, ") && said.contains("% of what it bears in simulation"),
+        "{said}"
+    );
+    for (bad, what) in [("0", "must be at least 1e-9"), ("nan", "sampled tube"), ("1,2,3", "sampled tube")] {
+        let outcome = asked(&[bad]);
+        assert_eq!(outcome.code, Some(2), "{outcome:?}");
+        outcome.said(&[what]);
+    }
+}
+
 #[test]
 fn a_loop_that_diverges_has_no_margins() {
     let place = Place::new();

@@ -130,10 +130,19 @@ def verify(certificate: Path | Mapping[str, Any], *, against: Scenario | Path | 
     return _flexure.verify(certificate, against=None if against is None else _scenario(against))
 
 
-def margins(scenario: Scenario | Path, *, progress: Progress = None) -> dict[str, Any]:
-    """How much delay, torque gain, stiffness error and noise the loop bears, by bisection in simulation, as `flexure margins`: its only loop."""
+def margins(
+    scenario: Scenario | Path, *, sampled_tube: Numbers | None = None, progress: Progress = None
+) -> dict[str, Any]:
+    """How much delay, torque gain, stiffness error and noise the loop bears, by bisection in simulation, as `flexure margins`: its only loop.
+
+    With a sampled_tube, as for `certify`, `delay_proved` says up to which delay there is one.
+    """
     scenario = _scenario(scenario)
-    return _watched(scenario.name, progress, lambda told: _flexure.margins(scenario, progress=told))
+    return _watched(
+        scenario.name,
+        progress,
+        lambda told: _flexure.margins(scenario, sampled_tube=sampled_tube, progress=told),
+    )
 
 
 def tune(

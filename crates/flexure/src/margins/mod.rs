@@ -2,6 +2,7 @@
 
 mod change;
 mod edge;
+mod proved;
 
 use std::ops::ControlFlow;
 
@@ -18,6 +19,7 @@ use crate::units::{Unit, of_joints};
 
 pub use change::Change;
 pub use edge::Edge;
+pub use proved::{ProvedDelay, check_tube};
 
 /// What a loop bears beyond its scenario.
 ///
@@ -51,6 +53,8 @@ pub struct Margins {
     pub allowed_rms_torque_change: f64,
     /// Delay from command to torque that may be added, in s.
     pub delay: Edge,
+    /// Delay that may be added so that motions near the run are proved to come closer, where that was asked for.
+    pub delay_proved: Option<ProvedDelay>,
     /// Factor by which the motor torque may be too small.
     pub gain_low: Edge,
     /// Factor by which it may be too large.
@@ -186,6 +190,7 @@ pub fn margins(scenario: &Scenario, progress: Progress<'_>) -> Result<Margins, P
         allowed_max_u_m: allowed.max_u_m,
         allowed_rms_torque_change: allowed.rms_torque_change,
         delay,
+        delay_proved: None,
         gain_low,
         gain_high,
         stiffness_low,

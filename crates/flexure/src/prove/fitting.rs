@@ -12,6 +12,22 @@ const SMALLEST_TUBE: f64 = 1e-9;
 
 const OF_BOTH_SIDES: &str = "one number, or one per joint of the links, then of the motors, in rad";
 
+/// How far links reach in a tube of the sampled loop in rad, a number for each of `n`.
+///
+/// # Errors
+/// If there is another number of them, or one is out of range.
+pub(crate) fn tube_extents(extents: Vec<f64>, n: usize) -> Result<Vec<f64>, Problem> {
+    let hint = "how far links reach in the tube: one number, or one per link, in rad; begin with 1e-5";
+    let extents = per_joint("the sampled tube", extents, n, hint)?;
+    match extents.iter().find(|&&e| e < SMALLEST_TUBE) {
+        Some(none) => {
+            let message = format!("the sampled tube is {none} rad, must be at least {SMALLEST_TUBE:e}");
+            Err(Problem::new("range", message, hint))
+        }
+        None => Ok(extents),
+    }
+}
+
 impl Question {
     /// The same with a number for each joint where one number stands for all.
     ///
@@ -63,14 +79,7 @@ impl Question {
             let message = format!("the velocity error is {negative} rad/s, must be >= 0");
             return Err(Problem::new("range", message, "the largest absolute value of the velocity error"));
         }
-        let hint =
-            "how far links reach in the tube: one number, or one per link, in rad; 1e-5 is a beginning";
-        let sampled_tube =
-            self.sampled_tube.map(|extents| per_joint("the sampled tube", extents, n, hint)).transpose()?;
-        if let Some(none) = sampled_tube.iter().flatten().find(|&&e| e < SMALLEST_TUBE) {
-            let message = format!("the sampled tube is {none:e} rad, must be at least {SMALLEST_TUBE:e}");
-            return Err(Problem::new("range", message, hint));
-        }
+        let sampled_tube = self.sampled_tube.map(|extents| tube_extents(extents, n)).transpose()?;
         if let Some(rate) = self.rate.filter(|rate| !(rate.is_finite() && *rate > 0.0 && *rate <= LARGEST)) {
             let message = format!("the rate is {rate:e} 1/s, must be > 0 and at most 1e30");
             let hint = "decay rate of the distance of two solutions; leave it out for the largest";

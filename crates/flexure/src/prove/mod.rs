@@ -9,7 +9,7 @@ pub mod confirmation;
 pub mod decay;
 mod decimals;
 pub mod engine;
-mod fitting;
+pub(crate) mod fitting;
 pub mod paper;
 pub mod question;
 pub mod robust;

@@ -117,8 +117,8 @@ fn keeps_to_its_tube(changes: &[(&str, &str)]) {
             // The run of the file starts where the file says.
             if moved == 0.0 {
                 let reference = (0.6 * k as f64 * scenario.control_period).cos();
-                for i in 0..n {
-                    reached = reached.max((q[i] - reference).abs() / tube.tracking[i]);
+                for (q, most) in q.iter().zip(&tube.tracking) {
+                    reached = reached.max((q - reference).abs() / most);
                 }
             }
         }

@@ -110,7 +110,7 @@ mod tests {
                 let (q_l, q_m) = ((0.1 * f64::from(k)).sin(), (0.3 * f64::from(k)).cos());
                 let center = [at(q_l, q_m).map(Interval::point).to_vec(), remembered.clone()].concat();
                 let deviations = Dense::from_fn(center.len(), 2, |_, _| Interval::point(0.0));
-                let [seen, after] = sensors.seen(&Spread { deviations, center }, 1, 0);
+                let [seen, after] = sensors.seen(&Spread { center, deviations }, 1, 0);
                 let expected = theirs.update(&robot, &Vector([q_l]), &Vector([q_m]), &Vector([0.0]));
                 for (found, expected) in seen.center[2..].iter().zip([expected.v_l[0], expected.v_m[0]]) {
                     // b₀ is 1,000 1/s at most, rounded 40 times.
