@@ -313,7 +313,7 @@ fn bad_options_are_told_apart() {
         (&["two-link-tanh", "--sampled-tube", "nan"], "magnitude"),
         (&["two-link-tanh", "--sampled-tube", "1e-5,1e-5,1e-5"], "1 or 2 numbers"),
         (&["two-link-tanh", "--sampled-tube", "narrow"], "invalid"),
-        (&["two-link-hardware", "--sampled-tube", "1e-5"], "imperfections of kind 'encoder'"),
+        (&["two-link-everything", "--sampled-tube", "1e-5"], "imperfections of kind '"),
         (&["continuous.toml", "--sampled-tube", "1e-5"], "acts in continuous time"),
         (&["two-link-tanh", "--velocity-error", "-1"], "must be >= 0"),
         (&["two-link-tanh", "--velocity-error", "1,2,3"], "1 or 4 numbers"),
