@@ -74,7 +74,7 @@ pub fn proof_verdict(
 fn near(summary: &ProofSummary) -> String {
     let Some(SampledTubeSummary::Proved(found)) = &summary.sampled_tube else { return String::new() };
     format!(
-        "Proved of the loop in the file, as sampled: motions that start in a tube around its run, which links reach at most {} {} from it in, stay there for all of \
+        "Proved of the loop in the file, as sampled: motions that start in a tube around its run, in which links are at most {} {} from it, stay there for all of \
          it, and come closer at {} 1/s or faster.",
         largest(&found.error[..found.tracking.len()]),
         summary.unit(units::ANGLE),
