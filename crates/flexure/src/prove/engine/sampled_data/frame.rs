@@ -68,7 +68,8 @@ mod tests {
         let found = frame.coordinates(&exact);
         let again = &frame.lower.map(Interval::point) * &found;
         for (again, exact) in again.rows().flatten().zip(exact.rows().flatten()) {
-            assert!(again.contains_interval(*exact) && again.width() < 1e-12, "{again:?} {exact:?}");
+            // Rounding, times how thin it is: 1e7.
+            assert!(again.contains_interval(*exact) && again.width() < 1e-7, "{again:?} {exact:?}");
         }
         for row in found.rows() {
             let length: f64 = row.iter().map(|x| x.midpoint().powi(2)).sum();
