@@ -69,22 +69,23 @@ pub fn margins(options: &Margins, reading: Reading<'_>, json: bool) -> Result<()
     Err(Failure::No(objections.into_iter().map(Into::into).collect()))
 }
 
-/// Up to which delay there is a tube.
+/// With which delay there is a tube.
 fn proved(found: &ProvedDelay, loop_: &Found) -> String {
     let reach = engineering(found.error.iter().copied().fold(0.0, f64::max));
     let tube = format!(
         "a tube of the sampled loop, links up to {reach} {} from its run",
         loop_.unit(units::ANGLE, "")
     );
-    let why = found.at.as_ref().map_or_else(String::new, |at| format!("; later: {at}"));
+    let why = found.at.as_ref().map_or_else(String::new, |at| format!("; with the next larger one: {at}"));
     match (found.holds, found.rate) {
         (Some(holds), Some(rate)) => {
             let part = found.part.map_or_else(String::new, |part| {
                 format!(", {} % of what it bears in simulation", short(rounded_down(100.0 * part, 3), 3))
             });
             format!(
-                "{tube}, is proved with up to {} ms of delay more{part}; at {} 1/s there{why}",
-                short(rounded_down(1e3 * holds, 4), 4),
+                "{tube}, is proved with {} ms of delay more, the largest of {} that were tried{part}; at {} 1/s there{why}",
+                short(1e3 * holds, 4),
+                found.tried,
                 significant(rounded_down(rate, 4), 4)
             )
         }

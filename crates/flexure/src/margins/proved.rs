@@ -1,26 +1,27 @@
-//! Up to which delay motions near the run are proved to come closer.
+//! With which delay motions near the run are proved to come closer.
 
 use serde::Serialize;
 
 use crate::files::Problems;
+use crate::files::number::rounded_down;
 use crate::margins::{Change, Margins, edge};
 use crate::progress::Progress;
 use crate::prove::fitting::tube_extents;
 use crate::prove::sampled_data::{sampled_tube, suitable_when_sampled};
 use crate::scenario::Scenario;
 
-/// The delay up to which there is a tube of the sampled loop, within the resolution of the bisection.
+/// The largest delay of a bisection with which there is a tube of the sampled loop. Of delays between those that were tried nothing is proved.
 #[derive(Clone, Debug, Serialize)]
 pub struct ProvedDelay {
     /// How far links reach in the tube at the start, in rad.
     pub error: Vec<f64>,
-    /// The largest delay that may be added, in s; none if there is no tube of the loop as it is.
+    /// The largest delay added, of those that were tried, with which there is one, in s, of four digits; none if there is no tube of the loop as it is.
     pub holds: Option<f64>,
     /// It as a part of that which the loop bears in simulation.
     pub part: Option<f64>,
     /// How fast motions come closer with it, in every control period [1/s].
     pub rate: Option<f64>,
-    /// Why there is none a little later, or at all.
+    /// Why there is none with the next one that was tried, or at all.
     pub at: Option<String>,
     /// Delays that were tried.
     pub tried: usize,
@@ -65,6 +66,7 @@ impl Margins {
                 };
                 let mut search = edge::Way::outward(0.0, first.min(last), last).search();
                 while let Some((delay, stage)) = search.next().filter(|_| last > 0.0) {
+                    let delay = rounded_down(delay, 4);
                     let later = Change::Delay(delay).of(scenario);
                     let told = |fraction| progress(stage.fraction(fraction));
                     let Some(tube) = sampled_tube(&later, &found.error, &told)? else {

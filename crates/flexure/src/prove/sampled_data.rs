@@ -12,14 +12,15 @@ use crate::imperfections::{
 };
 use crate::progress::Progress;
 use crate::prove::closed_loop::along_reference;
-use crate::prove::engine::sampled_data::period::HeldLoop;
+use crate::prove::engine::sampled_data::period::{Before, HeldLoop};
 use crate::prove::engine::sampled_data::section::Section;
 use crate::prove::engine::sampled_data::sensors::{Filter, Sensors};
-use crate::prove::engine::sampled_data::tube::{Ends, TubeRequest, Why, tube};
+use crate::prove::engine::sampled_data::tube::{At, Ends, Step, TubeRequest, Why, tube};
 use crate::prove::engine::sampled_data::watch::{Beyond, Limit, Passes, Readings};
 use crate::sampled;
 use crate::scenario::{GuardSettings, Hold, Scenario};
 use crate::simulate::acting_limits;
+use crate::units::{self, Unit};
 
 /// A tube around the run, in which motions come closer. Where readings are off, the run is the one on exact readings.
 #[derive(Clone, Debug, Serialize)]
@@ -98,71 +99,63 @@ pub fn sampled_tube(
         passes: &passes,
     };
     let initial = &scenario.initial;
-    let start: Vec<f64> =
-        [&initial.q_l, &initial.q_m, &initial.dq_l, &initial.dq_m].into_iter().flatten().copied().collect();
     // The run begins at the decimals of the file, with the springs holding the links (`simulate::assembly`).
-    let exact: Vec<_> = start.iter().map(|&x| scenario.bounds(x)).collect();
+    let start = [&initial.q_l, &initial.q_m, &initial.dq_l, &initial.dq_m].into_iter().flatten();
+    let start: Vec<_> = start.map(|&x| scenario.bounds(x)).collect();
+    let begin = of.started(&start);
     let request = TubeRequest { periods: scenario.periods() as usize, extents: error.to_vec(), rate, start };
     let mut found = Findings::new(n);
-    let begin = of.started(&exact);
-    let on_reference = |k: usize, section: &Section, read: Interval| -> Vec<f64> {
-        let reference = system.reference(period * Interval::point(k as f64));
-        let off = reference.iter().zip(&section.center).zip(section.reaches(read));
-        let off = off.map(|((q, &c), reach)| {
-            (Interval::point((Interval::point(c) - q[0]).magnitude()) + Interval::point(reach)).hi()
-        });
-        off.collect()
-    };
-    let is_late = |k: usize| 4 * k >= 3 * request.periods;
-    let done = tube(&of, &request, progress, &mut |k, section, passage, step| {
+    let done = tube(&of, &request, progress, &mut |At { k, section, law, step }| {
         let [run, read] = found.runs.unwrap_or_else(|| [section.reach(&begin); 2]).map(Interval::point);
-        // From below: a growth is known from above.
-        let [growth, offset, noise] = [step.growth, step.offset, step.noise].map(Interval::point);
-        let rate = -growth.ln() / period;
-        found.slowest = found.slowest.min(rate.lo());
-        found.rates += rate;
-        found.at(section, run);
-        raise(&mut found.torque, passage.law.largest());
+        raise(&mut found.largest, section.reaches(Interval::ONE + run));
+        raise(&mut found.torque, law.largest());
         if k == 0 {
-            let on_their_way =
-                section.center.iter().zip(section.reaches(Interval::ONE)).skip(of.before_torques());
-            let on_their_way =
-                on_their_way.map(|(c, reach)| (Interval::point(c.abs()) + Interval::point(reach)).hi());
-            raise(&mut found.torque, on_their_way.take(n));
+            let on_their_way = of.on_their_way(&Before::over(&of, section).state).ranges(&law.sizes);
+            let on_their_way: Vec<_> = on_their_way.iter().map(|u| u.magnitude()).collect();
+            on_their_way.chunks(n).for_each(|torques| raise(&mut found.torque, torques.iter().copied()));
         }
-        if is_late(k) {
-            raise(&mut found.tracking, on_reference(k, section, read));
+        if 4 * k >= 3 * request.periods {
+            let reference = system.reference(period * Interval::point(k as f64));
+            let off = reference.iter().zip(&section.center).zip(section.reaches(read));
+            let off = off.map(|((q, &c), reach)| {
+                (Interval::point((Interval::point(c) - q[0]).magnitude()) + Interval::point(reach)).hi()
+            });
+            raise(&mut found.tracking, off);
         }
-        found.runs = Some([growth * run + offset, growth * read + offset + noise].map(Interval::hi));
-        found.first.get_or_insert_with(|| section.clone());
+        if let Some(Step { growth, offset, noise }) = step {
+            let [growth, offset, noise] = [growth, offset, noise].map(Interval::point);
+            // From below: a growth is known from above.
+            let rate = -growth.ln() / period;
+            found.slowest = found.slowest.min(rate.lo());
+            found.rates += rate;
+            found.runs = Some([growth * run + offset, growth * read + offset + noise].map(Interval::hi));
+        }
     });
-    Ok(done.map(|done| {
-        let last = done.map_err(|ends| why(scenario, rate, &ends))?;
-        let first = found.first.clone().unwrap_or_else(|| last.clone());
-        let [run, read] = found.runs.unwrap_or([0.0; 2]).map(Interval::point);
-        found.at(&last, run);
-        raise(&mut found.tracking, on_reference(request.periods, &last, read));
-        let shifted = |i: usize| {
-            let unit = |k: usize| if i == k { Interval::ONE } else { Interval::ZERO };
-            of.started(&(0..4 * n).map(unit).collect::<Vec<_>>())
-        };
-        // As far as the run, which need not be in the middle, leaves room.
-        let room = Interval::ONE - Interval::point(first.reach(&begin));
-        Ok(SampledTube {
-            rate: found.slowest,
-            mean_rate: (found.rates / Interval::point(request.periods as f64)).lo(),
-            alone: (0..2 * n).map(|i| (Interval::point(first.alone(&shifted(i))) * room).lo()).collect(),
-            error: found.largest,
-            tracking: found.tracking,
-            readings: sensors.off.clone(),
-            filtered: sensors.filter.is_some(),
-            torque: found.torque,
-            period: seconds,
-            delay,
-            periods: request.periods,
-            ends: [first, last],
-        })
-    }))
+    let ends = match done {
+        None => return Ok(None),
+        Some(Err(ends)) => return Ok(Some(Err(why(scenario, rate, &sensors, &ends)))),
+        Some(Ok(ends)) => ends,
+    };
+    let shifted = |i: usize| {
+        let unit = |k: usize| if i == k { Interval::ONE } else { Interval::ZERO };
+        of.started(&(0..4 * n).map(unit).collect::<Vec<_>>())
+    };
+    // As far as the run, which need not be in the middle, leaves room.
+    let room = Interval::ONE - Interval::point(ends[0].reach(&begin));
+    Ok(Some(Ok(SampledTube {
+        rate: found.slowest,
+        mean_rate: (found.rates / Interval::point(request.periods as f64)).lo(),
+        alone: (0..2 * n).map(|i| (Interval::point(ends[0].alone(&shifted(i))) * room).lo()).collect(),
+        error: found.largest,
+        tracking: found.tracking,
+        readings: sensors.off.clone(),
+        filtered: sensors.filter.is_some(),
+        torque: found.torque,
+        period: seconds,
+        delay,
+        periods: request.periods,
+        ends,
+    })))
 }
 
 /// What is found along a tube.
@@ -175,7 +168,6 @@ struct Findings {
     largest: Vec<f64>,
     tracking: Vec<f64>,
     torque: Vec<f64>,
-    first: Option<Section>,
 }
 
 impl Findings {
@@ -187,13 +179,7 @@ impl Findings {
             largest: vec![0.0; 2 * n],
             tracking: vec![0.0; n],
             torque: vec![0.0; n],
-            first: None,
         }
-    }
-
-    /// An section, with the run at |y| = `run`: motions in it are as far from that as from the middle, and the run's own distance more.
-    fn at(&mut self, section: &Section, run: Interval) {
-        raise(&mut self.largest, section.reaches(Interval::ONE + run));
     }
 }
 
@@ -276,63 +262,55 @@ fn not_looked_at(scenario: &Scenario) -> String {
 }
 
 /// Where a tube ends, in words.
-fn why(scenario: &Scenario, rate: f64, ends: &Ends) -> NoTube {
-    let time = short(ends.period as f64 * scenario.control_period, 5);
-    let small = "a smaller one may have one";
+fn why(scenario: &Scenario, rate: f64, sensors: &Sensors, ends: &Ends) -> NoTube {
+    let time = format!("at t = {} s", short(ends.period as f64 * scenario.control_period, 5));
+    let unit = |unit: Unit, joint: usize| unit.of(scenario.robot.joints[joint].kind).plain;
+    let other = if sensors.off.is_empty() { "a smaller one" } else { "another width" };
     let at = match ends.why {
         Why::NotStable => {
             format!("at the start small errors do not shrink at {} 1/s", engineering(rate))
         }
-        Why::Unbounded => {
-            format!(
-                "at t = {time} s motions in it were not shown to stay bounded for a control period; {small}"
-            )
-        }
-        Why::Grows => {
-            format!("at t = {time} s motions in it were not shown to come closer; {small}")
-        }
-        Why::Widens(reach) => format!(
-            "at t = {time} s it would have to be so wide that links are up to {} rad from the run; {small}",
-            engineering(reach)
+        Why::Unbounded => format!(
+            "{time} motions in it were not shown to stay bounded for a control period; {other} may have one"
+        ),
+        Why::Grows => format!("{time} motions in it were not shown to come closer; {other} may have one"),
+        Why::Widens(link, reach) => format!(
+            "{time} it would have to be so wide that link {} is up to {} {} from the run; {other} may have one",
+            link + 1,
+            engineering(reach),
+            unit(units::ANGLE, link)
         ),
         Why::Missed => {
             format!(
-                "at t = {time} s rounding of its middle is as much as motions come closer by; a larger one may have one"
+                "{time} rounding of its middle is as much as motions come closer by; a larger one may have one"
             )
         }
         Why::Beyond(Beyond { limit, joint, found, passes }) => {
-            let joint = joint + 1;
+            let (what, of, who) = match limit {
+                Limit::Torque => ("the torque", units::TORQUE, "and the limit is"),
+                Limit::TorqueStep => {
+                    ("a control period's change of the torque", units::TORQUE, "and the limit is")
+                }
+                Limit::Highest => ("a reading", units::ANGLE, BELIEVES),
+                Limit::Lowest => ("minus a reading", units::ANGLE, BELIEVES),
+                Limit::Speed => ("a reading of the speed", units::SPEED, BELIEVES),
+                Limit::Deflection => ("a reading of the deflection", units::ANGLE, BELIEVES),
+                Limit::Jump => ("a control period's change of a reading", units::ANGLE, BELIEVES),
+                Limit::Travel => (
+                    "what the other side or the reference moves while a reading may stay the same",
+                    units::ANGLE,
+                    "and the guard takes it to be frozen from",
+                ),
+            };
             let (found, passes) = (short(found, 5), short(passes, 5));
-            match limit {
-                Limit::Torque => format!(
-                    "at t = {time} s the torque of joint {joint} may come to {found} N m, beyond its limit of {passes} N m"
-                ),
-                Limit::TorqueStep => format!(
-                    "at t = {time} s the torque of joint {joint} may change by {found} N m from one control instant to the next, beyond its limit of {passes} N m"
-                ),
-                Limit::Highest => format!(
-                    "at t = {time} s a reading of joint {joint} may be {found} rad, and the guard believes up to {passes} rad"
-                ),
-                Limit::Lowest => format!(
-                    "at t = {time} s a reading of joint {joint} may be −{found} rad, and the guard believes down to −{passes} rad"
-                ),
-                Limit::Speed => format!(
-                    "at t = {time} s a velocity of joint {joint} may be read as {found} rad/s, and the guard believes up to {passes} rad/s"
-                ),
-                Limit::Deflection => format!(
-                    "at t = {time} s the spring of joint {joint} may be read as wound by {found} rad, and the guard believes up to {passes} rad"
-                ),
-                Limit::Jump => format!(
-                    "at t = {time} s a reading of joint {joint} may change by {found} rad from one control instant to the next, and the guard believes up to {passes} rad"
-                ),
-                Limit::Travel => format!(
-                    "at t = {time} s a reading of joint {joint} may have stayed the same while its other side or the reference moved by {found} rad, and the guard takes it to be frozen from {passes} rad on"
-                ),
-            }
+            let unit = unit(of, joint);
+            format!("{time} {what} of joint {} may come to {found} {unit}, {who} {passes} {unit}", joint + 1)
         }
     };
     NoTube { at }
 }
+
+const BELIEVES: &str = "and the guard believes up to";
 
 /// Whether tubes of the sampled loop are what such a scenario is.
 pub(crate) fn suitable_when_sampled(scenario: &Scenario) -> Result<(), Problems> {

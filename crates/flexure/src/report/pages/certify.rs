@@ -73,9 +73,14 @@ pub fn proof_verdict(
 /// What is proved of the loop in the file, as sampled.
 fn near(summary: &ProofSummary) -> String {
     let Some(SampledTubeSummary::Proved(found)) = &summary.sampled_tube else { return String::new() };
+    let (run, alike) = if found.readings.is_empty() {
+        ("its run", "")
+    } else {
+        ("its run on exact readings", " of the same errors of readings")
+    };
     format!(
-        "Proved of the loop in the file, as sampled: motions that start in a tube around its run, in which links are at most {} {} from it, stay there for all of \
-         it, and come closer at {} 1/s or faster.",
+        "Proved of the loop in the file, as sampled: motions that start in a tube around {run} stay in it at every control instant, links at most {} {} from that run, \
+         and two of them{alike} come closer at {} 1/s or faster.",
         largest(&found.error[..found.tracking.len()]),
         summary.unit(units::ANGLE),
         proved_rate(Some(found.rate))

@@ -325,7 +325,7 @@ fn sampled_tube(found: &SampledTubeSummary, summary: &ProofSummary) -> Vec<Strin
             list(&alone.iter().map(|&e| rounded_down(e, 3)).collect::<Vec<_>>())
         ),
         format!(
-            "sampled      the run's links are within {} {rad} of the reference in its last quarter; |u_m| ≤ {} {torque} in the tube",
+            "sampled      at the control instants of its last quarter the run's links are within {} {rad} of the reference; |u_m| ≤ {} {torque} in the tube",
             at_most(&found.tracking),
             at_most(&found.torque)
         ),

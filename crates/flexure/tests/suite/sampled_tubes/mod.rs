@@ -103,9 +103,27 @@ fn no_tube_is_found_where_there_is_none() {
     limited.plant.unlimited = false;
     limited.robot.limits.torque = vec![5.0, 5.0];
     let none = found(&limited, 1e-5).unwrap_err();
-    assert!(none.at.contains("N m, beyond its limit of 5 N m"), "{}", none.at);
+    assert!(none.at.contains("N m, and the limit is 5 N m"), "{}", none.at);
     let none = found(&scenario("two-link-tanh-smooth", &LOOP), 0.1).unwrap_err();
     assert!(none.at.contains("a smaller one may have one"), "{}", none.at);
+}
+
+/// A run asks its law after its last period, too: what is said of errors and torques is true there, where they are largest.
+#[test]
+fn the_last_instant_counts() {
+    for duration in [0.001_f64, 0.02] {
+        // The simulation's own error is below the tube's width then.
+        let duration_of = format!("duration = {duration}");
+        let scenario = scenario("two-link-linear", &[&duration_of, "integration_tolerance = 1e-12"]);
+        let tube = found(&scenario, 1e-6).unwrap_or_else(|none| panic!("{}", none.at));
+        let runs = readings::run(&scenario);
+        let (q, torques) = runs.last().expect("instants");
+        for (q, most) in q.iter().zip(&tube.tracking) {
+            let part = (q - duration.sin()).abs() / most;
+            assert!((0.99..=1.0).contains(&part), "{duration}: {part} of {most}");
+        }
+        assert!(torques.iter().zip(tube.torque.iter().cycle()).all(|(u, most)| u.abs() <= *most));
+    }
 }
 
 /// Of what is beyond it nothing is said, and which that is.

@@ -34,7 +34,7 @@ fn hardware(changes: &[(&str, &str)]) -> Scenario {
 }
 
 /// The motions of a run at its control instants, from the first, with the torques that its law asks for.
-fn run(scenario: &Scenario) -> Vec<(Vec<f64>, Vec<f64>)> {
+pub fn run(scenario: &Scenario) -> Vec<(Vec<f64>, Vec<f64>)> {
     let n = scenario.robot.joint_count();
     let mut held = scenario.open().expect("a loop");
     let mut observed = Observed::new(n);
@@ -134,12 +134,12 @@ fn keeps_to_its_tube(changes: &[(&str, &str)]) {
 fn guards_that_would_act_are_named() {
     let rejoin = "rejoin_duration = 1.0              # s";
     for (change, what) in [
-        ("torque_rate_limit = [20.0, 20.0]", "may change by"),
-        ("speed = 0.1", "the guard believes up to 0.1 rad/s"),
-        ("deflection = 1e-4", "may be read as wound by"),
-        ("jump = 1e-4", "may change by"),
+        ("torque_rate_limit = [20.0, 20.0]", "period's change of the torque of joint"),
+        ("speed = 0.1", "and the guard believes up to 0.1 rad/s"),
+        ("deflection = 1e-4", "a reading of the deflection of joint"),
+        ("jump = 1e-4", "period's change of a reading of joint"),
         ("frozen_travel = 1e-4", "takes it to be frozen"),
-        ("torque_limit = [0.05, 0.05]", "beyond its limit of 0.05 N m"),
+        ("torque_limit = [0.05, 0.05]", "and the limit is 0.05 N m"),
     ] {
         let limit = "torque_rate_limit = [2000.0, 400.0] # N m/s";
         let from = if change.starts_with("torque_rate") { limit } else { rejoin };

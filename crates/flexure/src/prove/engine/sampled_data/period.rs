@@ -44,6 +44,11 @@ impl HeldLoop<'_> {
         [motion.to_vec(), self.sensors.start(motion, self.period), springs.repeat(self.waiting)].concat()
     }
 
+    /// The torques on their way at `state`, those of all joints for the next to act first [N m].
+    pub fn on_their_way(&self, state: &Spread) -> Spread {
+        state.part(self.before_torques(), self.waiting * self.system.joints())
+    }
+
     /// Numbers of a motion and of what is remembered of readings: torques on their way follow.
     pub fn before_torques(&self) -> usize {
         self.motion() + self.sensors.remembered(self.system.joints())

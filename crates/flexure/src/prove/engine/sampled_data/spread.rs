@@ -5,7 +5,7 @@ use flexure_core::scalar::{Interval, Scalar};
 use crate::linalg::Dense;
 use crate::prove::engine::sampled_data::norm::{around_zero, frobenius};
 
-/// Numbers c + M (y, z) with |y| ≤ 1 and z as [`Sizes`] says; of another y and z, they differ by some N (Δy, Δz), N in the same intervals.
+/// Numbers that are in `center` for y = 0 and z = 0, |y| ≤ 1 and z as [`Sizes`] says; of two y and z, they differ by some M (Δy, Δz), M in `deviations`.
 #[derive(Clone, Debug)]
 pub struct Spread {
     /// c.

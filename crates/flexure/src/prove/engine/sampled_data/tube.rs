@@ -5,6 +5,7 @@ use flexure_core::scalar::{Interval, Scalar};
 use crate::linalg::{Dense, Symmetric, cholesky, lower_inverse, stein};
 use crate::progress::Progress;
 use crate::prove::engine::sampled_data::ahead::Ahead;
+use crate::prove::engine::sampled_data::instant::Instant;
 use crate::prove::engine::sampled_data::norm::{frobenius, spectral};
 use crate::prove::engine::sampled_data::period::{Before, Cuts, HeldLoop, Passage, open_of, passage};
 use crate::prove::engine::sampled_data::section::{Section, inverse_of};
@@ -14,7 +15,7 @@ use crate::prove::engine::sampled_data::watch::{Beyond, Watch};
 #[derive(Clone, Debug)]
 pub struct TubeRequest {
     /// Motion at the first instant.
-    pub start: Vec<f64>,
+    pub start: Vec<Interval>,
     /// Control periods.
     pub periods: usize,
     /// How far link positions may be off at the start in rad, for each link.
@@ -32,6 +33,19 @@ pub struct Step {
     pub offset: f64,
     /// σ, by which readings that are off move the loop.
     pub noise: f64,
+}
+
+/// An instant of a tube.
+#[derive(Clone, Copy, Debug)]
+pub struct At<'a> {
+    /// Which, from 0.
+    pub k: usize,
+    /// Where motions are.
+    pub section: &'a Section,
+    /// The law there.
+    pub law: &'a Instant,
+    /// The period after it; the last instant has none.
+    pub step: Option<Step>,
 }
 
 /// Why a tube ends.
@@ -54,8 +68,8 @@ pub enum Why {
     Grows,
     /// They come closer by more than the middle is rounded.
     Missed,
-    /// Links stay as near the run as was asked for, nearly: how far one of them may be (rad).
-    Widens(f64),
+    /// Links stay as near the run as was asked for, nearly: which does not, by index, and how far it may be in rad.
+    Widens(usize, f64),
     /// Nothing of it is limited or doubted.
     Beyond(Beyond),
 }
@@ -87,21 +101,26 @@ const ALONE: f64 = 0.5;
 /// Half of the box that the loop is linearised over, in rad, rad/s and N m.
 const SMALL: f64 = 1e-12;
 
-/// Where a tube goes: `each` is told of every ellipsoid and of the period after it.
+/// Where a tube begins and ends; `each` is told of every instant.
 pub fn tube(
     of: &HeldLoop<'_>,
     request: &TubeRequest,
     progress: Progress<'_>,
-    each: &mut dyn FnMut(usize, &Section, &Passage, Step),
-) -> Option<Result<Section, Ends>> {
+    each: &mut dyn FnMut(At<'_>),
+) -> Option<Result<[Section; 2], Ends>> {
     let ends = |period: usize, why: Why| Some(Err(Ends { period, why }));
     let shrink = (-request.rate * of.period.midpoint()).exp();
     let Some((mut now, off)) = first(of, request, shrink) else { return ends(0, Why::NotStable) };
+    let begin = now.clone();
+    let begins = now.reach(&of.started(&request.start));
+    if begins.is_nan() || begins > 1.0 {
+        return ends(0, Why::Missed);
+    }
     let (mut cuts, mut ahead, mut watch) = (Cuts::default(), Ahead::default(), Watch::default());
     // Torques beside the law's that hold the tube open anyway leave this much to |η|.
     let count = (off.len() as f64).sqrt();
     let enough: Vec<_> = off.iter().map(|w| w * shares(of).law * (1.0 - shrink) / count).collect();
-    for k in 0..request.periods {
+    for k in 0.. {
         if progress(k as f64 / request.periods as f64).is_break() {
             return None;
         }
@@ -109,15 +128,19 @@ pub fn tube(
             .extents()
             .into_iter()
             .zip(&request.extents)
-            .find(|(extent, asked)| *extent > WIDEST * **asked);
-        if let Some((extent, _)) = reached {
-            return ends(k, Why::Widens(extent));
+            .position(|(extent, asked)| extent > WIDEST * asked);
+        if let Some(link) = reached {
+            return ends(k, Why::Widens(link, now.extents()[link]));
         }
         let before = Before::over(of, &now);
         let t = of.period * Interval::point(k as f64);
         let law = ahead.law(of, t, &before.seen, &before.sizes, &enough);
         if let Some(beyond) = watch.look(of, t, &before, &law) {
             return ends(k, Why::Beyond(beyond));
+        }
+        if k == request.periods {
+            each(At { k, section: &now, law: &law, step: None });
+            break;
         }
         let Some(passage) = cuts.passage(of, &before, &law) else { return ends(k, Why::Unbounded) };
         let Some((next, dropped)) = next(&passage, &off, shrink, shares(of)) else {
@@ -130,11 +153,11 @@ pub fn tube(
             let missed = (Interval::point(growth) + Interval::point(noise)).hi() <= 1.0;
             return ends(k, if missed { Why::Missed } else { Why::Grows });
         }
-        each(k, &now, &passage, step);
+        each(At { k, section: &now, law: &law, step: Some(step) });
         watch.passed(&before, &passage, off.len());
         now = next;
     }
-    Some(Ok(now))
+    Some(Ok([begin, now]))
 }
 
 fn shares(of: &HeldLoop<'_>) -> Shares {
@@ -174,8 +197,7 @@ fn spread(a: &Dense<f64>, columns: &Dense<f64>, others: &[f64], shrink: f64, ope
 /// The first ellipsoid, and the torques that hold the tube open [N m].
 fn first(of: &HeldLoop<'_>, request: &TubeRequest, shrink: f64) -> Option<(Section, Vec<f64>)> {
     let n = of.system.joints();
-    let motion: Vec<_> = request.start.iter().map(|&x| Interval::point(x)).collect();
-    let center: Vec<_> = of.started(&motion).iter().map(|x| x.midpoint()).collect();
+    let center: Vec<_> = of.started(&request.start).iter().map(|x| x.midpoint()).collect();
     let size = center.len();
     let none = Dense::zeros(size, 0);
     let small =

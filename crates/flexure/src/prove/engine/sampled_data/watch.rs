@@ -186,7 +186,8 @@ impl Watch {
             // Motors are held against their springs until now.
             let springs = of.springs(&before.state);
             let change = Spread::sum(&[(Interval::ONE, &law.asked), (minus, &springs)]);
-            return beyond(Limit::Torque, largest(&springs, &law.sizes), &passes.torque)
+            let before = springs.followed_by(&of.on_their_way(&before.state));
+            return beyond(Limit::Torque, largest(&before, &law.sizes), &passes.torque)
                 .or_else(|| beyond(Limit::TorqueStep, largest(&change, &law.sizes), &passes.torque_step));
         };
         let off = &of.sensors.off;
