@@ -35,7 +35,16 @@ pub fn margins(options: &Margins, reading: Reading<'_>, json: bool) -> Result<()
     let chosen = if options.controllers.is_empty() { Vec::new() } else { entrants(&options.controllers)? };
     let scenario = load_scenario_with(&options.scenario, reading)?;
     say(&scenario.warnings);
-    options.sampled_tube.as_ref().map_or(Ok(()), |error| check_tube(&scenario, error))?;
+    if let Some(error) = &options.sampled_tube {
+        if chosen.is_empty() {
+            check_tube(&scenario, error)?;
+        }
+        for entrant in &chosen {
+            let mut scenario = scenario.clone();
+            scenario.controller = entrant.controller(&scenario.robot)?;
+            check_tube(&scenario, error)?;
+        }
+    }
     options.paged.prepare(&scenario.name, "margins", chosen.len().max(1), &[""; 0])?;
     let (loops, is_whole) = {
         let each = [options.budget as f64, RUNS];

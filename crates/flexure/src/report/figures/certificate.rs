@@ -4,7 +4,7 @@
 use super::error_path::ErrorPath;
 use super::run::BOUND;
 use crate::files::Problems;
-use crate::files::number::{engineering, power_of_ten, short, significant};
+use crate::files::number::{engineering, power_of_ten, rounded_down, rounded_up, short, significant};
 use crate::progress::Progress;
 use crate::prove::decay::ROUNDING;
 use crate::prove::robust::Profile;
@@ -111,20 +111,22 @@ struct Set<'a> {
     /// |q̃_i| there, links then motors.
     error: &'a [f64],
     stroke: Stroke,
+    /// To the side on which it still holds.
+    rounded: fn(f64, usize) -> f64,
 }
 
 impl<'a> Told<'a> {
     fn new(summary: &'a ProofSummary) -> Self {
         let region = summary.region.as_ref();
-        let set = |what, stroke| move |(level, error)| Set { what, level, error, stroke };
+        let set = |what, stroke, rounded| move |(level, error)| Set { what, level, error, stroke, rounded };
         let dotted = |index| Stroke { color: hue(index), width: 2.2, dash: &[2.0, 3.0] };
         let invariant = region.and_then(|region| region.level.zip(region.error_at_level.as_deref()));
         let tube = summary.tube.as_ref().map(|tube| (tube.level, tube.error.as_slice()));
         let within = summary.within.as_ref().and_then(|within| within.settles.zip(within.error.as_deref()));
         let levels = [
-            invariant.map(set("invariant", LEVEL)),
-            tube.map(set("tube of the disturbance", dotted(1))),
-            within.map(set("where robots within the tolerances settle", dotted(5))),
+            invariant.map(set("invariant", LEVEL, rounded_down as fn(f64, usize) -> f64)),
+            tube.map(set("tube of the disturbance", dotted(1), rounded_up)),
+            within.map(set("where robots within the tolerances settle", dotted(5), rounded_up)),
         ];
         Self {
             region: region.and_then(|region| region.error.as_deref()),
@@ -151,11 +153,17 @@ impl<'a> Told<'a> {
 
     fn legend(&self) -> Vec<(String, Stroke)> {
         let decay = self.start.zip(self.rate).map(|(_, rate)| {
-            (format!("W(0) e^(−2 · {} t), proved in continuous time", significant(rate, 3)), BOUND)
+            (
+                format!(
+                    "W(0) e^(−2 · {} t), proved in continuous time",
+                    significant(rounded_down(rate, 3), 3)
+                ),
+                BOUND,
+            )
         });
         let region = self.region.map(|errors| (region_in_words(errors), REGION));
-        let levels = self.levels.iter().map(|Set { what, level, stroke, .. }| {
-            (format!("W = {} J, {what}", engineering(*level)), *stroke)
+        let levels = self.levels.iter().map(|Set { what, level, stroke, rounded, .. }| {
+            (format!("W = {} J, {what}", engineering(rounded(*level, 3))), *stroke)
         });
         let funnel = self.funnel.map(|_| {
             ("funnel: link errors under every torque, of every robot asked about".to_owned(), funnel_stroke())

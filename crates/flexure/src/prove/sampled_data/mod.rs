@@ -1,0 +1,188 @@
+//! How far motions of a scenario's sampled loop can be from its run, and how fast they come closer: the law at its control period, with its delay,
+//! its torques held and within limits, on readings in counts and filtered velocities.
+
+mod spoken_of;
+mod words;
+
+use flexure_core::scalar::{Interval, Scalar};
+use serde::Serialize;
+
+use crate::files::Problems;
+use crate::imperfections::stages::split;
+use crate::imperfections::{Delay, Imperfection};
+use crate::progress::Progress;
+use crate::prove::closed_loop::along_reference;
+use crate::prove::engine::sampled_data::period::{Before, HeldLoop};
+use crate::prove::engine::sampled_data::section::Section;
+use crate::prove::engine::sampled_data::tube::{At, Step, TubeRequest, tube};
+use crate::prove::sampled_data::spoken_of::{passes, sensors};
+use crate::prove::sampled_data::words::{not_looked_at, why};
+use crate::sampled;
+use crate::scenario::Scenario;
+
+pub(crate) use spoken_of::suitable_when_sampled;
+
+/// A tube around the run, in which motions come closer. Where readings are off, the run is the one on exact readings.
+#[derive(Clone, Debug, Serialize)]
+pub struct SampledTube {
+    /// Two motions in the tube come closer at this rate in every control period, in its own norms [1/s]; where readings are off, two of the same errors.
+    pub rate: f64,
+    /// On the whole run [1/s].
+    pub mean_rate: f64,
+    /// How far motions that start in the tube are from the run at any control instant, at most: positions in rad, links then motors.
+    pub error: Vec<f64>,
+    /// How far positions of links, then motors, may be off at the start each alone, in rad.
+    pub alone: Vec<f64>,
+    /// How far links are from the reference at the control instants of the last quarter of the file's run, in rad.
+    pub tracking: Vec<f64>,
+    /// How far readings of positions are off at most, links then motors, in rad; empty where they are exact.
+    pub readings: Vec<f64>,
+    /// Whether velocities are filtered differences of readings.
+    pub filtered: bool,
+    /// Largest motor torques |u_m| that the law asks for in the tube [N m].
+    pub torque: Vec<f64>,
+    /// Control period in s.
+    pub period: f64,
+    /// How late torques are in s.
+    pub delay: f64,
+    /// Control periods.
+    pub periods: usize,
+    /// The tube at the first and the last control instant.
+    #[serde(skip)]
+    pub ends: [Section; 2],
+}
+
+/// Why there is none.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NoTube {
+    /// In words with numbers.
+    pub at: String,
+}
+
+/// The rate that is looked for, as a part of the rate at which small errors decay.
+const PART: f64 = 0.6;
+
+/// What is shown of `scenario` in a tube that link positions reach so far in, each its number of `error` in rad. None where `progress` breaks it off.
+///
+/// # Errors
+/// Where nothing can be shown of such a loop: with the place and the reason.
+pub fn sampled_tube(
+    scenario: &Scenario,
+    error: &[f64],
+    progress: Progress<'_>,
+) -> Result<Option<Result<SampledTube, NoTube>>, Problems> {
+    suitable_when_sampled(scenario)?;
+    let none = |at: String| Ok(Some(Err(NoTube { at })));
+    let rate = match sampled::probe(scenario)? {
+        Some(found) if found.stable => PART * found.rate,
+        Some(_) => return none("small errors do not shrink in it".to_owned()),
+        None => return none(not_looked_at(scenario)),
+    };
+    let n = scenario.robot.joint_count();
+    let system = along_reference(scenario)?;
+    let delays = || scenario.imperfections.iter().filter_map(Imperfection::of::<Delay>);
+    let (delay, seconds) = (delays().map(Delay::total).sum::<f64>(), scenario.control_period);
+    let period = scenario.bounds(seconds);
+    let (waiting, offset) = split(delay, seconds);
+    let exact = delays().fold(Interval::ZERO, |sum, delay| {
+        sum + scenario.bounds(delay.computation) + scenario.bounds(delay.actuation)
+    });
+    let whole_periods = Interval::point(waiting.saturating_sub(1) as f64) * period;
+    let passes = passes(scenario);
+    let sensors = sensors(scenario);
+    let of = HeldLoop {
+        system: &*system,
+        sensors: &sensors,
+        period,
+        waiting,
+        offset: (offset > 0.0).then(|| exact - whole_periods),
+        passes: &passes,
+    };
+    let initial = &scenario.initial;
+    // The run begins at the decimals of the file, with the springs holding the links (`simulate::assembly`).
+    let start = [&initial.q_l, &initial.q_m, &initial.dq_l, &initial.dq_m].into_iter().flatten();
+    let start: Vec<_> = start.map(|&x| scenario.bounds(x)).collect();
+    let begin = of.started(&start);
+    let request = TubeRequest { periods: scenario.periods() as usize, extents: error.to_vec(), rate, start };
+    let mut found = Findings::new(n);
+    let done = tube(&of, &request, progress, &mut |At { k, section, law, step }| {
+        let [run, read] = found.runs.unwrap_or_else(|| [section.reach(&begin); 2]).map(Interval::point);
+        raise(&mut found.largest, section.reaches(Interval::ONE + run));
+        raise(&mut found.torque, law.largest());
+        if k == 0 {
+            let on_their_way = of.on_their_way(&Before::over(&of, section).state).ranges(&law.sizes);
+            let on_their_way: Vec<_> = on_their_way.iter().map(|u| u.magnitude()).collect();
+            on_their_way.chunks(n).for_each(|torques| raise(&mut found.torque, torques.iter().copied()));
+        }
+        if 4 * k >= 3 * request.periods {
+            let reference = system.reference(period * Interval::point(k as f64));
+            let off = reference.iter().zip(&section.center).zip(section.reaches(read));
+            let off = off.map(|((q, &c), reach)| {
+                (Interval::point((Interval::point(c) - q[0]).magnitude()) + Interval::point(reach)).hi()
+            });
+            raise(&mut found.tracking, off);
+        }
+        if let Some(Step { growth, offset, noise }) = step {
+            let [growth, offset, noise] = [growth, offset, noise].map(Interval::point);
+            // From below: a growth is known from above.
+            let rate = -growth.ln() / period;
+            found.slowest = found.slowest.min(rate.lo());
+            found.rates += rate;
+            found.runs = Some([growth * run + offset, growth * read + offset + noise].map(Interval::hi));
+        }
+    });
+    let ends = match done {
+        None => return Ok(None),
+        Some(Err(ends)) => return Ok(Some(Err(why(scenario, rate, &sensors, &ends)))),
+        Some(Ok(ends)) => ends,
+    };
+    let shifted = |i: usize| {
+        let unit = |k: usize| if i == k { Interval::ONE } else { Interval::ZERO };
+        of.started(&(0..4 * n).map(unit).collect::<Vec<_>>())
+    };
+    // As far as the run, which need not be in the middle, leaves room.
+    let room = Interval::ONE - Interval::point(ends[0].reach(&begin));
+    Ok(Some(Ok(SampledTube {
+        rate: found.slowest,
+        mean_rate: (found.rates / Interval::point(request.periods as f64)).lo(),
+        alone: (0..2 * n).map(|i| (Interval::point(ends[0].alone(&shifted(i))) * room).lo()).collect(),
+        error: found.largest,
+        tracking: found.tracking,
+        readings: sensors.off.clone(),
+        filtered: sensors.filter.is_some(),
+        torque: found.torque,
+        period: seconds,
+        delay,
+        periods: request.periods,
+        ends,
+    })))
+}
+
+/// What is found along a tube.
+struct Findings {
+    slowest: f64,
+    /// The sum of the rates of all periods.
+    rates: Interval,
+    /// |y| of the run on exact readings, which is only nearly the middle, and of that of the file.
+    runs: Option<[f64; 2]>,
+    largest: Vec<f64>,
+    tracking: Vec<f64>,
+    torque: Vec<f64>,
+}
+
+impl Findings {
+    fn new(n: usize) -> Self {
+        Self {
+            slowest: f64::INFINITY,
+            rates: Interval::ZERO,
+            runs: None,
+            largest: vec![0.0; 2 * n],
+            tracking: vec![0.0; n],
+            torque: vec![0.0; n],
+        }
+    }
+}
+
+fn raise(most: &mut [f64], with: impl IntoIterator<Item = f64>) {
+    most.iter_mut().zip(with).for_each(|(most, x)| *most = most.max(x));
+}

@@ -1,0 +1,67 @@
+//! Where a tube ends, in words.
+
+use crate::files::number::{engineering, short};
+use crate::prove::engine::sampled_data::sensors::Sensors;
+use crate::prove::engine::sampled_data::tube::{Ends, Why};
+use crate::prove::engine::sampled_data::watch::{Beyond, Limit};
+use crate::prove::sampled_data::NoTube;
+use crate::sampled;
+use crate::scenario::Scenario;
+use crate::units::{self, Unit};
+
+const BELIEVES: &str = "and the guard believes up to";
+
+/// Why nobody looks at small errors.
+pub fn not_looked_at(scenario: &Scenario) -> String {
+    let why = sampled::not_looked_at(scenario).unwrap_or_default();
+    why.strip_prefix("sampled loop: ").map_or(why.clone(), str::to_owned)
+}
+
+/// Where a tube ends, in words.
+pub fn why(scenario: &Scenario, rate: f64, sensors: &Sensors, ends: &Ends) -> NoTube {
+    let time = format!("at t = {} s", short(ends.period as f64 * scenario.control_period, 5));
+    let unit = |unit: Unit, joint: usize| unit.of(scenario.robot.joints[joint].kind).plain;
+    let other = if sensors.off.is_empty() { "a smaller one" } else { "another width" };
+    let at = match ends.why {
+        Why::NotStable => {
+            format!("at the start small errors do not shrink at {} 1/s", engineering(rate))
+        }
+        Why::Unbounded => format!(
+            "{time} motions in it were not shown to stay bounded for a control period; {other} may have one"
+        ),
+        Why::Grows => format!("{time} motions in it were not shown to come closer; {other} may have one"),
+        Why::Widens(link, reach) => format!(
+            "{time} it would have to be so wide that link {} is up to {} {} from the run; {other} may have one",
+            link + 1,
+            engineering(reach),
+            unit(units::ANGLE, link)
+        ),
+        Why::Missed => {
+            format!(
+                "{time} rounding of its middle is as much as motions come closer by; a larger one may have one"
+            )
+        }
+        Why::Beyond(Beyond { limit, joint, found, passes }) => {
+            let (what, of, who) = match limit {
+                Limit::Torque => ("the torque", units::TORQUE, "and the limit is"),
+                Limit::TorqueStep => {
+                    ("a control period's change of the torque", units::TORQUE, "and the limit is")
+                }
+                Limit::Highest => ("a reading", units::ANGLE, BELIEVES),
+                Limit::Lowest => ("minus a reading", units::ANGLE, BELIEVES),
+                Limit::Speed => ("a reading of the speed", units::SPEED, BELIEVES),
+                Limit::Deflection => ("a reading of the deflection", units::ANGLE, BELIEVES),
+                Limit::Jump => ("a control period's change of a reading", units::ANGLE, BELIEVES),
+                Limit::Travel => (
+                    "what the other side or the reference moves while a reading may stay the same",
+                    units::ANGLE,
+                    "and the guard takes it to be frozen from",
+                ),
+            };
+            let (found, passes) = (short(found, 5), short(passes, 5));
+            let unit = unit(of, joint);
+            format!("{time} {what} of joint {} may come to {found} {unit}, {who} {passes} {unit}", joint + 1)
+        }
+    };
+    NoTube { at }
+}
