@@ -72,8 +72,6 @@ pub trait TrackingLoop: Sync {
     /// M_l `a_l` + (C_l + D_l) `v_l` + g_l [N m]: what the springs have to give where the links are at `q_l` in rad, move at `v_l` [rad/s] and speed
     /// up by `a_l` [rad/s²].
     fn link_load(&self, q_l: &[Slope], v_l: &[Slope], a_l: &[Slope]) -> Vec<Slope>;
-    /// How the links speed up [rad/s²] where links and motors are at `q_l` and `q_m` in rad and the links move at `v_l` [rad/s].
-    fn link_accelerations(&self, q_l: &[Slope], q_m: &[Slope], v_l: &[Slope]) -> Vec<Slope>;
     /// M_l⁻¹ [1/(kg m²)] at `q_l` in rad.
     fn inverse_mass(&self, q_l: &[Interval]) -> Symmetric<Interval>;
     /// The lower triangle of M_l⁻¹ [1/(kg m²)], row by row, with its derivatives at `q_l` in rad.
@@ -160,11 +158,6 @@ where
         let [q_l, v_l, a_l] = [q_l, v_l, a_l].map(vector::<Slope, N>);
         let load = self.robot.links.inverse_dynamics(&q_l, &v_l, &v_l, &a_l);
         self.list(&(load + self.robot.link_damping.diag_mul(&v_l)))
-    }
-
-    fn link_accelerations(&self, q_l: &[Slope], q_m: &[Slope], v_l: &[Slope]) -> Vec<Slope> {
-        let [q_l, q_m, v_l] = [q_l, q_m, v_l].map(vector);
-        self.list(&self.robot.link_acceleration(&Motion { q_l, q_m, v_l, v_m: Vector::ZERO }))
     }
 
     fn inverse_mass(&self, q_l: &[Interval]) -> Symmetric<Interval> {

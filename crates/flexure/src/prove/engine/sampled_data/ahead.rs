@@ -16,8 +16,11 @@ const LONGEST: f64 = 64.0;
 const MORE: f64 = 1.25;
 
 /// Of what a tube can take to be left open, boxes for instants to come may leave this part, and are made for more of them where they leave that.
-const MOST: f64 = 0.1;
+const MOST: f64 = 0.4;
 const LITTLE: f64 = 0.05;
+
+/// Instants for which each has its own box where one for two left too much open.
+const REST: u32 = 16;
 
 /// The columns by which motions are seen, those of readings as long as they may be off.
 fn by(seen: &Spread, sizes: &Sizes) -> Dense<f64> {
@@ -35,6 +38,8 @@ pub struct Ahead {
     before: Option<Vec<f64>>,
     /// Instants that boxes are made for, beside the one where they are.
     instants: f64,
+    /// Instants until boxes for more than one are tried again.
+    rest: u32,
 }
 
 impl Ahead {
@@ -73,13 +78,15 @@ impl Ahead {
             let bends = Bends::over(of.system, times, over, &frame);
             let instant = middle.over(seen, sizes, &bends);
             if self.instants == 0.0 || within(&instant, MOST) {
-                if within(&instant, LITTLE) {
+                if self.rest == 0 && within(&instant, LITTLE) {
                     self.instants = (2.0 * self.instants).clamp(1.0, LONGEST);
                 }
+                self.rest = self.rest.saturating_sub(1);
                 self.bends = Some(bends);
                 return instant;
             }
             self.instants = (0.5 * self.instants).floor();
+            self.rest = if self.instants == 0.0 { REST } else { 0 };
         }
     }
 }

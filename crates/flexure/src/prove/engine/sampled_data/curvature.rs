@@ -1,13 +1,13 @@
 //! How the slopes of the links' accelerations change over a box.
 
-use flexure_core::scalar::{Interval, Jet, Scalar};
+use flexure_core::scalar::{Interval, Scalar};
 
 use crate::linalg::{Dense, Symmetric};
-use crate::prove::engine::envelope::closed_loop::{Slope, TrackingLoop};
+use crate::prove::engine::envelope::closed_loop::TrackingLoop;
+use crate::prove::engine::sampled_data::links::{Links, springs};
 use crate::prove::engine::sampled_data::norm::around_zero;
-use crate::prove::engine::sampled_data::second::second_derivatives;
 
-/// Second derivatives of a_l by x = (q_l, q_m, q̇_l) over a box.
+/// Second derivatives of a_l by x = (q_l, δ, q̇_l) over a box.
 #[derive(Clone, Debug)]
 pub struct Curvature {
     /// The box.
@@ -17,19 +17,13 @@ pub struct Curvature {
 }
 
 impl Curvature {
-    /// Over the box `x` of (q_l, q_m, q̇_l).
-    pub fn over(system: &dyn TrackingLoop, x: Vec<Interval>) -> Self {
+    /// Over the box `x` of (q_l, δ, q̇_l); none where masses are not known there.
+    pub fn over(system: &dyn TrackingLoop, x: Vec<Interval>) -> Option<Self> {
         let n = x.len() / 3;
-        let along = |directions: &[usize]| -> Vec<Interval> {
-            let slope = |(i, &x): (usize, &Interval)| {
-                let rate = if directions.contains(&i) { Interval::ONE } else { Interval::ZERO };
-                Jet::new([x, rate, Interval::ZERO])
-            };
-            let x: Vec<Slope> = x.iter().enumerate().map(slope).collect();
-            let accelerations = system.link_accelerations(&x[..n], &x[n..2 * n], &x[2 * n..]);
-            accelerations.iter().map(|a| a.coefficient(2)).collect()
-        };
-        Self { of: second_derivatives(x.len(), &along), over: x }
+        let links = Links::over(system, &x[..n])?;
+        let spring = springs(system, &x[n..2 * n]);
+        let a_l = links.accelerations(system, &x[..n], &x[2 * n..], &spring);
+        Some(Self { of: links.bends(system, &x[..n], &x[2 * n..], &a_l), over: x })
     }
 
     /// Whether the box has all of `x`.
@@ -37,14 +31,22 @@ impl Curvature {
         self.over.iter().zip(x).all(|(over, x)| over.contains_interval(*x))
     }
 
-    /// What the slopes `rates` at the middles of `x`, a box in this one, are anywhere in it.
-    pub fn around(&self, rates: &Dense<Interval>, x: &[Interval]) -> Dense<Interval> {
-        let off: Vec<_> = x.iter().map(|&x| (x - Interval::point(x.midpoint())).magnitude()).collect();
-        Dense::from_fn(rates.rows().len(), rates.columns(), |i, j| {
-            let change = off.iter().enumerate().fold(Interval::ZERO, |sum, (k, &off)| {
-                sum + Interval::point(self.of[i].at(j, k).magnitude()) * Interval::point(off)
-            });
-            rates[(i, j)] + around_zero(change.hi())
+    /// What the slopes `at` a motion are wherever motions are off it by `off` at most, from above.
+    pub fn around(&self, at: &Dense<Interval>, off: &[f64]) -> Dense<Interval> {
+        Dense::from_fn(at.rows().len(), at.columns(), |i, j| {
+            let bend = |k: usize| Interval::point(self.of[i].at(j, k).magnitude());
+            let change = off
+                .iter()
+                .enumerate()
+                .fold(Interval::ZERO, |sum, (k, &off)| sum + bend(k) * Interval::point(off));
+            at[(i, j)] + around_zero(change.hi())
+        })
+    }
+
+    /// How the slopes change where a motion does by `by`, as intervals of second derivatives have it.
+    pub fn along(&self, by: &[Interval]) -> Dense<Interval> {
+        Dense::from_fn(self.of.len(), by.len(), |i, j| {
+            by.iter().enumerate().fold(Interval::ZERO, |sum, (k, &by)| sum + self.of[i].at(j, k) * by)
         })
     }
 }

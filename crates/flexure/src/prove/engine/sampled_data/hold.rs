@@ -6,25 +6,21 @@ use crate::linalg::Dense;
 use crate::prove::engine::envelope::closed_loop::TrackingLoop;
 use crate::prove::engine::sampled_data::curvature::Curvature;
 use crate::prove::engine::sampled_data::flow::flow;
+use crate::prove::engine::sampled_data::links::Links;
 use crate::prove::engine::sampled_data::norm::around_zero;
-use crate::prove::engine::sampled_data::robot::{Links, Path};
+use crate::prove::engine::sampled_data::path::Path;
 use crate::prove::engine::sampled_data::spread::{Sizes, Spread};
-
-/// How often a box is made larger until no motion leaves it.
-const WIDENED: u32 = 12;
-
-/// By how much, relatively.
-const WIDER: f64 = 0.1;
+use crate::prove::engine::sampled_data::stretch::{enclosed, stretch};
 
 /// The robot whose motions (q_l, q_m, q̇_l, q̇_m) are `motion` when the torques `torque` begin to be held, `length` in s after that, by so many equal
 /// `pieces`; none where a piece is too long.
 ///
 /// In a piece every motion x is in a box, by Picard's theorem. A polynomial p(t) near the middle one leaves r(t) of the equations over. With the rates of change
-/// ∂f/∂x, ∂f/∂u over the box, d/dt (x − p) = J(t) (x − p) + J_u(t) (u − u_p) + r(t) with J(t), J_u(t) in those intervals (mean values, row by row); two motions differ by a
-/// solution of the same equation without r(t).
+/// ∂f/∂x, ∂f/∂u where motions and the path are at a time t, d/dt (x − p) = J(t) (x − p) + J_u (u − u_p) + r(t) with J(t) in those intervals (mean values, row by row);
+/// two motions differ by a solution of the same equation without r(t).
 pub fn held(
     system: &dyn TrackingLoop,
-    motion: Spread,
+    motion: &Spread,
     torque: &Spread,
     sizes: &Sizes,
     length: Interval,
@@ -33,61 +29,67 @@ pub fn held(
     let length = length / Interval::point(pieces as f64);
     let u_m = torque.ranges(sizes);
     let mut curvature = None;
-    (0..pieces).try_fold(motion, |motion, _| {
-        piece(system, &motion, torque, (sizes, &u_m), (length, pieces), &mut curvature)
-    })
+    let end = (0..pieces).try_fold(bent(motion, -1.0), |motion, k| {
+        piece(system, &motion, torque, (sizes, &u_m), (length, pieces - 1 - k), &mut curvature)
+    })?;
+    Some(bent(&end, 1.0))
 }
 
-/// One of so many equal pieces of `length` in s, whose second derivatives are those of `curvature` as long as that covers them.
+/// The second quarter of the numbers, and `times` the first: (q_l, δ, …) of (q_l, q_m, …) with −1, and back with 1.
+fn bent(motion: &Spread, times: f64) -> Spread {
+    let n = motion.center.len() / 4;
+    let by = Interval::point(times);
+    let of = |i: usize, at: &dyn Fn(usize) -> Interval| {
+        if (n..2 * n).contains(&i) { at(i) + by * at(i - n) } else { at(i) }
+    };
+    let all = &motion.deviations;
+    Spread {
+        center: (0..4 * n).map(|i| of(i, &|i| motion.center[i])).collect(),
+        deviations: Dense::from_fn(4 * n, all.columns(), |i, j| of(i, &|i| all[(i, j)])),
+    }
+}
+
+/// A piece of `length` in s from motions (q_l, δ, q̇_l, q̇_m), δ = q_m − q_l, with so many as long `left` after it. Second derivatives are those of `curvature` as long as
+/// that covers them.
 fn piece(
     system: &dyn TrackingLoop,
     motion: &Spread,
     torque: &Spread,
     (sizes, u_m): (&Sizes, &[Interval]),
-    (length, pieces): (Interval, usize),
+    (length, left): (Interval, usize),
     curvature: &mut Option<Curvature>,
 ) -> Option<Spread> {
     let (size, half, n) = (motion.center.len(), motion.center.len() / 2, u_m.len());
-    let (ranges, about) = enclosed(system, &motion.ranges(sizes), u_m, length)?;
+    let starts = motion.ranges(sizes);
+    let (ranges, about) = enclosed(system, &starts, u_m, length)?;
     let middle = |all: &[Interval]| all.iter().map(|x| x.midpoint()).collect::<Vec<_>>();
     let u_p = middle(&torque.center);
     let path = Path::from(system, &about.middle, &middle(&motion.center), &u_p);
     // Mean values are taken between motions and the path.
-    let meanwhile = path.at(Interval::ZERO.hull(length));
-    let ranges: Vec<_> = ranges.iter().zip(&meanwhile).map(|(x, p)| x.hull(*p)).collect();
-    let (links, accelerations) = accelerated(system, &ranges, u_m)?;
+    let begin = path.at(Interval::ZERO);
+    let stretch = stretch(system, (&starts, &begin), &ranges, (&path, u_m), length)?;
 
     let u_p: Vec<_> = u_p.iter().map(|&u| Interval::point(u)).collect();
     let inertia = system.drive().motor_inertia;
     // Accelerations by torques that are left over.
     let rest = |left: Vec<Interval>| -> Vec<Interval> {
         let of_motors = left[n..].iter().zip(&inertia).map(|(&x, &inertia)| x / inertia);
-        links.inverse_mass.apply(&left).into_iter().chain(of_motors).collect()
+        stretch.links.inverse_mass.apply(&left).into_iter().chain(of_motors).collect()
     };
     let [at_start, later] = path.left_over(system, &u_p, length).map(rest);
-    let begin = path.at(Interval::ZERO);
-    let mut path_rates = begin[half..].to_vec();
-    path_rates.extend(path.accelerations().iter().zip(&at_start).map(|(&a, &r)| a + r));
+    let mut path_rates = path.rates(Interval::ZERO);
+    path_rates[half..].iter_mut().zip(&at_start).for_each(|(rate, &left)| *rate += left);
 
-    // Wide enough for the pieces that follow.
-    let of_links = &ranges[..3 * n];
+    let of_links = &stretch.ranges[..3 * n];
     if !curvature.as_ref().is_some_and(|curvature| curvature.covers(of_links)) {
-        let roomy = |x: &Interval| *x + around_zero(pieces as f64 * x.width());
-        *curvature = Some(Curvature::over(system, of_links.iter().map(roomy).collect()));
+        let left = length * Interval::point(left as f64);
+        *curvature = Some(Curvature::over(system, stretch.onwards(3 * n, left))?);
     }
-    let everywhere = links.rates(system, &ranges[..n], &ranges[half..half + n], &accelerations[..n]);
-    let points: Vec<_> = ranges.iter().map(|x| Interval::point(x.midpoint())).collect();
-    let (at_points, a) = accelerated(system, &points, u_m)?;
-    let rates = at_points.rates(system, &points[..n], &points[half..half + n], &a[..n]);
-    let around = curvature.as_ref()?.around(&rates, of_links);
-    // Both enclose them.
-    let rates = Dense::from_fn(n, 3 * n, |i, j| {
-        everywhere[(i, j)].intersection(around[(i, j)]).unwrap_or(everywhere[(i, j)])
-    });
+    let slopes = stretch.slopes(system, u_m, curvature.as_ref()?, length)?;
 
-    let flow = flow(system, &rates, &path_rates, length)?;
     let beside = |x: &[Interval], p: &[Interval]| x.iter().zip(p).map(|(&x, &p)| x - p).collect::<Vec<_>>();
     let start = [beside(&motion.center, &begin), beside(&torque.center, &u_p)].concat();
+    let flow = flow(system, &slopes, &path_rates, &start, length)?;
     let (end, moved) = (path.at(length), flow.at_end.apply(&start));
     let late = flow.between.map(Interval::point);
     let later: Vec<_> = later.iter().map(|r| Interval::point(r.magnitude())).collect();
@@ -95,54 +97,12 @@ fn piece(
     let center = |i: usize| {
         let by_path = end[i] + moved[i] + around_zero((length * late[i]).hi());
         // By mean values between motions and where the path begins, instead: better where a damper is faster than a polynomial.
-        let by_start = begin[i] + moved[i] + flow.at_end[(i, size + n)];
+        let by_start = begin[i] + flow.carried[i];
         by_path.intersection(by_start).unwrap_or(by_path)
     };
     let part = |from: usize, count: usize| Dense::from_fn(size, count, |i, j| flow.at_end[(i, from + j)]);
     let deviations = &(&part(0, size) * &motion.deviations) + &(&part(size, n) * &torque.deviations);
     Some(Spread { center: (0..size).map(center).collect(), deviations })
-}
-
-/// What the links are over the box `x` of motions, and how links and motors speed up there under the torques `u_m` [rad/s²].
-fn accelerated(
-    system: &dyn TrackingLoop,
-    x: &[Interval],
-    u_m: &[Interval],
-) -> Option<(Links, Vec<Interval>)> {
-    let (half, n, drive) = (x.len() / 2, u_m.len(), system.drive());
-    let links = Links::over(system, &x[..n])?;
-    let spring: Vec<_> = (0..n).map(|i| drive.stiffness[i] * (x[n + i] - x[i])).collect();
-    let motor =
-        |i: usize| (u_m[i] - spring[i] - drive.motor_damping[i] * x[half + n + i]) / drive.motor_inertia[i];
-    let mut all = links.accelerations(system, &x[..n], &x[half..half + n], &spring);
-    all.extend((0..n).map(motor));
-    Some((links, all))
-}
-
-/// A box that no motion from `start` leaves for `length` in s, and the links there; none if none is found.
-fn enclosed(
-    system: &dyn TrackingLoop,
-    start: &[Interval],
-    u_m: &[Interval],
-    length: Interval,
-) -> Option<(Vec<Interval>, Links)> {
-    let half = start.len() / 2;
-    let meanwhile = Interval::ZERO.hull(length);
-    let mut tried = start.to_vec();
-    for _ in 0..WIDENED {
-        let (links, accelerations) = accelerated(system, &tried, u_m)?;
-        let rate = |i: usize| if i < half { tried[half + i] } else { accelerations[i - half] };
-        let next: Vec<_> = (0..start.len()).map(|i| start[i] + meanwhile * rate(i)).collect();
-        if next.iter().zip(&tried).all(|(next, tried)| tried.contains_interval(*next)) {
-            // No motion leaves it, nor what it is mapped to.
-            return Some((next, links));
-        }
-        let wider = |(next, tried): (&Interval, &Interval)| {
-            tried.hull(*next + around_zero(WIDER * next.width() + f64::MIN_POSITIVE))
-        };
-        tried = next.iter().zip(&tried).map(wider).collect();
-    }
-    None
 }
 
 /// In a piece, the fastest rate of springs and link dampers times its length is at most this, and that of motor dampers at most this.
@@ -166,4 +126,111 @@ pub fn pace(system: &dyn TrackingLoop, motion: &[Interval], length: Interval) ->
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 1 to 1e6")]
     let pieces = (length.hi() * fastest).ceil().clamp(1.0, 1e6) as usize;
     pieces
+}
+
+#[cfg(test)]
+mod tests {
+    use flexure_core::scalar::Interval;
+
+    use super::{Dense, Links, Sizes, Spread, TrackingLoop, held, pace};
+    use crate::prove::closed_loop::along_reference;
+    use crate::prove::engine::envelope::closed_loop::Slope;
+    use crate::prove::engine::sampled_data::links::springs;
+    use crate::scenario::Scenario;
+
+    /// How fast a motion (q_l, q_m, q̇_l, q̇_m) changes under the torques `u_m`.
+    fn rates(system: &dyn TrackingLoop, x: &[f64], u_m: &[f64]) -> Vec<f64> {
+        let (n, drive) = (u_m.len(), system.drive());
+        let points: Vec<_> = x.iter().map(|&x| Interval::point(x)).collect();
+        let bent: Vec<_> = (0..n).map(|i| Interval::point(x[n + i] - x[i])).collect();
+        let spring = springs(system, &bent);
+        let links = Links::over(system, &points[..n]).unwrap();
+        let links = links.accelerations(system, &points[..n], &points[2 * n..3 * n], &spring);
+        let motor = |i: usize| {
+            let torque = u_m[i] - spring[i].midpoint() - drive.motor_damping[i].midpoint() * x[3 * n + i];
+            torque / drive.motor_inertia[i].midpoint()
+        };
+        let links = links.iter().map(|a| a.midpoint());
+        x[2 * n..].iter().copied().chain(links).chain((0..n).map(motor)).collect()
+    }
+
+    /// Where the motion is after `length` in s, by the classical method of Runge and Kutta.
+    fn moved(system: &dyn TrackingLoop, x: &[f64], u_m: &[f64], length: f64) -> Vec<f64> {
+        let (steps, mut x) = (24, x.to_vec());
+        let h = length / f64::from(steps);
+        for _ in 0..steps {
+            let at = |way: &[f64], part: f64| {
+                let there: Vec<_> = x.iter().zip(way).map(|(x, way)| x + part * h * way).collect();
+                rates(system, &there, u_m)
+            };
+            let first = at(&vec![0.0; x.len()], 0.0);
+            let second = at(&first, 0.5);
+            let third = at(&second, 0.5);
+            let fourth = at(&third, 1.0);
+            for i in 0..x.len() {
+                x[i] += h / 6.0 * (first[i] + 2.0 * second[i] + 2.0 * third[i] + fourth[i]);
+            }
+        }
+        x
+    }
+
+    /// Seven joints, a millisecond: motions end inside, and those beside end beside them as the slopes of the end by the start say, which are known so closely that the
+    /// robot's slopes half a piece too late or too early would not do.
+    #[test]
+    fn motions_of_seven_joints_end_where_they_do() {
+        let scenario = Scenario::load("panda-tanh-smooth").unwrap();
+        let system = &*along_reference(&scenario).unwrap();
+        let (n, length) = (system.joints(), 1e-3);
+        let wave = |i: usize, by: f64| (by * (i + 1) as f64).sin();
+        let [q_l, v_l] = [1.0, 0.1].map(|size| (0..n).map(|i| size * wave(i, 1.7)).collect::<Vec<_>>());
+        // Springs and motors that hold them, nearly.
+        let slow = |x: &[f64]| x.iter().map(|&x| Slope::value(Interval::point(x))).collect::<Vec<_>>();
+        let load = system.link_load(&slow(&q_l), &slow(&v_l), &slow(&vec![0.1; n]));
+        let drive = system.drive();
+        let bent: Vec<_> =
+            (0..n).map(|i| load[i].coefficient(0).midpoint() / drive.stiffness[i].midpoint()).collect();
+        let q_m: Vec<_> = (0..n).map(|i| q_l[i] + bent[i]).collect();
+        let u_m: Vec<_> = (0..n).map(|i| load[i].coefficient(0).midpoint() + 0.01 * wave(i, 3.1)).collect();
+        let x = [&q_l[..], &q_m, &v_l, &v_l].concat();
+        let points = |x: &[f64]| x.iter().map(|&x| Interval::point(x)).collect::<Vec<_>>();
+        let small = 1e-9;
+        let motion = Spread {
+            center: points(&x),
+            deviations: Dense::identity(4 * n).scaled(small).map(Interval::point),
+        };
+        let torque = Spread { center: points(&u_m), deviations: Dense::zeros(n, 4 * n).map(Interval::point) };
+        let sizes = Sizes { ball: 4 * n, slopes: Vec::new(), most: Vec::new() };
+        let span = Interval::point(length);
+        let pieces = pace(system, &motion.center, span);
+        let found = held(system, &motion, &torque, &sizes, span, pieces).unwrap();
+
+        let wide = |x: Interval, by: f64| x + Interval::new(-by, by).unwrap();
+        let end = moved(system, &x, &u_m, length);
+        for (i, end) in end.iter().enumerate() {
+            assert!(wide(found.center[i], 1e-9).contains(*end), "{i}: {end} not in {:?}", found.center[i]);
+            assert!(found.center[i].width() < 1e-3, "{i}: {:?}", found.center[i]);
+        }
+        // Differences over 1e-4 are off by some 1e-7 of the largest slopes, which are 1 for positions and some thousand times as large for velocities by positions.
+        let mut widest = 0.0_f64;
+        for j in (0..4 * n).step_by(5) {
+            let beside = |by: f64| {
+                let mut x = x.clone();
+                x[j] += by;
+                moved(system, &x, &u_m, length)
+            };
+            let [ahead, behind] = [1e-4, -1e-4].map(beside);
+            let largest = |rows: std::ops::Range<usize>| {
+                rows.map(|i| (ahead[i] - behind[i]).abs() / 2e-4).fold(0.0, f64::max)
+            };
+            let scales = [largest(0..2 * n), largest(2 * n..4 * n)];
+            for i in 0..4 * n {
+                let slope = (ahead[i] - behind[i]) / 2e-4;
+                let scale = scales[i / (2 * n)];
+                let said = found.deviations[(i, j)] * Interval::point(1.0 / small);
+                assert!(wide(said, 1e-6 * scale).contains(slope), "{i} {j}: {slope} not in {said:?}");
+                widest = widest.max(said.width() / scale);
+            }
+        }
+        assert!(widest < 2e-4, "{widest}");
+    }
 }

@@ -53,7 +53,7 @@ impl Bends {
     /// Over the `times` in s and the box `over` of motions.
     pub fn over(system: &dyn TrackingLoop, times: Interval, over: Vec<Interval>, frame: &Frame) -> Self {
         let q_ld = reference(system, times);
-        let of = second_derivatives(over.len(), &|directions| {
+        let of = second_derivatives(over.len(), &|_, _| false, &|directions| {
             let torques = along(system, &q_ld, &over, &columns(&frame.lower, directions));
             torques.iter().map(|u| u.coefficient(2)).collect()
         });

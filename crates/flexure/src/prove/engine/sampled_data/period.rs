@@ -103,6 +103,8 @@ pub struct Passage {
 pub struct Cuts {
     /// So many times as many as are needed at least.
     finer: usize,
+    /// What intervals leave open of all numbers together, as a part of their extents, that is not worth more pieces.
+    closed: f64,
     /// What was open when finer pieces did not help.
     floor: f64,
 }
@@ -110,8 +112,12 @@ pub struct Cuts {
 /// Pieces are halved at most to this part.
 const FINEST: usize = 32;
 
-/// What intervals leave open of all numbers together, as a part of their extents, that is not worth more pieces.
-const CLOSED: f64 = 2e-4;
+/// With a decay by 1 − λ in a period, so many times (1 − λ)^(3/2) are closed: squares of extents grow by that of what is open, over the share of 1 − λ that it has, and shrink by
+/// some 1 − λ.
+const CLOSED: f64 = 0.25;
+
+/// What the middle may be off by takes its part of 1 − λ once, but does not make the next ellipsoid wider: so much of it counts.
+const MISSED: f64 = 0.1;
 
 /// Halves that leave open more than this part of what there was do not help.
 const HELPED: f64 = 0.9;
@@ -119,14 +125,13 @@ const HELPED: f64 = 0.9;
 /// Pieces that did not help are tried again when so many times as much is open.
 const AGAIN: f64 = 1.25;
 
-impl Default for Cuts {
-    /// As few as are needed.
-    fn default() -> Self {
-        Self { finer: 1, floor: CLOSED }
-    }
-}
-
 impl Cuts {
+    /// As few as are needed, where errors shrink by the factor `shrink` in a period.
+    pub fn new(shrink: f64) -> Self {
+        let closed = CLOSED * (1.0 - shrink).powf(1.5);
+        Self { finer: 1, closed, floor: closed }
+    }
+
     /// The period after `before` under `law`, in pieces that leave little open, as far as pieces can.
     pub fn passage(&mut self, of: &HeldLoop<'_>, before: &Before, law: &Instant) -> Option<Passage> {
         let mut found = passage(of, before, law, self.finer)?;
@@ -135,7 +140,7 @@ impl Cuts {
             let Some(halved) = passage(of, before, law, 2 * self.finer) else { break };
             let left = openness(&halved);
             if left > HELPED * open {
-                self.floor = open.max(CLOSED);
+                self.floor = open.max(self.closed);
                 break;
             }
             (found, open) = (halved, left);
@@ -159,10 +164,11 @@ pub fn open_of(passage: &Passage) -> (Vec<f64>, Vec<f64>) {
     (open, all().map(|row| length(row, &Interval::midpoint)).collect())
 }
 
-/// What is open of all rows together, as parts of them.
+/// What is open of all rows together, and of the middle, as parts of them.
 fn openness(passage: &Passage) -> f64 {
     let (open, rows) = open_of(passage);
-    open.iter().zip(&rows).map(|(open, row)| open / row).sum()
+    let middle = passage.after.center.iter().map(|&x| MISSED * radius(x).hi());
+    open.iter().zip(middle).zip(&rows).map(|((open, middle), row)| (open + middle) / row).sum()
 }
 
 /// A period after `before` under `law`, in so many times as many pieces as are needed; none if motions are not shown to exist.
@@ -170,14 +176,14 @@ pub fn passage(of: &HeldLoop<'_>, before: &Before, law: &Instant, finer: usize) 
     let (n, size, from) = (of.system.joints(), of.motion(), of.before_torques());
     let waiting = |m: usize| before.state.part(from + m * n, n);
     let queue: Vec<Spread> = (0..of.waiting).map(waiting).chain([law.asked.clone()]).collect();
-    let holds = |motion: Spread, torque: &Spread, length: Interval| {
+    let holds = |motion: &Spread, torque: &Spread, length: Interval| {
         let pieces = finer * pace(of.system, &motion.center, length);
         held(of.system, motion, torque, &law.sizes, length, pieces)
     };
     let motion = before.state.part(0, size);
     let moved = match of.offset {
-        None => holds(motion, &queue[0], of.period)?,
-        Some(offset) => holds(holds(motion, &queue[0], offset)?, &queue[1], of.period - offset)?,
+        None => holds(&motion, &queue[0], of.period)?,
+        Some(offset) => holds(&holds(&motion, &queue[0], offset)?, &queue[1], of.period - offset)?,
     };
     let known = moved.followed_by(&before.remembered);
     let after = queue[1..].iter().fold(known, |all, torque| all.followed_by(torque));

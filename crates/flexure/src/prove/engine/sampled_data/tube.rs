@@ -116,7 +116,7 @@ pub fn tube(
     if begins.is_nan() || begins > 1.0 {
         return ends(0, Why::Missed);
     }
-    let (mut cuts, mut ahead, mut watch) = (Cuts::default(), Ahead::default(), Watch::default());
+    let (mut cuts, mut ahead, mut watch) = (Cuts::new(shrink), Ahead::default(), Watch::default());
     // Torques beside the law's that hold the tube open anyway leave this much to |η|.
     let count = (off.len() as f64).sqrt();
     let enough: Vec<_> = off.iter().map(|w| w * shares(of).law * (1.0 - shrink) / count).collect();
