@@ -16,7 +16,7 @@ const LONGEST: f64 = 64.0;
 const MORE: f64 = 1.25;
 
 /// Of what a tube can take to be left open, boxes for instants to come may leave this part, and are made for more of them where they leave that.
-const MOST: f64 = 0.4;
+const MOST: f64 = 0.1;
 const LITTLE: f64 = 0.05;
 
 /// Instants for which each has its own box where one for two left too much open.

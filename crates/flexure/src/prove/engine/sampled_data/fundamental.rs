@@ -48,11 +48,11 @@ impl Fundamental {
     }
 }
 
-/// Encloses X(1) of every solution of Ẋ = J(t) X with X(0) = 1 and J(t) in `rates` at all times; none where those are too large for a single
-/// step.
+/// Encloses X(1) of every solution of Ẋ = J(t) X with X(0) = 1 and J(t) along the line of `rates`, and of those with J(t) anywhere; none where those are too large for a
+/// single step.
 ///
 /// Of the line A + t C of floats, Y(1) = Σ Y_k with Y_0 = 1, (k + 1) Y_{k+1} = A Y_k + C Y_{k−1}. If |J(t) − A − t C| ≤ D, entry by entry, then
-/// X(1) = Y(1) + ∫ Y(1) Y(t)⁻¹ (J(t) − A − t C) X(t) dt, both factors beside it are at most G ≥ e^(|A| + 2 |C| + D) in size, and so |X(1) − Y(1)| ≤ G D G. What rounding
+/// X(1) = Y(1) + ∫ Y(1) Y(t)⁻¹ (J(t) − A − t C) X(t) dt, both factors beside it are at most G ≥ e^(|A| + |C| + D) in size, and so |X(1) − Y(1)| ≤ G D G. What rounding
 /// makes of the sum is below 2 (p + 1) (2 n + 8) ulp of G (Higham, *Accuracy and Stability of Numerical Algorithms*, 2nd ed., section 3.5: each Y_k is made of k
 /// such products, and sizes of the Y_k add up to less than G).
 pub fn fundamental(rates: &Coefficients) -> Option<Fundamental> {
@@ -67,7 +67,7 @@ pub fn fundamental(rates: &Coefficients) -> Option<Fundamental> {
     let everywhere = Dense::from_fn(n, n, everywhere);
     let above = Dense::from_fn(n, n, |i, j| {
         let at = (i, j);
-        (start[at].abs() + 2.0 * change[at].abs() + line[at].max(everywhere[at])) * INFLATED
+        (start[at].abs() + change[at].abs() + line[at].max(everywhere[at])) * INFLATED
     });
     let norm = |all: &Dense<f64>| {
         all.rows().map(|row| row.iter().map(|x| x.abs()).sum::<f64>()).fold(0.0, f64::max) * INFLATED

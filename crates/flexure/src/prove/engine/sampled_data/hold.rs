@@ -83,7 +83,8 @@ fn piece(
     let of_links = &stretch.ranges[..3 * n];
     if !curvature.as_ref().is_some_and(|curvature| curvature.covers(of_links)) {
         let left = length * Interval::point(left as f64);
-        *curvature = Some(Curvature::over(system, stretch.onwards(3 * n, left))?);
+        let far = Curvature::over(system, stretch.onwards(3 * n, left));
+        *curvature = Some(far.or_else(|| Curvature::over(system, of_links.to_vec()))?);
     }
     let slopes = stretch.slopes(system, u_m, curvature.as_ref()?, length)?;
 

@@ -18,11 +18,11 @@ const WIDER: f64 = 0.1;
 
 /// Where motions and the path are in a piece.
 pub struct Stretch {
-    /// All of them, all the time.
+    /// All of them, all the time, and `middle`.
     pub ranges: Vec<Interval>,
-    /// The links there.
+    /// The links where motions and the path are.
     pub links: Links,
-    /// Accelerations of motions, links, then motors [rad/s²].
+    /// Accelerations of motions there, links, then motors [rad/s²].
     accelerations: Vec<Interval>,
     /// A motion in the middle of them.
     middle: Vec<f64>,
