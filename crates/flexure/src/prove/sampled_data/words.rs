@@ -38,7 +38,7 @@ pub fn why(scenario: &Scenario, rate: f64, sensors: &Sensors, ends: &Ends) -> No
         ),
         Why::Missed => {
             format!(
-                "{time} rounding of its middle is as much as motions come closer by; a larger one may have one"
+                "{time} where its middle goes is not known as closely as motions come closer; a larger one may have one"
             )
         }
         Why::Beyond(Beyond { limit, joint, found, passes }) => {

@@ -1,19 +1,16 @@
 //! The law's second derivatives, over boxes that last for some instants.
 
-use flexure_core::scalar::{Interval, Scalar};
+use flexure_core::scalar::Interval;
 
 use crate::linalg::Dense;
 use crate::prove::engine::sampled_data::frame::Frame;
 use crate::prove::engine::sampled_data::instant::{Bends, Instant, Middle};
-use crate::prove::engine::sampled_data::norm::around_zero;
+use crate::prove::engine::sampled_data::norm::onwards;
 use crate::prove::engine::sampled_data::period::HeldLoop;
 use crate::prove::engine::sampled_data::spread::{Sizes, Spread};
 
 /// Instants that boxes are made for at most.
 const LONGEST: f64 = 64.0;
-
-/// How much more than from one instant to the next motions are taken to move in each of those, and how much of its own width a box has beside it.
-const MORE: f64 = 1.25;
 
 /// Of what a tube can take to be left open, boxes for instants to come may leave this part, and are made for more of them where they leave that.
 const MOST: f64 = 0.1;
@@ -67,11 +64,11 @@ impl Ahead {
             }
         }
         loop {
-            let some = Interval::ZERO.hull(Interval::point(self.instants));
-            let times = t.hull(t + some * of.period);
+            let instants = Interval::point(self.instants);
+            let times = t.hull(t + instants * of.period);
+            // As from the instant before to this one.
             let roomy = |(x, (now, before)): (&Interval, (&f64, &f64))| {
-                let way = Interval::point(MORE * (now - before));
-                *x + some * way + around_zero((MORE - 1.0) * x.width())
+                onwards(*x, instants * Interval::point(now - before))
             };
             let boxes = || ranges.iter().zip(now.iter().zip(&before));
             let over = if self.instants > 0.0 { boxes().map(roomy).collect() } else { ranges.clone() };

@@ -99,11 +99,12 @@ fn piece(
         let by_path = end[i] + moved[i] + around_zero((length * late[i]).hi());
         // By mean values between motions and where the path begins, instead: better where a damper is faster than a polynomial.
         let by_start = begin[i] + flow.carried[i];
-        by_path.intersection(by_start).unwrap_or(by_path)
+        // Both enclose it: where they do not meet, something is wrong, and nothing is known.
+        by_path.intersection(by_start)
     };
     let part = |from: usize, count: usize| Dense::from_fn(size, count, |i, j| flow.at_end[(i, from + j)]);
     let deviations = &(&part(0, size) * &motion.deviations) + &(&part(size, n) * &torque.deviations);
-    Some(Spread { center: (0..size).map(center).collect(), deviations })
+    Some(Spread { center: (0..size).map(center).collect::<Option<_>>()?, deviations })
 }
 
 /// In a piece, the fastest rate of springs and link dampers times its length is at most this, and that of motor dampers at most this.
@@ -133,7 +134,7 @@ pub fn pace(system: &dyn TrackingLoop, motion: &[Interval], length: Interval) ->
 mod tests {
     use flexure_core::scalar::Interval;
 
-    use super::{Dense, Links, Sizes, Spread, TrackingLoop, held, pace};
+    use super::{Curvature, Dense, Links, Path, Sizes, Spread, TrackingLoop, enclosed, held, pace, stretch};
     use crate::prove::closed_loop::along_reference;
     use crate::prove::engine::envelope::closed_loop::Slope;
     use crate::prove::engine::sampled_data::links::springs;
@@ -175,16 +176,20 @@ mod tests {
         x
     }
 
-    /// Seven joints, a millisecond: motions end inside, and those beside end beside them as the slopes of the end by the start say, which are known so closely that the
-    /// robot's slopes half a piece too late or too early would not do.
-    #[test]
-    fn motions_of_seven_joints_end_where_they_do() {
-        let scenario = Scenario::load("panda-tanh-smooth").unwrap();
-        let system = &*along_reference(&scenario).unwrap();
-        let (n, length) = (system.joints(), 1e-3);
+    fn points(x: &[f64]) -> Vec<Interval> {
+        x.iter().map(|&x| Interval::point(x)).collect()
+    }
+
+    fn wide(x: Interval, by: f64) -> Interval {
+        x + Interval::new(-by, by).unwrap()
+    }
+
+    /// Seven joints, a motion (q_l, q_m, q̇_l, q̇_m) and torques of motors that hold them and their springs, nearly.
+    fn arm() -> (Box<dyn TrackingLoop>, Vec<f64>, Vec<f64>) {
+        let system = along_reference(&Scenario::load("panda-tanh-smooth").unwrap()).unwrap();
+        let n = system.joints();
         let wave = |i: usize, by: f64| (by * (i + 1) as f64).sin();
         let [q_l, v_l] = [1.0, 0.1].map(|size| (0..n).map(|i| size * wave(i, 1.7)).collect::<Vec<_>>());
-        // Springs and motors that hold them, nearly.
         let slow = |x: &[f64]| x.iter().map(|&x| Slope::value(Interval::point(x))).collect::<Vec<_>>();
         let load = system.link_load(&slow(&q_l), &slow(&v_l), &slow(&vec![0.1; n]));
         let drive = system.drive();
@@ -192,21 +197,82 @@ mod tests {
             (0..n).map(|i| load[i].coefficient(0).midpoint() / drive.stiffness[i].midpoint()).collect();
         let q_m: Vec<_> = (0..n).map(|i| q_l[i] + bent[i]).collect();
         let u_m: Vec<_> = (0..n).map(|i| load[i].coefficient(0).midpoint() + 0.01 * wave(i, 3.1)).collect();
-        let x = [&q_l[..], &q_m, &v_l, &v_l].concat();
-        let points = |x: &[f64]| x.iter().map(|&x| Interval::point(x)).collect::<Vec<_>>();
-        let small = 1e-9;
-        let motion = Spread {
-            center: points(&x),
-            deviations: Dense::identity(4 * n).scaled(small).map(Interval::point),
-        };
-        let torque = Spread { center: points(&u_m), deviations: Dense::zeros(n, 4 * n).map(Interval::point) };
-        let sizes = Sizes { ball: 4 * n, slopes: Vec::new(), most: Vec::new() };
-        let span = Interval::point(length);
-        let pieces = pace(system, &motion.center, span);
-        let found = held(system, &motion, &torque, &sizes, span, pieces).unwrap();
+        (system, [&q_l[..], &q_m, &v_l, &v_l].concat(), u_m)
+    }
 
-        let wide = |x: Interval, by: f64| x + Interval::new(-by, by).unwrap();
-        let end = moved(system, &x, &u_m, length);
+    /// What is said of a millisecond from the motions `x` and those beside it by `deviations`.
+    fn said(system: &dyn TrackingLoop, x: &[f64], u_m: &[f64], deviations: &Dense<f64>) -> Spread {
+        let ball = deviations.columns();
+        let motion = Spread { center: points(x), deviations: deviations.map(Interval::point) };
+        let torque =
+            Spread { center: points(u_m), deviations: Dense::zeros(u_m.len(), ball).map(Interval::point) };
+        let sizes = Sizes { ball, slopes: Vec::new(), most: Vec::new() };
+        let length = Interval::point(LENGTH);
+        let pieces = pace(system, &motion.center, length);
+        held(system, &motion, &torque, &sizes, length, pieces).unwrap()
+    }
+
+    const LENGTH: f64 = 1e-3;
+
+    /// From the corners of a box, at several times of a piece: slopes of the links are where the line has them, which goes about as far as they do.
+    #[test]
+    fn slopes_follow_their_line() {
+        let (system, x, u_m) = arm();
+        let (system, n) = (&*system, u_m.len());
+        // (q_l, δ, q̇_l, q̇_m), and back.
+        let of_springs = |x: &[f64], by: f64| -> Vec<f64> {
+            (0..4 * n).map(|i| if i / n == 1 { x[i] + by * x[i - n] } else { x[i] }).collect()
+        };
+        let x = of_springs(&x, -1.0);
+        let size = |i: usize| [1e-5, 1e-7, 1e-4, 1e-4][i / n];
+        let starts: Vec<_> = (0..4 * n).map(|i| wide(Interval::point(x[i]), size(i))).collect();
+        let (seconds, u) = (LENGTH / 6.0, points(&u_m));
+        let length = Interval::point(seconds);
+        let (ranges, about) = enclosed(system, &starts, &u, length).unwrap();
+        let path = Path::from(system, &about.middle, &x, &u_m);
+        let begin = path.at(Interval::point(0.0));
+        let stretch = stretch(system, (&starts, &begin), &ranges, (&path, &u), length).unwrap();
+        let over = stretch.onwards(3 * n, Interval::point(0.0));
+        let said = stretch.slopes(system, &u, &Curvature::over(system, over).unwrap(), length).unwrap();
+
+        let mut farthest = 0.0_f64;
+        for corner in 0..16 {
+            let sign = |i: usize| f64::from((1.7 * (i + 1) as f64 * f64::from(corner + 1)).sin().signum());
+            let start: Vec<_> = (0..4 * n).map(|i| x[i] + sign(i) * size(i)).collect();
+            for part in [0.0, 0.5, 1.0] {
+                let there = moved(system, &of_springs(&start, 1.0), &u_m, part * seconds);
+                let there = points(&of_springs(&there, -1.0));
+                let links = Links::over(system, &there[..n]).unwrap();
+                let spring = springs(system, &there[n..2 * n]);
+                let a_l = links.accelerations(system, &there[..n], &there[2 * n..3 * n], &spring);
+                let slopes = links.rates(system, &there[..n], &there[2 * n..3 * n], &a_l);
+                for (i, j) in (0..n).flat_map(|i| (0..3 * n).map(move |j| (i, j))) {
+                    let slope = slopes[(i, j)].midpoint();
+                    let line = said.begin[(i, j)] + Interval::point(part) * said.change[(i, j)];
+                    // Rounding of the slopes themselves.
+                    assert!(
+                        wide(line, 1e-9 * slope.abs()).contains(slope),
+                        "{i} {j}: {slope} not in {line:?}"
+                    );
+                    assert!(said.anywhere[(i, j)].contains(slope), "{i} {j}: {slope}");
+                    if line.width() > 1e-6 * slope.abs() {
+                        farthest = farthest.max(2.0 * (slope - line.midpoint()).abs() / line.width());
+                    }
+                }
+            }
+        }
+        assert!(farthest > 0.5, "{farthest}");
+    }
+
+    /// Motions end inside, and those beside end beside them as the slopes of the end by the start say, which are known so closely that the robot's slopes half a piece too late
+    /// or too early would not do.
+    #[test]
+    fn motions_of_seven_joints_end_where_they_do() {
+        let (system, x, u_m) = arm();
+        let (system, n) = (&*system, u_m.len());
+        let small = 1e-9;
+        let found = said(system, &x, &u_m, &Dense::identity(4 * n).scaled(small));
+        let end = moved(system, &x, &u_m, LENGTH);
         for (i, end) in end.iter().enumerate() {
             assert!(wide(found.center[i], 1e-9).contains(*end), "{i}: {end} not in {:?}", found.center[i]);
             assert!(found.center[i].width() < 1e-3, "{i}: {:?}", found.center[i]);
@@ -217,7 +283,7 @@ mod tests {
             let beside = |by: f64| {
                 let mut x = x.clone();
                 x[j] += by;
-                moved(system, &x, &u_m, length)
+                moved(system, &x, &u_m, LENGTH)
             };
             let [ahead, behind] = [1e-4, -1e-4].map(beside);
             let largest = |rows: std::ops::Range<usize>| {
@@ -227,9 +293,9 @@ mod tests {
             for i in 0..4 * n {
                 let slope = (ahead[i] - behind[i]) / 2e-4;
                 let scale = scales[i / (2 * n)];
-                let said = found.deviations[(i, j)] * Interval::point(1.0 / small);
-                assert!(wide(said, 1e-6 * scale).contains(slope), "{i} {j}: {slope} not in {said:?}");
-                widest = widest.max(said.width() / scale);
+                let slopes = found.deviations[(i, j)] * Interval::point(1.0 / small);
+                assert!(wide(slopes, 1e-6 * scale).contains(slope), "{i} {j}: {slope} not in {slopes:?}");
+                widest = widest.max(slopes.width() / scale);
             }
         }
         assert!(widest < 2e-4, "{widest}");

@@ -10,6 +10,15 @@ const ABOVE: [f64; 4] = [1e-7, 1e-5, 1e-3, 1e-1];
 /// Squarings after which a trace is the largest eigenvalue to a part in a million.
 const SQUARINGS: u32 = 24;
 
+/// Of its width, and of the way to go, what a box for times to come has beside it.
+const ROOM: f64 = 0.25;
+
+/// Numbers that are in `x` now, on their way by `way` or any part of it, about.
+pub fn onwards(x: Interval, way: Interval) -> Interval {
+    let way = Interval::ZERO.hull(way * Interval::point(1.0 + ROOM));
+    x + way + around_zero(ROOM * x.width())
+}
+
 /// How far the ends of `x` are from its middle, from above.
 pub fn radius(x: Interval) -> Interval {
     Interval::point((x - Interval::point(x.midpoint())).magnitude())

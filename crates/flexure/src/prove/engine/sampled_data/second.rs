@@ -13,14 +13,14 @@ pub fn second_derivatives(
     along: &(dyn Fn(&[usize]) -> Vec<Interval> + Sync),
 ) -> Vec<Symmetric<Interval>> {
     let pairs: Vec<_> = (0..size).flat_map(|i| (0..=i).map(move |k| (i, k))).collect();
-    let one = |&(i, k): &(usize, usize)| match (i == k, apart(i, k)) {
-        (_, true) => Vec::new(),
-        (true, _) => along(&[i]),
+    let one = |&(i, k): &(usize, usize)| match (apart(i, k), i == k) {
+        (true, _) => Vec::new(),
+        (_, true) => along(&[i]),
         _ => along(&[i, k]),
     };
     let found: Vec<_> = pairs.par_iter().map(one).collect();
     let at = |i: usize, k: usize| &found[i * (i + 1) / 2 + k];
-    // Twice the half of the second derivative by one number.
+    // H_ii of the function j.
     let own = |i: usize, j: usize| at(i, i).get(j).map_or(Interval::ZERO, |&x| x + x);
     let half = Interval::point(0.5);
     let of = |j: usize| {

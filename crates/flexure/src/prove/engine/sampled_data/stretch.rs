@@ -7,7 +7,7 @@ use crate::prove::engine::envelope::closed_loop::TrackingLoop;
 use crate::prove::engine::sampled_data::curvature::Curvature;
 use crate::prove::engine::sampled_data::flow::Slopes;
 use crate::prove::engine::sampled_data::links::{Links, springs};
-use crate::prove::engine::sampled_data::norm::{around_zero, radius};
+use crate::prove::engine::sampled_data::norm::{around_zero, onwards, radius};
 use crate::prove::engine::sampled_data::path::Path;
 
 /// How often a box is made larger until no motion leaves it.
@@ -31,9 +31,6 @@ pub struct Stretch {
     /// How far they are off `middle` + (t − ½ length) `rates` at a time t, from above.
     off: Vec<f64>,
 }
-
-/// Boxes for times to come have this part of their width, and of the way to go, beside them.
-const ROOM: f64 = 0.25;
 
 /// From `starts` and the path's `begin`, for `length` in s, motions in `ranges`.
 pub fn stretch(
@@ -66,9 +63,7 @@ pub fn stretch(
 impl Stretch {
     /// A box for the first `count` numbers where motions may be for `left` in s after the piece, too, if they go on about as they do.
     pub fn onwards(&self, count: usize, left: Interval) -> Vec<Interval> {
-        let way = Interval::ZERO.hull(left * Interval::point(1.0 + ROOM));
-        let on =
-            |(&x, &rate): (&Interval, &f64)| x + way * Interval::point(rate) + around_zero(ROOM * x.width());
+        let on = |(&x, &rate): (&Interval, &f64)| onwards(x, left * Interval::point(rate));
         self.ranges.iter().zip(&self.rates).take(count).map(on).collect()
     }
 
@@ -92,8 +87,9 @@ impl Stretch {
         let at = at_points.rates(system, &points[..n], &points[half..half + n], &a[..n]);
         let reach: Vec<_> = ranges.iter().zip(&points).map(|(&x, &m)| (x - m).magnitude()).collect();
         let around = curvature.around(&at, &reach[..3 * n]);
+        // Both enclose them: where they do not meet, something is wrong, and nothing is known.
         let anywhere = Dense::from_fn(n, 3 * n, |i, j| {
-            everywhere[(i, j)].intersection(around[(i, j)]).unwrap_or(everywhere[(i, j)])
+            everywhere[(i, j)].intersection(around[(i, j)]).unwrap_or(Interval::ENTIRE)
         });
         let moved: Vec<_> = rates[..3 * n].iter().map(|&rate| length * Interval::point(rate)).collect();
         let moved = curvature.along(&moved);
