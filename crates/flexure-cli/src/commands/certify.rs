@@ -1,17 +1,18 @@
 //! `flexure certify`: a proof and its certificate.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use flexure::files::{Problem, Reading, Unfinished, folder_of, prepare, spare};
 use flexure::prove::question::{Direct, Question, Region, prove_watched};
 use flexure::prove::standing::{Standing, outside_of_proofs};
 use flexure::prove::summary::ProofSummary;
-use flexure::report::{proof_table, proof_verdict, write_certificate, write_certified};
+use flexure::report::{proof_table, proof_verdict, write_certificate, write_certified, write_tube};
 use flexure::sampled::{not_looked_at, probe};
 use flexure::scenario::{Scenario, load_scenario_with};
 use serde::Serialize;
 
 use super::print;
+use super::verify_tube::is_tube;
 use crate::args::Certify;
 use crate::failure::{Failure, say};
 use crate::progress::Progress;
@@ -23,6 +24,9 @@ struct Outcome {
     summary: ProofSummary,
     /// The certificate; none if nothing was proved.
     file: Option<PathBuf>,
+    /// The file of the tube of the sampled loop; not there where there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tube_file: Option<PathBuf>,
     /// Its page and figure; not there without `--page`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pages: Vec<PathBuf>,
@@ -38,6 +42,10 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
         .unwrap_or_else(|| PathBuf::from(format!("out/{}.certificate.json", scenario.name)));
     // Said before minutes of proof, not after.
     spare(&path, "certificate", |text| text.contains("flexure-certificate"), &[])?;
+    let tube_path = beside(&path);
+    if options.sampled_tube.is_some() {
+        spare_tube(&tube_path)?;
+    }
     prepare(folder_of(&path))?;
     options.paged.prepare(&scenario.name, "certify", 1, &[&path])?;
     let proof = {
@@ -51,6 +59,14 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
         Some(certificate) => {
             write_certificate(&path, certificate)?;
             Some(path)
+        }
+    };
+    let tube = proof.sampled_tube.as_ref().and_then(|found| found.as_ref().ok());
+    let tube_file = match tube.filter(|_| !proof.broken_off) {
+        None => None,
+        Some(tube) => {
+            write_tube(&tube_path, &tube.file(&scenario)?)?;
+            Some(tube_path)
         }
     };
     let standing = Standing::of(&scenario, &proof, sampled.as_ref());
@@ -71,7 +87,7 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
     let pages = pages.unwrap_or_default();
     let ended = ending(&scenario, standing, options.strict);
     if json {
-        print::json(&Outcome { summary, file, pages })?;
+        print::json(&Outcome { summary, file, tube_file, pages })?;
     } else {
         if proof.broken_off {
             print::line("broken off: what is here is proved, not all that was asked was looked at")?;
@@ -81,6 +97,7 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
             print::line(&line)?;
         }
         print::wrote(file.as_slice())?;
+        print::wrote(tube_file.as_slice())?;
         print::wrote(&pages)?;
     }
     if !has_page {
@@ -91,6 +108,19 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
         Err(Failure::Undecided(reports)) if proof.broken_off => Err(Failure::Interrupted(reports)),
         ended => ended,
     }
+}
+
+/// The file of a tube beside the certificate: NAME.tube.json beside NAME.certificate.json.
+fn beside(certificate: &Path) -> PathBuf {
+    let name = certificate.file_name().unwrap_or_default().to_string_lossy();
+    let name = name.strip_suffix(".json").unwrap_or(&name);
+    certificate.with_file_name(format!("{}.tube.json", name.strip_suffix(".certificate").unwrap_or(name)))
+}
+
+/// That a tube may be written there.
+fn spare_tube(path: &Path) -> Result<(), Problem> {
+    // Not by its text, which may be long.
+    if is_tube(path) { Ok(()) } else { spare(path, "tube", |_| false, &[]) }
 }
 
 /// What the options ask for, if it fits the robot.

@@ -21,6 +21,7 @@ mod run;
 mod sweep;
 mod tune;
 mod verify;
+mod verify_tube;
 
 pub use certify::certify;
 pub use check::check;

@@ -9,6 +9,7 @@ use flexure::verify::{self, CheckReport, Claim, Rejected, quoted};
 use serde::Serialize;
 
 use super::print;
+use super::verify_tube::{is_tube, verify_tube};
 use crate::failure::{Failure, Place};
 
 /// Characters of a text of the file beyond these are not shown.
@@ -36,15 +37,18 @@ struct Answer {
 
 /// What came of comparing with a scenario.
 #[derive(Serialize)]
-struct Against {
-    scenario: String,
-    same: bool,
-    differences: Vec<Difference>,
+pub(super) struct Against {
+    pub scenario: String,
+    pub same: bool,
+    pub differences: Vec<Difference>,
     /// Whether the scenario's robot has tolerances.
-    tolerances: bool,
+    pub tolerances: bool,
 }
 
 pub fn verify(file: &Path, against: Option<&str>, reading: Reading<'_>, json: bool) -> Result<(), Failure> {
+    if is_tube(file) {
+        return verify_tube(file, against, reading, json);
+    }
     let text = read_text(file, verify::LARGEST)?;
     match verify::verify(&text) {
         Ok(report) => {
@@ -53,7 +57,7 @@ pub fn verify(file: &Path, against: Option<&str>, reading: Reading<'_>, json: bo
         }
         Err(Rejected::False { claim, reason }) => rejected(file, &claim, &reason, json),
         Err(Rejected::Malformed { place, reason, line, column }) => {
-            Err(malformed(file, &place, &reason, line, column))
+            Err(malformed(file, "certificate", "certificate", &place, &reason, (line, column)))
         }
     }
 }
@@ -113,7 +117,10 @@ fn verified(file: &Path, report: CheckReport, against: Option<Against>, json: bo
 }
 
 /// Whether the certificate is about the scenario.
-fn ending(file: &Path, Against { scenario, same, differences, .. }: &Against) -> Result<(), Failure> {
+pub(super) fn ending(
+    file: &Path,
+    Against { scenario, same, differences, .. }: &Against,
+) -> Result<(), Failure> {
     if *same {
         return Ok(());
     }
@@ -147,7 +154,7 @@ fn ending(file: &Path, Against { scenario, same, differences, .. }: &Against) ->
     let Difference { place, certificate, scenario: other } = first;
     let more = if told.len() > 1 { format!(", and {} more", told.len() - 1) } else { String::new() };
     let message = format!(
-        "{file} is not about {scenario}: {} is {} in the certificate and {} in the scenario{more}",
+        "{file} is not about {scenario}: {} is {} in the file and {} in the scenario{more}",
         shown(place),
         clipped(&shown(certificate)),
         clipped(&shown(other)),
@@ -160,7 +167,7 @@ fn ending(file: &Path, Against { scenario, same, differences, .. }: &Against) ->
 }
 
 /// The file's own text without what could command a terminal.
-fn shown(text: &str) -> String {
+pub(super) fn shown(text: &str) -> String {
     let quoted = quoted(text);
     let inside = quoted.get(1..quoted.len() - 1).unwrap_or_default();
     inside.replace("\\\"", "\"")
@@ -175,11 +182,11 @@ fn clipped(text: &str) -> String {
 }
 
 /// The name of the certificate's file, which may be somebody else's too.
-fn named(file: &Path) -> String {
+pub(super) fn named(file: &Path) -> String {
     shown(&file.display().to_string())
 }
 
-fn rejected(file: &Path, claim: &str, reason: &str, json: bool) -> Result<(), Failure> {
+pub(super) fn rejected(file: &Path, claim: &str, reason: &str, json: bool) -> Result<(), Failure> {
     let (claim, reason) = (shown(claim), shown(reason));
     let message = format!("{}: {claim} does not hold: {reason}", named(file));
     if json {
@@ -189,12 +196,20 @@ fn rejected(file: &Path, claim: &str, reason: &str, json: bool) -> Result<(), Fa
     Err(Failure::no("verify", message, "nothing else in the file is to be relied on either"))
 }
 
-fn malformed(file: &Path, place: &str, reason: &str, line: Option<usize>, column: Option<usize>) -> Failure {
+/// That the file is no `what` as docs/`page`.md has it.
+pub(super) fn malformed(
+    file: &Path,
+    what: &str,
+    page: &str,
+    place: &str,
+    reason: &str,
+    (line, column): (Option<usize>, Option<usize>),
+) -> Failure {
     let at = match (line, column) {
         (Some(line), Some(column)) => format!(":{line}:{column}"),
         _ => String::new(),
     };
-    let message = format!("{}{at} is not a certificate: {}: {}", named(file), shown(place), shown(reason));
-    let hint = "the file must be a certificate as docs/certificate.md has it";
-    Failure::input_at(Place { file: named(file), line, column }, "verify", message, hint)
+    let message = format!("{}{at} is not a {what}: {}: {}", named(file), shown(place), shown(reason));
+    let hint = format!("the file must be a {what} as docs/{page}.md has it");
+    Failure::input_at(Place { file: named(file), line, column }, "verify", message, &hint)
 }

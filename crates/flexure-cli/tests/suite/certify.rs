@@ -160,35 +160,6 @@ fn torques_on_links_give_a_funnel() {
     assert!(json["funnel"]["verdict"] == "undecided" && json["along"].is_null(), "{json}");
 }
 
-/// The loop of the file, its torque held and late, has a tube in which motions come closer; a loop that is too late has none, and it is said.
-#[test]
-fn sampled_loops_have_tubes() {
-    let folder = Place::new();
-    let late = |name: &str, delay: &str| {
-        let text = format!("[[imperfection]]\nkind = \"delay\"\ncomputation = {delay}\n\n[sources]");
-        let start = "[reference.smooth_start]\nduration = 2.0\n\n[controller]";
-        folder.scenario(name, &[("[sources]", &text), ("[controller]", start)]);
-    };
-    late("late.toml", "5e-4");
-    late("later.toml", "7e-4");
-    let asked = |file: &str, options: &[&str]| {
-        folder
-            .run(&[&["certify", file, "--sampled-tube", "1e-5", "--set", "duration=0.05"], options].concat())
-    };
-    let found = asked("late.toml", &["--json"]).done().json()["sampled_tube"].clone();
-    assert_eq!(
-        (&found["verdict"], &found["periods"], &found["delay"]),
-        (&"proved".into(), &50.into(), &5e-4.into())
-    );
-    assert!(found["rate"].as_f64().unwrap() > 5.0, "{found}");
-    let said = asked("late.toml", &[]).done().stdout;
-    assert!(said.contains("the loop with its torque held for 0.001 s and 0.0005 s late"), "{said}");
-    assert!(said.contains("1/s or faster in every period"), "{said}");
-    let outcome = asked("later.toml", &[]);
-    assert_eq!(outcome.code, Some(1), "{outcome:?}");
-    assert!(outcome.stdout.contains("sampled      no tube was found"), "{outcome:?}");
-}
-
 /// Links that are a tenth heavier or lighter have a funnel, and W says nothing of them.
 #[test]
 fn masses_that_are_off_give_a_funnel() {

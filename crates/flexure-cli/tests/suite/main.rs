@@ -24,6 +24,7 @@ mod pypi;
 mod python;
 mod reproduce;
 mod run;
+mod sampled_tube;
 mod set;
 mod shell;
 mod sixteen;

@@ -74,7 +74,7 @@ pub fn differences(certificate: &str, scenario: &Scenario) -> Result<Vec<Differe
 }
 
 /// Notes where two trees of JSON differ.
-fn compare(place: &str, ours: &Value, theirs: &Value, found: &mut Vec<Difference>) {
+pub(crate) fn compare(place: &str, ours: &Value, theirs: &Value, found: &mut Vec<Difference>) {
     match (ours, theirs) {
         (Value::Object(ours), Value::Object(theirs)) => {
             let missing = theirs.keys().filter(|key| !ours.contains_key(*key));

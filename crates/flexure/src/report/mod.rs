@@ -27,7 +27,7 @@ pub use figures::run::{FigureOptions, four_panel, run_figure};
 pub use figures::score_map::score_map;
 pub use outputs::{
     page_names, stem, view_name, write_certificate, write_certified, write_figure, write_identified,
-    write_leaderboard, write_margins, write_ran, write_swept, write_tuned, write_view,
+    write_leaderboard, write_margins, write_ran, write_swept, write_tube, write_tuned, write_view,
 };
 pub use pages::certificates::CertificateReport;
 pub use pages::certify::proof_verdict;

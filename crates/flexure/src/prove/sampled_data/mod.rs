@@ -1,20 +1,25 @@
 //! How far motions of a scenario's sampled loop can be from its run, and how fast they come closer: the law at its control period, with its delay,
 //! its torques held and within limits, on readings in counts and filtered velocities.
 
+pub mod file;
 mod spoken_of;
 mod words;
 
+use std::ops::Add;
+use std::sync::Arc;
+
 use flexure_core::scalar::{Interval, Scalar};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::files::Problems;
 use crate::imperfections::stages::split;
 use crate::imperfections::{Delay, Imperfection};
 use crate::progress::Progress;
 use crate::prove::closed_loop::along_reference;
+use crate::prove::engine::sampled_data::norm::around_zero;
 use crate::prove::engine::sampled_data::period::{Before, HeldLoop};
 use crate::prove::engine::sampled_data::section::Section;
-use crate::prove::engine::sampled_data::tube::{At, Step, TubeRequest, tube};
+use crate::prove::engine::sampled_data::tube::{At, Sections, Step, TubeRequest, tube};
 use crate::prove::sampled_data::spoken_of::{passes, sensors};
 use crate::prove::sampled_data::words::{not_looked_at, why};
 use crate::sampled;
@@ -47,9 +52,35 @@ pub struct SampledTube {
     pub delay: f64,
     /// Control periods.
     pub periods: usize,
-    /// The tube at the first and the last control instant.
+    /// Where links are over time.
+    pub profile: TubeProfile,
+    /// What was asked for.
     #[serde(skip)]
-    pub ends: [Section; 2],
+    pub asked: Asked,
+    /// The tube at every control instant.
+    #[serde(skip)]
+    pub sections: Arc<Vec<Section>>,
+}
+
+/// Where links of motions in a tube are beside the reference at control instants, part by part of the run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct TubeProfile {
+    /// The last control instant of each part in s; the first begins at 0.
+    pub end: Vec<f64>,
+    /// The least q_l − q_d in rad in each part: a list for each link.
+    pub lowest: Vec<Vec<f64>>,
+    /// The largest.
+    pub highest: Vec<Vec<f64>>,
+}
+
+/// What a search is for.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Asked {
+    /// How far link positions reach at the start, in rad, each its number.
+    pub extents: Vec<f64>,
+    /// The rate [1/s].
+    pub rate: f64,
 }
 
 /// Why there is none.
@@ -78,15 +109,22 @@ pub fn sampled_tube(
         Some(_) => return none("small errors do not shrink in it".to_owned()),
         None => return none(not_looked_at(scenario)),
     };
+    followed(scenario, Asked { extents: error.to_vec(), rate }, Sections::Made, progress)
+}
+
+/// What is shown of `scenario` in sections that are made or given, one for each of its control instants.
+fn followed(
+    scenario: &Scenario,
+    asked: Asked,
+    sections: Sections<'_>,
+    progress: Progress<'_>,
+) -> Result<Option<Result<SampledTube, NoTube>>, Problems> {
     let n = scenario.robot.joint_count();
     let system = along_reference(scenario)?;
-    let delays = || scenario.imperfections.iter().filter_map(Imperfection::of::<Delay>);
-    let (delay, seconds) = (delays().map(Delay::total).sum::<f64>(), scenario.control_period);
+    let seconds = scenario.control_period;
     let period = scenario.bounds(seconds);
+    let (delay, exact) = delay(scenario);
     let (waiting, offset) = split(delay, seconds);
-    let exact = delays().fold(Interval::ZERO, |sum, delay| {
-        sum + scenario.bounds(delay.computation) + scenario.bounds(delay.actuation)
-    });
     let whole_periods = Interval::point(waiting.saturating_sub(1) as f64) * period;
     let passes = passes(scenario);
     let sensors = sensors(scenario);
@@ -103,9 +141,10 @@ pub fn sampled_tube(
     let start = [&initial.q_l, &initial.q_m, &initial.dq_l, &initial.dq_m].into_iter().flatten();
     let start: Vec<_> = start.map(|&x| scenario.bounds(x)).collect();
     let begin = of.started(&start);
-    let request = TubeRequest { periods: scenario.periods() as usize, extents: error.to_vec(), rate, start };
+    let Asked { extents, rate } = asked.clone();
+    let request = TubeRequest { periods: scenario.periods() as usize, extents, rate, start };
     let mut found = Findings::new(n);
-    let done = tube(&of, &request, progress, &mut |At { k, section, law, step }| {
+    let done = tube(&of, &request, sections, progress, &mut |At { k, section, law, step }| {
         let [run, read] = found.runs.unwrap_or_else(|| [section.reach(&begin); 2]).map(Interval::point);
         raise(&mut found.largest, section.reaches(Interval::ONE + run));
         raise(&mut found.torque, law.largest());
@@ -114,8 +153,11 @@ pub fn sampled_tube(
             let on_their_way: Vec<_> = on_their_way.iter().map(|u| u.magnitude()).collect();
             on_their_way.chunks(n).for_each(|torques| raise(&mut found.torque, torques.iter().copied()));
         }
+        let reference = system.reference(period * Interval::point(k as f64));
+        let beside = section.reaches(Interval::ONE).into_iter().zip(&section.center).zip(&reference);
+        let beside = beside.map(|((reach, &c), q)| Interval::point(c) + around_zero(reach) - q[0]);
+        found.profile.add(k, request.periods, seconds, &beside.collect::<Vec<_>>());
         if 4 * k >= 3 * request.periods {
-            let reference = system.reference(period * Interval::point(k as f64));
             let off = reference.iter().zip(&section.center).zip(section.reaches(read));
             let off = off.map(|((q, &c), reach)| {
                 (Interval::point((Interval::point(c) - q[0]).magnitude()) + Interval::point(reach)).hi()
@@ -131,21 +173,21 @@ pub fn sampled_tube(
             found.runs = Some([growth * run + offset, growth * read + offset + noise].map(Interval::hi));
         }
     });
-    let ends = match done {
+    let sections = match done {
         None => return Ok(None),
         Some(Err(ends)) => return Ok(Some(Err(why(scenario, rate, &sensors, &ends)))),
-        Some(Ok(ends)) => ends,
+        Some(Ok(sections)) => sections,
     };
     let shifted = |i: usize| {
         let unit = |k: usize| if i == k { Interval::ONE } else { Interval::ZERO };
         of.started(&(0..4 * n).map(unit).collect::<Vec<_>>())
     };
     // As far as the run, which need not be in the middle, leaves room.
-    let room = Interval::ONE - Interval::point(ends[0].reach(&begin));
+    let room = Interval::ONE - Interval::point(sections[0].reach(&begin));
     Ok(Some(Ok(SampledTube {
         rate: found.slowest,
         mean_rate: (found.rates / Interval::point(request.periods as f64)).lo(),
-        alone: (0..2 * n).map(|i| (Interval::point(ends[0].alone(&shifted(i))) * room).lo()).collect(),
+        alone: (0..2 * n).map(|i| (Interval::point(sections[0].alone(&shifted(i))) * room).lo()).collect(),
         error: found.largest,
         tracking: found.tracking,
         readings: sensors.off.clone(),
@@ -154,8 +196,19 @@ pub fn sampled_tube(
         period: seconds,
         delay,
         periods: request.periods,
-        ends,
+        profile: found.profile,
+        asked,
+        sections: Arc::new(sections),
     })))
+}
+
+/// How late torques are in s, as the loop has it and exactly.
+fn delay(scenario: &Scenario) -> (f64, Interval) {
+    let delays = || scenario.imperfections.iter().filter_map(Imperfection::of::<Delay>);
+    let exact = delays().fold(Interval::ZERO, |sum, delay| {
+        sum + scenario.bounds(delay.computation) + scenario.bounds(delay.actuation)
+    });
+    (delays().map(Delay::total).fold(0.0, f64::add), exact)
 }
 
 /// What is found along a tube.
@@ -168,6 +221,34 @@ struct Findings {
     largest: Vec<f64>,
     tracking: Vec<f64>,
     torque: Vec<f64>,
+    profile: TubeProfile,
+}
+
+/// Parts of a profile at most.
+const PARTS: usize = 500;
+
+impl TubeProfile {
+    /// With the control instant `k` of `periods`, each of `seconds`, at which links are so far beside the reference.
+    fn add(&mut self, k: usize, periods: usize, seconds: f64, beside: &[Interval]) {
+        let t = k as f64 * seconds;
+        if k.is_multiple_of(periods.div_ceil(PARTS)) || self.end.is_empty() {
+            self.end.push(t);
+            self.lowest.resize(beside.len(), Vec::new());
+            self.highest.resize(beside.len(), Vec::new());
+            let all = self.lowest.iter_mut().zip(&mut self.highest).zip(beside);
+            all.for_each(|((lowest, highest), beside)| {
+                lowest.push(beside.lo());
+                highest.push(beside.hi());
+            });
+            return;
+        }
+        let last = self.end.len() - 1;
+        self.end[last] = t;
+        for ((lowest, highest), beside) in self.lowest.iter_mut().zip(&mut self.highest).zip(beside) {
+            lowest[last] = lowest[last].min(beside.lo());
+            highest[last] = highest[last].max(beside.hi());
+        }
+    }
 }
 
 impl Findings {
@@ -179,6 +260,7 @@ impl Findings {
             largest: vec![0.0; 2 * n],
             tracking: vec![0.0; n],
             torque: vec![0.0; n],
+            profile: TubeProfile::default(),
         }
     }
 }

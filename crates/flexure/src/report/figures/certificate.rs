@@ -8,7 +8,8 @@ use crate::files::number::{engineering, power_of_ten, rounded_down, rounded_up, 
 use crate::progress::Progress;
 use crate::prove::decay::ROUNDING;
 use crate::prove::robust::Profile;
-use crate::prove::summary::{FunnelSummary, ProofSummary};
+use crate::prove::sampled_data::TubeProfile;
+use crate::prove::summary::{FunnelSummary, ProofSummary, SampledTubeSummary};
 use crate::report::draw::axes::{Axes, Axis, BOTTOM};
 use crate::report::draw::curve::Curve;
 use crate::report::draw::panel::{LEFT, TIME, buckets, over_time, span};
@@ -43,6 +44,10 @@ fn funnel_stroke() -> Stroke {
     Stroke::solid(hue(3), 2.0)
 }
 
+fn tube_stroke() -> Stroke {
+    Stroke::solid(hue(4), 2.0)
+}
+
 fn run_stroke() -> Stroke {
     Stroke::solid(hue(0), 2.2)
 }
@@ -62,8 +67,13 @@ pub fn certificate_figure(
     let told = Told::new(summary);
     let decay = told.start.zip(told.rate).map(|(level, rate)| proved_decay(level, rate, &run));
 
-    let subtitle = "the run is that of the file, with all that it has; what is proved is proved of the law in continuous time, with exact measurements \
-                    and without limits of torques";
+    let subtitle = if told.tube.is_some() {
+        "the run is that of the file, with all that it has, and so is the tube; all else is proved of the law in continuous time, with exact measurements and without \
+         limits of torques"
+    } else {
+        "the run is that of the file, with all that it has; what is proved is proved of the law in continuous time, with exact measurements \
+         and without limits of torques"
+    };
     let (mut scene, top) = page(WIDTH, &format!("{}: {}", scenario.name, told.title()), subtitle);
     let mut top = top + line_legend(&mut scene, top, &told.legend()) + 8.0;
     draw_storage(&mut scene, top, &told, &run, decay.as_ref());
@@ -75,9 +85,12 @@ pub fn certificate_figure(
     let place = |i: usize, top: f64, height: f64| {
         [MARGIN / 2.0 + width * (i % columns) as f64, top + height * (i / columns) as f64]
     };
-    if let Some(profile) = told.funnel {
-        for (i, joint) in scenario.robot.joints.iter().enumerate() {
-            let band = Band::new(&path, profile, i);
+    let all = || 0..joints;
+    let funnel = told.funnel.map(|profile| all().map(|i| of_funnel(profile, i)).collect::<Vec<_>>());
+    let tube = told.tube.map(|profile| all().map(|i| of_tube(profile, i)).collect());
+    for bands in [funnel, tube].into_iter().flatten() {
+        for ((i, joint), ends) in scenario.robot.joints.iter().enumerate().zip(bands) {
+            let band = Band::new(&path, ends, i);
             band.draw(&mut scene, place(i, top, BAND), width, &joint.name, joint.kind);
         }
         top += BAND * rows;
@@ -101,6 +114,8 @@ struct Told<'a> {
     /// Rate at which √W decays \[1/s\].
     rate: Option<f64>,
     funnel: Option<&'a Profile>,
+    /// The tube of the sampled loop.
+    tube: Option<&'a TubeProfile>,
 }
 
 /// The states up to a level of W.
@@ -140,6 +155,10 @@ impl<'a> Told<'a> {
                 FunnelSummary::Proved(robust) => Some(&robust.profile),
                 FunnelSummary::Undecided(_) => None,
             }),
+            tube: summary.sampled_tube.as_ref().and_then(|tube| match tube {
+                SampledTubeSummary::Proved(tube) => Some(&tube.profile),
+                SampledTubeSummary::Undecided(_) => None,
+            }),
         }
     }
 
@@ -168,8 +187,15 @@ impl<'a> Told<'a> {
         let funnel = self.funnel.map(|_| {
             ("funnel: link errors under every torque, of every robot asked about".to_owned(), funnel_stroke())
         });
+        let tube = self.tube.map(|_| {
+            (
+                "tube of the loop as sampled: link errors of all motions that start in it".to_owned(),
+                tube_stroke(),
+            )
+        });
         std::iter::once(("the run".to_owned(), run_stroke()))
             .chain(funnel)
+            .chain(tube)
             .chain(decay)
             .chain(region)
             .chain(levels)
@@ -220,6 +246,25 @@ fn draw_storage(scene: &mut Scene, top: f64, told: &Told, run: &Curve, decay: Op
     }
 }
 
+/// What the link error of a joint stays within in a funnel, constant over each part, either way.
+fn of_funnel(profile: &Profile, joint: usize) -> [Curve; 2] {
+    let values = |sign: f64| profile.error[joint].iter().map(move |error| sign * error);
+    [1.0, -1.0].map(|sign| steps(&profile.end, values(sign), funnel_stroke()))
+}
+
+/// The same in a tube of the sampled loop.
+fn of_tube(profile: &TubeProfile, joint: usize) -> [Curve; 2] {
+    [&profile.highest, &profile.lowest]
+        .map(|errors| steps(&profile.end, errors[joint].iter().copied(), tube_stroke()))
+}
+
+/// A curve of `values`, each up to its `end`.
+fn steps(end: &[f64], values: impl Iterator<Item = f64>, stroke: Stroke) -> Curve {
+    let begins = std::iter::once(&0.0).chain(end);
+    let t = begins.zip(end).flat_map(|(from, to)| [*from, *to]).collect();
+    Curve { t, values: values.flat_map(|value| [value; 2]).collect(), stroke }
+}
+
 /// The link error of a joint over time.
 struct Band {
     run: Curve,
@@ -228,23 +273,15 @@ struct Band {
 }
 
 impl Band {
-    fn new(path: &ErrorPath, profile: &Profile, joint: usize) -> Self {
+    fn new(path: &ErrorPath, ends: [Curve; 2], joint: usize) -> Self {
         let (t, values) = path.of_link(joint);
-        let begins = std::iter::once(&0.0).chain(&profile.end);
-        // Constant over each part.
-        let t_of: Vec<f64> = begins.zip(&profile.end).flat_map(|(from, to)| [*from, *to]).collect();
-        let end = |sign: f64| Curve {
-            t: t_of.clone(),
-            values: profile.error[joint].iter().flat_map(|error| [sign * error; 2]).collect(),
-            stroke: funnel_stroke(),
-        };
-        Self { run: Curve { t, values, stroke: run_stroke() }, ends: [end(1.0), end(-1.0)] }
+        Self { run: Curve { t, values, stroke: run_stroke() }, ends }
     }
 
     fn draw(&self, scene: &mut Scene, [left, top]: Point, width: f64, name: &str, kind: JointKind) {
         let unit = units::ANGLE.of(kind).raised;
         let size = |curve: &Curve| curve.values.iter().map(|e| e.abs()).fold(0.0, f64::max);
-        let within = size(&self.ends[0]);
+        let within = self.ends.iter().map(size).fold(0.0, f64::max);
         let most = 1.12 * within.max(size(&self.run).min(OUTSIDE * within)).max(1e-15);
         let range = Range { low: -most, high: most };
         let label = match ticks::power(range) {

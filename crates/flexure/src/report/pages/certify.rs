@@ -135,6 +135,10 @@ pub(crate) fn certify_page(
         @if matches!(summary.funnel, Some(FunnelSummary::Proved(_))) {
             "In the middle: the link error of each joint over time, and the funnel that no run of the ideal loop leaves. "
         }
+        @if matches!(summary.sampled_tube, Some(SampledTubeSummary::Proved(_))) {
+            "Before the planes: the link error of each joint over time, and where links are at control instants of all motions of the loop in the file, as sampled, that \
+             start in its tube. "
+        }
         "Below: the position errors of each joint, from the ring on"
         @if summary.region.as_ref().is_some_and(|region| region.level.is_some()) {
             "; a level of W is an ellipse there, and what is outside of the ellipse is outside of the level, while a point inside of it may have momenta that are \
@@ -142,7 +146,7 @@ pub(crate) fn certify_page(
         }
         ". "
         @if summary.convergence_rate.is_some() {
-            "The decay is proved of the law in continuous time; a loop that holds its torque for a control period, or has imperfections, is left with an \
+            "The decay of W is proved of the law in continuous time; a loop that holds its torque for a control period, or has imperfections, is left with an \
              error of its own."
         }
     };

@@ -1,5 +1,6 @@
 //! Tubes of sampled loops against simulated ones: what starts in a tube ends where it was said to, and no tube is found where none is.
 
+mod file;
 mod random;
 mod readings;
 
@@ -76,7 +77,8 @@ fn no_run_decays_slower_than_said() {
     {
         let tube = found(&scenario, error).unwrap_or_else(|none| panic!("{}", none.at));
         assert!(tube.rate > 5.0, "{}", tube.rate);
-        let ([first, last], n) = (&tube.ends, scenario.robot.joint_count());
+        let (first, last) = (tube.sections.first().unwrap(), tube.sections.last().unwrap());
+        let n = scenario.robot.joint_count();
         // The middle is the run.
         let missed = last.distance(&end(&scenario, &first.center[..4 * n]));
         assert!(missed < 1e-3, "{missed}");

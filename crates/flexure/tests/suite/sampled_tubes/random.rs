@@ -26,7 +26,7 @@ fn examine(numbers: Range<u64>, runs: usize) -> Vec<f64> {
         }
         let n = scenario.robot.joint_count();
         let tube = found(&scenario, 1e-6 * 100.0_f64.powf(0.5 * (1.0 + r.next()))).ok()?;
-        let [first, last] = &tube.ends;
+        let (first, last) = (tube.sections.first().unwrap(), tube.sections.last().unwrap());
         let left = (-tube.mean_rate * scenario.duration).exp();
         let after = |start: &[f64]| last.distance(&end(&scenario, &start[..4 * n]));
         let missed = after(&first.center);

@@ -13,7 +13,7 @@ use crate::sampled_tubes::found;
 const OFF: f64 = 5e-5;
 
 /// The arm as its hardware runs it, from rest at an end of its sine, for half a second, and counts of 0.1 mrad. Its reference does not depend on its start. `changes` are of its text.
-fn hardware(changes: &[(&str, &str)]) -> Scenario {
+pub fn hardware(changes: &[(&str, &str)]) -> Scenario {
     let changes = [
         (
             "[reference.smooth_start]\nduration = 4.0                     # s",

@@ -237,7 +237,7 @@ mod tests {
 
         let mut farthest = 0.0_f64;
         for corner in 0..16 {
-            let sign = |i: usize| f64::from((1.7 * (i + 1) as f64 * f64::from(corner + 1)).sin().signum());
+            let sign = |i: usize| (1.7 * (i + 1) as f64 * f64::from(corner + 1)).sin().signum();
             let start: Vec<_> = (0..4 * n).map(|i| x[i] + sign(i) * size(i)).collect();
             for part in [0.0, 0.5, 1.0] {
                 let there = moved(system, &of_springs(&start, 1.0), &u_m, part * seconds);

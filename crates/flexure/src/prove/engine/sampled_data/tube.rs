@@ -101,17 +101,31 @@ const ALONE: f64 = 0.5;
 /// Half of the box that the loop is linearised over, in rad, rad/s and N m.
 const SMALL: f64 = 1e-12;
 
-/// Where a tube begins and ends; `each` is told of every instant.
+/// Where a tube's sections come from.
+#[derive(Clone, Copy, Debug)]
+pub enum Sections<'a> {
+    /// They are made from one period to the next.
+    Made,
+    /// They are there, one for each instant: only the checks are left.
+    Given(&'a [Section]),
+}
+
+/// All sections of a tube; `each` is told of every instant.
 pub fn tube(
     of: &HeldLoop<'_>,
     request: &TubeRequest,
+    sections: Sections<'_>,
     progress: Progress<'_>,
     each: &mut dyn FnMut(At<'_>),
-) -> Option<Result<[Section; 2], Ends>> {
+) -> Option<Result<Vec<Section>, Ends>> {
     let ends = |period: usize, why: Why| Some(Err(Ends { period, why }));
     let shrink = (-request.rate * of.period.midpoint()).exp();
-    let Some((mut now, off)) = first(of, request, shrink) else { return ends(0, Why::NotStable) };
-    let begin = now.clone();
+    let Some((first, off)) = first(of, request, shrink) else { return ends(0, Why::NotStable) };
+    let mut now = match sections {
+        Sections::Made => first,
+        Sections::Given(all) => all[0].clone(),
+    };
+    let mut found = Vec::with_capacity(request.periods + 1);
     let begins = now.reach(&of.started(&request.start));
     if begins.is_nan() || begins > 1.0 {
         return ends(0, Why::Missed);
@@ -143,10 +157,12 @@ pub fn tube(
             break;
         }
         let Some(passage) = cuts.passage(of, &before, &law) else { return ends(k, Why::Unbounded) };
-        let Some((next, dropped)) = next(&passage, &off, shrink, shares(of)) else {
-            return ends(k, Why::Grows);
+        let next = match sections {
+            Sections::Made => next(&passage, &off, shrink, shares(of)),
+            Sections::Given(all) => Some(all[k + 1].clone()),
         };
-        let step = check(&passage, &next, dropped);
+        let Some(next) = next else { return ends(k, Why::Grows) };
+        let step = check(&passage, &next, off.len());
         let Step { growth, offset, noise } = step;
         let most = (Interval::point(growth) + Interval::point(offset) + Interval::point(noise)).hi();
         if most.is_nan() || most > 1.0 {
@@ -155,9 +171,10 @@ pub fn tube(
         }
         each(At { k, section: &now, law: &law, step: Some(step) });
         watch.passed(&before, &passage, off.len());
-        now = next;
+        found.push(std::mem::replace(&mut now, next));
     }
-    Some(Ok([begin, now]))
+    found.push(now);
+    Some(Ok(found))
 }
 
 fn shares(of: &HeldLoop<'_>) -> Shares {
@@ -236,8 +253,8 @@ fn first(of: &HeldLoop<'_>, request: &TubeRequest, shrink: f64) -> Option<(Secti
     None
 }
 
-/// The section after `passage`, and how many of the oldest readings are no longer kept there: what is left of them is little.
-fn next(passage: &Passage, torques: &[f64], shrink: f64, shares: Shares) -> Option<(Section, usize)> {
+/// The section after `passage`, without the oldest readings of which little is left.
+fn next(passage: &Passage, torques: &[f64], shrink: f64, shares: Shares) -> Option<Section> {
     let n = torques.len();
     let [flow, columns, readings] = middles(passage, n);
     let sizes = &passage.law.sizes;
@@ -265,7 +282,7 @@ fn next(passage: &Passage, torques: &[f64], shrink: f64, shares: Shares) -> Opti
         dropped += 1;
     }
     let past = Dense::from_fn(sizes.ball, readings.columns() - dropped, |i, j| readings[(i, dropped + j)]);
-    Some((Section { center, lower, past }, dropped))
+    Some(Section { center, lower, past })
 }
 
 /// How far columns of readings are beside those of `kept`, the last of them, all together, number by number, from above.
@@ -280,11 +297,11 @@ fn beside(passage: &Passage, kept: &Dense<f64>) -> Vec<f64> {
     (0..sizes.ball).map(row).collect()
 }
 
-/// λ, ρ and σ from above, from what is known at the end of `passage` to `next`, which keeps all readings but the oldest, so many.
-fn check(passage: &Passage, next: &Section, dropped: usize) -> Step {
+/// λ, ρ and σ from above, from what is known at the end of `passage` of `n` joints to `next`, which keeps the latest readings.
+fn check(passage: &Passage, next: &Section, n: usize) -> Step {
     let (all, sizes) = (&passage.after.deviations, &passage.law.sizes);
     let ball = sizes.ball;
-    let n = all.columns() - ball - dropped - next.past.columns();
+    let dropped = all.columns() - ball - n - next.past.columns();
     let (root, inverse) = inverse_of(&next.lower);
     let little = &root * &Dense::from_fn(ball, ball + n + dropped, |i, j| all[(i, j)]);
     let flow = Dense::from_fn(ball, ball, |i, j| little[(i, j)]);

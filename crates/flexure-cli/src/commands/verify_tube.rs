@@ -1,0 +1,93 @@
+//! `flexure verify` of a tube of the sampled loop: does every ellipsoid hold for a period of the loop of this scenario?
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use flexure::files::{Reading, read_text};
+use flexure::prove::sampled_data::SampledTube;
+use flexure::prove::sampled_data::file::{Checked, FORMAT, LARGEST, check};
+use flexure::scenario::load_scenario_with;
+use serde::Serialize;
+
+use super::print;
+use super::verify::{Against, ending, malformed, named, rejected, shown};
+use crate::failure::{Failure, say};
+use crate::progress::Progress;
+
+/// What is printed with `--json`.
+#[derive(Serialize)]
+struct Answer<'a> {
+    verdict: &'static str,
+    scenario: &'a str,
+    #[serde(flatten)]
+    tube: &'a SampledTube,
+}
+
+/// Whether the file begins as one of a tube.
+pub fn is_tube(file: &Path) -> bool {
+    // What is in a pipe can be read once.
+    if !file.is_file() {
+        return false;
+    }
+    let mut begin = Vec::new();
+    let read = File::open(file).and_then(|file| file.take(64).read_to_end(&mut begin));
+    read.is_ok() && begin.windows(FORMAT.len()).any(|part| part == FORMAT.as_bytes())
+}
+
+/// `flexure verify` of such a file.
+pub fn verify_tube(
+    file: &Path,
+    against: Option<&str>,
+    reading: Reading<'_>,
+    json: bool,
+) -> Result<(), Failure> {
+    let Some(name) = against else {
+        let message = format!("{} is a tube: it is checked by following a loop", named(file));
+        let hint =
+            "give its scenario with --against; tools/check_tube.py checks it for the loop that it tells";
+        return Err(Failure::input("verify", message, hint));
+    };
+    let text = read_text(file, LARGEST)?;
+    let scenario = load_scenario_with(name, reading)?;
+    say(&scenario.warnings);
+    let checked = {
+        let progress = Progress::of_one(&scenario.name);
+        check(&text, &scenario, &|fraction| progress.set(0, fraction))?
+    };
+    match checked {
+        Checked::Holds(tube) if json => {
+            print::json(&Answer { verdict: "verified", scenario: name, tube: &tube })
+        }
+        Checked::Holds(tube) => {
+            print::line(&format!(
+                "{} ellipsoids followed for a control period of {:?} ms each, torques {:?} ms late",
+                tube.periods,
+                1e3 * tube.period,
+                1e3 * tube.delay
+            ))?;
+            let list = |all: &[f64]| all.iter().map(|x| format!("{x:.3e}")).collect::<Vec<_>>().join(", ");
+            print::line(&format!("rate: at least {} 1/s in every period", tube.rate))?;
+            print::line(&format!("error: at most {} rad, links then motors", list(&tube.error)))?;
+            print::line(&format!("torque: at most {} N m", list(&tube.torque)))?;
+            print::line(&format!("verified: it is about {}, as sampled", shown(name)))
+        }
+        Checked::Differs(differences) => {
+            let against = Against { scenario: name.to_owned(), same: false, differences, tolerances: false };
+            if json {
+                print::json(&against)?;
+            }
+            ending(file, &against)
+        }
+        Checked::Rejected(flexure::verify::Rejected::False { claim, reason }) => {
+            rejected(file, &claim, &reason, json)
+        }
+        Checked::Rejected(flexure::verify::Rejected::Malformed { place, reason, line, column }) => {
+            Err(malformed(file, "tube file", "tube-file", &place, &reason, (line, column)))
+        }
+        Checked::BrokenOff => Err(Failure::interrupted(
+            "broken off: not every ellipsoid was followed".to_owned(),
+            "nothing is said of the file",
+        )),
+    }
+}

@@ -1,0 +1,73 @@
+//! `flexure certify --sampled-tube` and `flexure verify` of its file.
+
+use crate::command::Place;
+
+/// The loop of the file, its torque held and late, has a tube in which motions come closer; a loop that is too late has none, and it is said.
+#[test]
+fn sampled_loops_have_tubes() {
+    let folder = Place::new();
+    let late = |name: &str, delay: &str| {
+        let text = format!("[[imperfection]]\nkind = \"delay\"\ncomputation = {delay}\n\n[sources]");
+        let start = "[reference.smooth_start]\nduration = 2.0\n\n[controller]";
+        folder.scenario(name, &[("[sources]", &text), ("[controller]", start)]);
+    };
+    late("late.toml", "5e-4");
+    late("later.toml", "7e-4");
+    let asked = |file: &str, options: &[&str]| {
+        folder
+            .run(&[&["certify", file, "--sampled-tube", "1e-5", "--set", "duration=0.05"], options].concat())
+    };
+    let found = asked("late.toml", &["--json"]).done().json()["sampled_tube"].clone();
+    assert_eq!(
+        (&found["verdict"], &found["periods"], &found["delay"]),
+        (&"proved".into(), &50.into(), &5e-4.into())
+    );
+    assert!(found["rate"].as_f64().unwrap() > 5.0, "{found}");
+    let said = asked("late.toml", &[]).done().stdout;
+    assert!(said.contains("the loop with its torque held for 0.001 s and 0.0005 s late"), "{said}");
+    assert!(said.contains("1/s or faster in every period"), "{said}");
+    let outcome = asked("later.toml", &[]);
+    assert_eq!(outcome.code, Some(1), "{outcome:?}");
+    assert!(outcome.stdout.contains("sampled      no tube was found"), "{outcome:?}");
+}
+
+/// The file of a tube is beside the certificate, and is followed again for the loop that it is about alone.
+#[test]
+fn tubes_are_verified() {
+    let folder = Place::new();
+    let loop_of = ["two-link-tanh-smooth", "--set", "duration=0.02"];
+    let wrote = folder.run(&[&["certify"], &loop_of[..], &["--sampled-tube", "1e-5"]].concat()).done().stdout;
+    let file = "out/two-link-tanh-smooth.tube.json";
+    assert!(wrote.contains(&format!("wrote {file}")), "{wrote}");
+    let verify = |options: &[&str]| folder.run(&[&["verify", file], options].concat());
+    let against = [&["--against"], &loop_of[..]].concat();
+    let said = verify(&against).done().stdout;
+    assert!(said.contains("20 ellipsoids") && said.contains("verified: it is about two-link"), "{said}");
+    let said = verify(&[&against[..], &["--json"]].concat()).done().json();
+    assert_eq!((&said["verdict"], &said["periods"]), (&"verified".into(), &20.into()));
+    let cases: [(&[&str], i32, &str); 4] = [
+        (&[], 2, "give its scenario with --against"),
+        (&["--against", "two-link-tanh-smooth"], 1, "periods is 20 in the file and 10000 in the scenario"),
+        (&["--against", "two-link-linear-smooth"], 1, "controller.phi"),
+        (&["--against", "no-such-scenario"], 2, "no built-in scenario"),
+    ];
+    for (options, code, complaint) in cases {
+        let outcome = verify(options);
+        assert_eq!(outcome.code, Some(code), "{options:?}: {outcome:?}");
+        assert!(outcome.stderr.contains(complaint) && outcome.stdout.is_empty(), "{options:?}: {outcome:?}");
+    }
+    let text = folder.read(file);
+    folder.write(file, text.replacen("\"rate\": \"19", "\"rate\": \"21", 1));
+    let outcome = verify(&against);
+    assert_eq!(outcome.code, Some(1), "{outcome:?}");
+    assert!(outcome.stderr.contains("rate does not hold"), "{outcome:?}");
+    folder.write(file, &text[..text.len() / 2]);
+    let outcome = verify(&against);
+    assert_eq!(outcome.code, Some(2), "{outcome:?}");
+    assert!(outcome.stderr.contains("is not a tube file"), "{outcome:?}");
+    // What is no tube stays.
+    folder.write(file, "mine");
+    let outcome = folder.run(&[&["certify"], &loop_of[..], &["--sampled-tube", "1e-5"]].concat());
+    assert_eq!(outcome.code, Some(2), "{outcome:?}");
+    assert!(outcome.stderr.contains("exists and is no tube") && folder.read(file) == "mine", "{outcome:?}");
+}
