@@ -44,8 +44,7 @@ pub fn verify_tube(
 ) -> Result<(), Failure> {
     let Some(name) = against else {
         let message = format!("{} is a tube: it is checked by following a loop", named(file));
-        let hint =
-            "give its scenario with --against; tools/check_tube.py checks it for the loop that it tells";
+        let hint = "give the scenario that it is about with --against";
         return Err(Failure::input("verify", message, hint));
     };
     let text = read_text(file, LARGEST)?;

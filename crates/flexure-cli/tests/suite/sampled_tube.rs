@@ -46,7 +46,7 @@ fn tubes_are_verified() {
     let said = verify(&[&against[..], &["--json"]].concat()).done().json();
     assert_eq!((&said["verdict"], &said["periods"]), (&"verified".into(), &20.into()));
     let cases: [(&[&str], i32, &str); 4] = [
-        (&[], 2, "give its scenario with --against"),
+        (&[], 2, "give the scenario that it is about with --against"),
         (&["--against", "two-link-tanh-smooth"], 1, "periods is 20 in the file and 10000 in the scenario"),
         (&["--against", "two-link-linear-smooth"], 1, "controller.phi"),
         (&["--against", "no-such-scenario"], 2, "no built-in scenario"),

@@ -45,7 +45,7 @@ fn funnel_stroke() -> Stroke {
 }
 
 fn tube_stroke() -> Stroke {
-    Stroke::solid(hue(4), 2.0)
+    Stroke::solid(hue(1), 2.0)
 }
 
 fn run_stroke() -> Stroke {
@@ -68,8 +68,7 @@ pub fn certificate_figure(
     let decay = told.start.zip(told.rate).map(|(level, rate)| proved_decay(level, rate, &run));
 
     let subtitle = if told.tube.is_some() {
-        "the run is that of the file, with all that it has, and so is the tube; all else is proved of the law in continuous time, with exact measurements and without \
-         limits of torques"
+        "the run and the tube are of the loop in the file; all else is proved of the law in continuous time, with exact measurements and without limits of torques"
     } else {
         "the run is that of the file, with all that it has; what is proved is proved of the law in continuous time, with exact measurements \
          and without limits of torques"

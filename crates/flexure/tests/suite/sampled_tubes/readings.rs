@@ -113,10 +113,20 @@ fn keeps_to_its_tube(changes: &[(&str, &str)]) {
             );
         }
         let periods = runs.len() - 1;
-        for (k, (q, _)) in runs.iter().enumerate().filter(|(k, _)| 4 * k >= 3 * periods) {
+        assert_eq!(tube.profile.end.len(), runs.len(), "each instant is a part");
+        for (k, (q, _)) in runs.iter().enumerate() {
+            let reference = (0.6 * k as f64 * scenario.control_period).cos();
+            for (i, q) in q[..n].iter().enumerate() {
+                let [lowest, highest] = [&tube.profile.lowest, &tube.profile.highest].map(|ends| ends[i][k]);
+                let beside = q - reference;
+                assert!(
+                    (lowest..=highest).contains(&beside),
+                    "{number} {k} {i}: {beside} {lowest} {highest}"
+                );
+                assert!(highest - lowest < 2.1 * tube.error[i], "{k} {i}: {lowest} {highest}");
+            }
             // The run of the file starts where the file says.
-            if moved == 0.0 {
-                let reference = (0.6 * k as f64 * scenario.control_period).cos();
+            if moved == 0.0 && 4 * k >= 3 * periods {
                 for (q, most) in q.iter().zip(&tube.tracking) {
                     reached = reached.max((q - reference).abs() / most);
                 }
