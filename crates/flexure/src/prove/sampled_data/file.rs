@@ -51,6 +51,7 @@ struct Document {
     asked: Asked,
     periods: usize,
     claims: Claims,
+    kept: Vec<usize>,
     sections: Vec<String>,
 }
 
@@ -80,6 +81,7 @@ impl SampledTube {
             error: above(&self.error),
             torque: above(&self.torque),
         };
+        document.kept = self.sections.iter().map(|section| section.past.columns()).collect();
         let head = serde_json::to_string_pretty(&document).expect("texts and lists");
         let head = head.strip_suffix("]\n}").expect("sections are last");
         let sections: Vec<_> =
@@ -129,6 +131,7 @@ fn about(scenario: &Scenario) -> Result<Document, Problems> {
         asked: Asked { extents: Vec::new(), rate: 0.0 },
         periods: scenario.periods() as usize,
         claims: Claims { rate: String::new(), error: Vec::new(), torque: Vec::new() },
+        kept: Vec::new(),
         sections: Vec::new(),
     })
 }
@@ -159,22 +162,21 @@ fn reference(scenario: &Scenario) -> Result<Option<Value>, Problems> {
     Ok(Some(json!({ "offset": numbers(&sines.offset), "terms": terms, "join": join })))
 }
 
-/// A section as the file has it.
+/// A section as the file has it, without P.
 fn written(section: &Section) -> String {
     let lower = section.lower.rows().enumerate().flat_map(|(i, row)| &row[..=i]);
-    let past = section.past.transposed();
-    let all = section.center.iter().chain(lower).chain(past.rows().flatten());
+    let all = section.center.iter().chain(lower);
     BASE64.encode(all.flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>())
 }
 
-/// The section of `size` numbers that `text` is; or what is wrong with it.
+/// The section of `size` numbers that `text` is, without P; or what is wrong with it.
 fn read(text: &str, size: usize) -> Result<Section, String> {
     let bytes = BASE64.decode(text).map_err(|error| format!("is no base64: {error}"))?;
     let (all, []) = bytes.as_chunks::<8>() else { return Err("is no list of 64-bit numbers".to_owned()) };
     let all: Vec<_> = all.iter().map(|&bytes| f64::from_le_bytes(bytes)).collect();
     let own = size + size * (size + 1) / 2;
-    if all.len() < own || !(all.len() - own).is_multiple_of(size) {
-        return Err(format!("has {} numbers, must have {own} and any number of times {size}", all.len()));
+    if all.len() != own {
+        return Err(format!("has {} numbers, must have {own}", all.len()));
     }
     if !all.iter().all(|x| x.is_finite()) {
         return Err("has numbers that are not finite".to_owned());
@@ -183,7 +185,7 @@ fn read(text: &str, size: usize) -> Result<Section, String> {
     let section = Section {
         center: all[..size].to_vec(),
         lower: Dense::from_fn(size, size, lower),
-        past: Dense::from_fn(size, (all.len() - own) / size, |i, j| all[own + j * size + i]),
+        past: Dense::zeros(size, 0),
     };
     match (0..size).find(|&i| section.lower[(i, i)] <= 0.0) {
         Some(i) => Err(format!("has a diagonal that is not positive, at {i}")),
@@ -241,7 +243,7 @@ pub fn check(text: &str, scenario: &Scenario, progress: Progress<'_>) -> Result<
     if !differences.is_empty() {
         return Ok(Checked::Differs(differences));
     }
-    let Document { asked, claims, sections, periods, .. } = document;
+    let Document { asked, claims, kept, sections, periods, .. } = document;
     let n = scenario.robot.joint_count();
     let lengths = [asked.extents.len(), claims.error.len() / 2, claims.torque.len()];
     if lengths != [n; 3] || claims.error.len() % 2 != 0 {
@@ -254,20 +256,22 @@ pub fn check(text: &str, scenario: &Scenario, progress: Progress<'_>) -> Result<
         return Ok(malformed("sections", format!("are {}, must be {}", sections.len(), periods + 1)));
     }
     let sensors = sensors(scenario);
+    let most = |before: usize| before + sensors.off.len();
+    let is_kept = kept.first() == Some(&0) && kept.windows(2).all(|two| two[1] <= most(two[0]));
+    if kept.len() != sections.len() || !is_kept {
+        let reason =
+            format!("must be {} numbers from 0, each at most {} more than the last", periods + 1, most(0));
+        return Ok(malformed("kept", reason));
+    }
     let size = 4 * n + sensors.remembered(n) + split(delay(scenario).0, scenario.control_period).0 * n;
     let mut all = Vec::with_capacity(sections.len());
     for (k, text) in sections.iter().enumerate() {
-        let section = match read(text, size) {
-            Ok(section) => section,
+        match read(text, size) {
+            Ok(section) => all.push(section),
             Err(reason) => return Ok(malformed(format!("sections[{k}]"), reason)),
-        };
-        let kept = all.last().map_or(0, |last: &Section| last.past.columns() + sensors.off.len());
-        if section.past.columns() > kept {
-            return Ok(malformed(format!("sections[{k}]"), format!("keeps more than {kept} readings")));
         }
-        all.push(section);
     }
-    Ok(match followed(scenario, asked, Sections::Given(&all), progress)? {
+    Ok(match followed(scenario, asked, Sections::Given(&all, &kept), progress)? {
         None => Checked::BrokenOff,
         Some(Err(NoTube { at })) => refuted("sections", at),
         Some(Ok(tube)) => compared(&claims, tube),

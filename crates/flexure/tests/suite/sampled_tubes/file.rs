@@ -86,6 +86,13 @@ fn what_is_written_is_accepted() {
         let text = tube.file(&scenario).unwrap();
         let Checked::Holds(again) = checked(&text, &scenario) else { panic!("{}: rejected", scenario.name) };
         assert_eq!((again.rate, &again.error, &again.torque), (tube.rate, &tube.error, &tube.torque));
+        // c, L and their text: readings that are kept are counted, not written.
+        let size = tube.sections[0].center.len();
+        assert!(
+            text.len() < tube.sections.len() * (11 * size * (size + 3) / 2 + 60) + 60_000,
+            "{}",
+            text.len()
+        );
         let mut other = scenario.clone();
         other.control_period *= 1.001;
         let Checked::Differs(differences) = checked(&text, &other) else { panic!("another period") };
@@ -171,6 +178,9 @@ fn what_is_no_tube_is_told_so() {
         (section(5, f64::INFINITY), "sections[3]"),
         (section(8, -1.0), "sections[3]"),
         (section(8, 0.0), "sections[3]"),
+        (with("/kept/3", json!(4)), "kept"),
+        (with("/kept", json!([])), "kept"),
+        (with("/kept/3", json!(-4)), "the file"),
         (with("/asked/rate", json!(-1.0)), "asked"),
         (with("/asked/extents", json!([1e-5])), "claims"),
         (with("/claims/error", json!([])), "claims"),

@@ -106,8 +106,8 @@ const SMALL: f64 = 1e-12;
 pub enum Sections<'a> {
     /// They are made from one period to the next.
     Made,
-    /// They are there, one for each instant: only the checks are left.
-    Given(&'a [Section]),
+    /// They are there, one for each instant, but for their P, which has so many columns: only the checks are left.
+    Given(&'a [Section], &'a [usize]),
 }
 
 /// All sections of a tube; `each` is told of every instant.
@@ -123,7 +123,7 @@ pub fn tube(
     let Some((first, off)) = first(of, request, shrink) else { return ends(0, Why::NotStable) };
     let mut now = match sections {
         Sections::Made => first,
-        Sections::Given(all) => all[0].clone(),
+        Sections::Given(all, _) => all[0].clone(),
     };
     let mut found = Vec::with_capacity(request.periods + 1);
     let begins = now.reach(&of.started(&request.start));
@@ -159,7 +159,10 @@ pub fn tube(
         let Some(passage) = cuts.passage(of, &before, &law) else { return ends(k, Why::Unbounded) };
         let next = match sections {
             Sections::Made => next(&passage, &off, shrink, shares(of)),
-            Sections::Given(all) => Some(all[k + 1].clone()),
+            Sections::Given(all, kept) => {
+                let [_, _, readings] = middles(&passage, off.len());
+                Some(Section { past: latest(&readings, kept[k + 1]), ..all[k + 1].clone() })
+            }
         };
         let Some(next) = next else { return ends(k, Why::Grows) };
         let step = check(&passage, &next, off.len());
@@ -281,8 +284,14 @@ fn next(passage: &Passage, torques: &[f64], shrink: f64, shares: Shares) -> Opti
         left -= length(dropped);
         dropped += 1;
     }
-    let past = Dense::from_fn(sizes.ball, readings.columns() - dropped, |i, j| readings[(i, dropped + j)]);
+    let past = latest(&readings, readings.columns() - dropped);
     Some(Section { center, lower, past })
+}
+
+/// The last columns.
+fn latest(readings: &Dense<f64>, count: usize) -> Dense<f64> {
+    let from = readings.columns() - count;
+    Dense::from_fn(readings.rows().len(), count, |i, j| readings[(i, from + j)])
 }
 
 /// How far columns of readings are beside those of `kept`, the last of them, all together, number by number, from above.
