@@ -187,7 +187,7 @@ pub(super) fn named(file: &Path) -> String {
 }
 
 pub(super) fn rejected(file: &Path, claim: &str, reason: &str, json: bool) -> Result<(), Failure> {
-    let (claim, reason) = (shown(claim), shown(reason));
+    let (claim, reason) = (clipped(&shown(claim)), clipped(&shown(reason)));
     let message = format!("{}: {claim} does not hold: {reason}", named(file));
     if json {
         let (claim, reason) = (Some(claim), Some(reason));
@@ -209,7 +209,12 @@ pub(super) fn malformed(
         (Some(line), Some(column)) => format!(":{line}:{column}"),
         _ => String::new(),
     };
-    let message = format!("{}{at} is not a {what}: {}: {}", named(file), shown(place), shown(reason));
+    let message = format!(
+        "{}{at} is not a {what}: {}: {}",
+        named(file),
+        clipped(&shown(place)),
+        clipped(&shown(reason))
+    );
     let hint = format!("the file must be a {what} as docs/{page}.md has it");
     Failure::input_at(Place { file: named(file), line, column }, "verify", message, &hint)
 }

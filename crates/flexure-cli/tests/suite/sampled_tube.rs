@@ -57,7 +57,9 @@ fn tubes_are_verified() {
         assert!(outcome.stderr.contains(complaint) && outcome.stdout.is_empty(), "{options:?}: {outcome:?}");
     }
     let text = folder.read(file);
-    folder.write(file, text.replacen("\"rate\": \"19", "\"rate\": \"21", 1));
+    // The claim, not what was asked for.
+    let at = text.rfind("\"rate\": \"19").unwrap();
+    folder.write(file, text[..at].to_owned() + &text[at..].replacen("19", "21", 1));
     let outcome = verify(&against);
     assert_eq!(outcome.code, Some(1), "{outcome:?}");
     assert!(outcome.stderr.contains("rate does not hold"), "{outcome:?}");

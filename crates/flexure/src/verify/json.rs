@@ -3,6 +3,7 @@
 use std::fmt;
 
 use serde::de::{self, Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
+use serde_json::Value;
 
 /// A JSON value.
 pub(super) enum Node {
@@ -81,6 +82,29 @@ impl<'de> Visitor<'de> for Nodes {
             object.push((key, entries.next_value()?));
         }
         Ok(Node::Object(object))
+    }
+}
+
+/// JSON of which every key is there once, and no number but whole ones from 0.
+///
+/// # Errors
+/// Where it is not.
+pub(crate) fn strict(text: &str) -> serde_json::Result<Value> {
+    serde_json::from_str::<Node>(text).map(Value::from)
+}
+
+impl From<Node> for Value {
+    fn from(node: Node) -> Self {
+        match node {
+            Node::Null => Self::Null,
+            Node::Truth(truth) => truth.into(),
+            Node::Index(index) => index.into(),
+            Node::Text(text) => text.into(),
+            Node::List(list) => Self::Array(list.into_iter().map(Self::from).collect()),
+            Node::Object(object) => {
+                Self::Object(object.into_iter().map(|(key, node)| (key, node.into())).collect())
+            }
+        }
     }
 }
 

@@ -30,6 +30,8 @@ mod verdict;
 mod words;
 
 pub use document::LARGEST;
+pub(crate) use json::strict;
+pub(crate) use number::is_decimal;
 pub use subject::quoted;
 pub use verdict::{CheckReport, Claim, Rejected};
 

@@ -47,6 +47,11 @@ struct Rational {
     exponent: i64,
 }
 
+/// Whether `text` is a number as `docs/certificate.md` spells it.
+pub(crate) fn is_decimal(text: &str) -> bool {
+    Number::decimal(text).is_ok()
+}
+
 impl Number {
     /// A decimal.
     pub(super) fn decimal(text: &str) -> Result<Self, String> {

@@ -8,7 +8,6 @@ use serde_json::{Value, json};
 
 use crate::feasible::enclosed_initial_motion;
 use crate::files::Problems;
-use crate::imperfections::stages::split;
 use crate::linalg::Dense;
 use crate::progress::Progress;
 use crate::prove::decimals;
@@ -17,11 +16,11 @@ use crate::prove::engine::number::Number;
 use crate::prove::engine::sampled_data::section::Section;
 use crate::prove::engine::sampled_data::tube::Sections;
 use crate::prove::sampled_data::spoken_of::{sensors, suitable_when_sampled};
-use crate::prove::sampled_data::{Asked, NoTube, SampledTube, delay, followed};
+use crate::prove::sampled_data::{Asked, NoTube, SampledTube, followed, late};
 use crate::prove::subject::{Difference, compare, subject};
 use crate::references::{Reference, Term};
 use crate::scenario::Scenario;
-use crate::verify::Rejected;
+use crate::verify::{Rejected, is_decimal, strict};
 
 /// What the file says that it is.
 pub const FORMAT: &str = "flexure-sampled-tube";
@@ -48,11 +47,28 @@ struct Document {
     #[serde(rename = "loop")]
     sampled: Value,
     initial: Value,
-    asked: Asked,
+    asked: AskedTexts,
     periods: usize,
     claims: Claims,
     kept: Vec<usize>,
     sections: Vec<String>,
+}
+
+/// What a search was for, in decimals.
+#[derive(Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct AskedTexts {
+    extents: Vec<String>,
+    rate: String,
+}
+
+impl AskedTexts {
+    /// The floats that they restore, if all of them are positive.
+    fn read(&self) -> Option<Asked> {
+        let positive = |text: &String| text.parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite());
+        let extents = self.extents.iter().map(positive).collect::<Option<_>>()?;
+        Some(Asked { extents, rate: positive(&self.rate)? })
+    }
 }
 
 /// What is claimed of the sections, in decimals.
@@ -74,7 +90,11 @@ impl SampledTube {
     /// Never: there is nothing in it that JSON cannot say.
     pub fn file(&self, scenario: &Scenario) -> Result<String, Problems> {
         let mut document = about(scenario)?;
-        document.asked = self.asked.clone();
+        let restored = |x: f64| text(Number::decimal(x));
+        document.asked = AskedTexts {
+            extents: self.asked.extents.iter().map(|&x| restored(x)).collect(),
+            rate: restored(self.asked.rate),
+        };
         let above = |all: &[f64]| all.iter().map(|&x| text(Number::above(x))).collect();
         document.claims = Claims {
             rate: text(Number::below(self.rate)),
@@ -90,6 +110,15 @@ impl SampledTube {
     }
 }
 
+/// All digits of a float, if they are few.
+fn exact(x: f64) -> Number {
+    // 2⁻²⁰ has its last digit 72 places behind the point, if 53 bits follow.
+    let digits = format!("{x:.80}");
+    let digits = digits.trim_end_matches('0').trim_end_matches('.');
+    let is_all = x.abs() > 2.0_f64.powi(-20) && digits.len() < 100;
+    if is_all { Number::Decimal(digits.to_owned()) } else { Number::computed(Interval::point(x)) }
+}
+
 fn text(number: Number) -> String {
     match number {
         Number::Decimal(text) | Number::Between([text, _]) => text,
@@ -102,9 +131,9 @@ fn about(scenario: &Scenario) -> Result<Document, Problems> {
     let numbers = |all: &[f64]| all.iter().map(|&x| Number::read(x, scenario.bounds(x))).collect::<Vec<_>>();
     let [link, motor] = [&gains.link, &gains.motor].map(|side| decimals::gains(scenario, side));
     let law = CertifiedPhi::named(gains.phi.name()).map(|phi| json!(DecimalLaw { phi, link, motor }));
-    let sensors = sensors(scenario);
+    let (sensors, late) = (sensors(scenario), late(scenario));
     let filter = sensors.filter.map(|filter| {
-        let both = |of: [Interval; 2]| of.map(Number::computed);
+        let both = |of: [Interval; 2]| of.map(|x| exact(x.midpoint()));
         json!({ "feedback": both(filter.feedback), "forward": both(filter.forward) })
     });
     let initial = &scenario.initial;
@@ -123,12 +152,14 @@ fn about(scenario: &Scenario) -> Result<Document, Problems> {
         reference: json!(reference(scenario)?),
         sampled: json!({
             "control_period": Number::read(scenario.control_period, scenario.bounds(scenario.control_period)),
-            "delay": Number::computed(delay(scenario).1),
-            "off": sensors.off.iter().map(|&off| Number::decimal(off.next_up())).collect::<Vec<_>>(),
+            "waiting": late.waiting,
+            "offset": late.offset.map(Number::computed),
+            // From below: the float that is proved about is above its shortest decimal.
+            "off": sensors.off.iter().map(|&off| Number::decimal(off.next_down())).collect::<Vec<_>>(),
             "filter": filter,
         }),
         initial: json!(initial.concat()),
-        asked: Asked { extents: Vec::new(), rate: 0.0 },
+        asked: AskedTexts::default(),
         periods: scenario.periods() as usize,
         claims: Claims { rate: String::new(), error: Vec::new(), torque: Vec::new() },
         kept: Vec::new(),
@@ -224,8 +255,8 @@ fn refuted(claim: &str, reason: impl Into<String>) -> Checked {
 /// # Errors
 /// If tubes do not speak of such a loop.
 pub fn check(text: &str, scenario: &Scenario, progress: Progress<'_>) -> Result<Checked, Problems> {
-    let document: Document = match serde_json::from_str(text) {
-        Ok(document) => document,
+    let value = match strict(text) {
+        Ok(value) => value,
         Err(error) => {
             return Ok(Checked::Rejected(Rejected::Malformed {
                 place: "the file".to_owned(),
@@ -234,6 +265,15 @@ pub fn check(text: &str, scenario: &Scenario, progress: Progress<'_>) -> Result<
                 column: Some(error.column()),
             }));
         }
+    };
+    // What is read into structs may not be lists.
+    let is_object = |of: &Value| of.is_object();
+    if !is_object(&value) || !["asked", "claims"].iter().all(|&key| value.get(key).is_none_or(is_object)) {
+        return Ok(malformed("the file", "must be an object, asked and claims too"));
+    }
+    let document: Document = match serde_json::from_value(value) {
+        Ok(document) => document,
+        Err(error) => return Ok(malformed("the file", error.to_string())),
     };
     if document.format != FORMAT || document.version != VERSION {
         return Ok(malformed("format", format!("must be \"{FORMAT}\", version {VERSION}")));
@@ -249,8 +289,13 @@ pub fn check(text: &str, scenario: &Scenario, progress: Progress<'_>) -> Result<
     if lengths != [n; 3] || claims.error.len() % 2 != 0 {
         return Ok(malformed("claims", format!("must be of {n} joints, and asked.extents too")));
     }
-    if !asked.extents.iter().chain([&asked.rate]).all(|&x| x > 0.0 && x.is_finite()) {
-        return Ok(malformed("asked", "must be positive numbers"));
+    let Some(asked) = asked.read() else { return Ok(malformed("asked", "must be positive numbers")) };
+    for (what, all) in
+        [("rate", std::slice::from_ref(&claims.rate)), ("error", &claims.error), ("torque", &claims.torque)]
+    {
+        if let Some(text) = all.iter().find(|text| !is_decimal(text)) {
+            return Ok(malformed(format!("claims.{what}"), format!("'{text}' is no number")));
+        }
     }
     if sections.len() != periods + 1 {
         return Ok(malformed("sections", format!("are {}, must be {}", sections.len(), periods + 1)));
@@ -263,7 +308,7 @@ pub fn check(text: &str, scenario: &Scenario, progress: Progress<'_>) -> Result<
             format!("must be {} numbers from 0, each at most {} more than the last", periods + 1, most(0));
         return Ok(malformed("kept", reason));
     }
-    let size = 4 * n + sensors.remembered(n) + split(delay(scenario).0, scenario.control_period).0 * n;
+    let size = 4 * n + sensors.remembered(n) + late(scenario).waiting * n;
     let mut all = Vec::with_capacity(sections.len());
     for (k, text) in sections.iter().enumerate() {
         match read(text, size) {
@@ -294,6 +339,17 @@ fn differences(ours: &Document, theirs: &Document) -> Vec<Difference> {
         compare(place, ours, theirs, &mut found);
     }
     found.retain(|difference| difference.place != "robot.name");
+    // Equal but for spelling, and keys that are missing or too many.
+    let told = |of: &Document| {
+        let mut parts =
+            json!([of.robot, of.controller, of.gravity, of.reference, of.sampled, of.initial, of.subject]);
+        parts[0]["name"] = Value::Null;
+        parts
+    };
+    if found.is_empty() && (told(ours) != told(theirs) || !ours.robot["name"].is_string()) {
+        let all = |of: &Document| told(of).to_string();
+        found.push(Difference { place: "loop".to_owned(), certificate: all(ours), scenario: all(theirs) });
+    }
     found
 }
 

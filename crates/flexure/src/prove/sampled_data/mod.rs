@@ -123,19 +123,10 @@ fn followed(
     let system = along_reference(scenario)?;
     let seconds = scenario.control_period;
     let period = scenario.bounds(seconds);
-    let (delay, exact) = delay(scenario);
-    let (waiting, offset) = split(delay, seconds);
-    let whole_periods = Interval::point(waiting.saturating_sub(1) as f64) * period;
+    let Late { delay, waiting, offset } = late(scenario);
     let passes = passes(scenario);
     let sensors = sensors(scenario);
-    let of = HeldLoop {
-        system: &*system,
-        sensors: &sensors,
-        period,
-        waiting,
-        offset: (offset > 0.0).then(|| exact - whole_periods),
-        passes: &passes,
-    };
+    let of = HeldLoop { system: &*system, sensors: &sensors, period, waiting, offset, passes: &passes };
     let initial = &scenario.initial;
     // The run begins at the decimals of the file, with the springs holding the links (`simulate::assembly`).
     let start = [&initial.q_l, &initial.q_m, &initial.dq_l, &initial.dq_m].into_iter().flatten();
@@ -202,13 +193,26 @@ fn followed(
     })))
 }
 
-/// How late torques are in s, as the loop has it and exactly.
-fn delay(scenario: &Scenario) -> (f64, Interval) {
+/// How late torques are.
+struct Late {
+    /// In s.
+    delay: f64,
+    /// Torques on their way at a control instant, before the law has asked for another.
+    waiting: usize,
+    /// How long into a period the next of them begins to act in s; none if from its beginning.
+    offset: Option<Interval>,
+}
+
+fn late(scenario: &Scenario) -> Late {
     let delays = || scenario.imperfections.iter().filter_map(Imperfection::of::<Delay>);
     let exact = delays().fold(Interval::ZERO, |sum, delay| {
         sum + scenario.bounds(delay.computation) + scenario.bounds(delay.actuation)
     });
-    (delays().map(Delay::total).fold(0.0, f64::add), exact)
+    let delay = delays().map(Delay::total).fold(0.0, f64::add);
+    let (waiting, offset) = split(delay, scenario.control_period);
+    let period = scenario.bounds(scenario.control_period);
+    let whole_periods = Interval::point(waiting.saturating_sub(1) as f64) * period;
+    Late { delay, waiting, offset: (offset > 0.0).then(|| exact - whole_periods) }
 }
 
 /// What is found along a tube.

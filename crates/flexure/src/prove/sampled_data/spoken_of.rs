@@ -72,6 +72,10 @@ pub fn sensors(scenario: &Scenario) -> Sensors {
     if off.iter().all(|&off| off == 0.0) {
         off.clear();
     }
+    // So that there is a short decimal between what may be off and what is proved about.
+    for off in &mut off {
+        *off = off.next_up();
+    }
     let filter = each().find_map(Imperfection::of::<VelocityFilter>).map(|filter| {
         let [feedback, forward] = filter.low_pass(scenario.control_period).coefficients();
         Filter { feedback: feedback.map(Interval::point), forward: forward.map(Interval::point) }

@@ -26,6 +26,7 @@ pub fn why(scenario: &Scenario, rate: f64, sensors: &Sensors, ends: &Ends) -> No
         Why::NotStable => {
             format!("at the start small errors do not shrink at {} 1/s", engineering(rate))
         }
+        Why::StartsOutside => "the start of the run is not in the first ellipsoid".to_owned(),
         Why::Unbounded => format!(
             "{time} motions in it were not shown to stay bounded for a control period; {other} may have one"
         ),

@@ -181,11 +181,15 @@ fn what_is_no_tube_is_told_so() {
         (with("/kept/3", json!(4)), "kept"),
         (with("/kept", json!([])), "kept"),
         (with("/kept/3", json!(-4)), "the file"),
-        (with("/asked/rate", json!(-1.0)), "asked"),
-        (with("/asked/extents", json!([1e-5])), "claims"),
+        (with("/asked/rate", json!("-1")), "asked"),
+        (with("/asked/extents", json!(["1e-5"])), "claims"),
+        (with("/asked/rate", json!(20.0)), "the file"),
+        (with("/claims/rate", json!("+9")), "claims.rate"),
+        (document.as_object().unwrap().values().cloned().collect::<Value>().to_string(), "the file"),
+        (text.replacen("\"waiting\": 0", "\"waiting\": 3, \"waiting\": 0", 1), "the file"),
         (with("/claims/error", json!([])), "claims"),
         (with("/claims/rate", json!("fast")), "claims.rate"),
-        (with("/claims/torque/0", json!("inf")), "claims.torque[0]"),
+        (with("/claims/torque/0", json!("inf")), "claims.torque"),
     ];
     for (text, expected) in cases {
         let shown = &text[..text.len().min(300)];
@@ -194,11 +198,30 @@ fn what_is_no_tube_is_told_so() {
             what => panic!("{expected}: {what:?}"),
         }
     }
+    // Nothing is added to the loop or left out of it, not even what is null.
+    for (place, key) in [("/loop", "friction"), ("/robot", "extra"), ("/controller/link", "more")] {
+        let mut other = document.clone();
+        other.pointer_mut(place).unwrap()[key] = Value::Null;
+        assert!(matches!(checked(&other.to_string(), &scenario), Checked::Differs(_)), "{place}");
+    }
+    let mut other = document.clone();
+    other["loop"].as_object_mut().unwrap().remove("filter");
+    assert!(matches!(checked(&other.to_string(), &scenario), Checked::Differs(_)));
+    let outside = with("/sections/0", {
+        let mut first = numbers(&document["sections"][0]);
+        first[0] += 1e-3;
+        text_of(&first)
+    });
+    let Checked::Rejected(Rejected::False { reason, .. }) = checked(&outside, &scenario) else {
+        panic!("outside")
+    };
+    assert!(reason.contains("the start of the run"), "{reason}");
     // What was asked for says where a search begins: it makes nothing true.
     let random = &mut Random(4);
     for _ in 0..4 {
-        let asked =
-            json!({ "extents": [1e-5 * (1.0 + random.next()), 1e-5], "rate": 20.0 + 5.0 * random.next() });
+        let [extent, rate] =
+            [1e-5 * (1.0 + random.next()), 20.0 + 5.0 * random.next()].map(|x| x.to_string());
+        let asked = json!({ "extents": [extent, "1e-5"], "rate": rate });
         let mut other: Value = serde_json::from_str(&with("/claims/rate", json!("19.76"))).unwrap();
         other["asked"] = asked;
         let said = checked(&other.to_string(), &scenario);

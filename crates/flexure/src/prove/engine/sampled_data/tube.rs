@@ -62,6 +62,8 @@ pub struct Ends {
 pub enum Why {
     /// Small errors shrink at the start with the rate that is asked for.
     NotStable,
+    /// The start of the run is in the first ellipsoid.
+    StartsOutside,
     /// Motions stay bounded for a period.
     Unbounded,
     /// Motions come closer.
@@ -128,7 +130,7 @@ pub fn tube(
     let mut found = Vec::with_capacity(request.periods + 1);
     let begins = now.reach(&of.started(&request.start));
     if begins.is_nan() || begins > 1.0 {
-        return ends(0, Why::Missed);
+        return ends(0, Why::StartsOutside);
     }
     let (mut cuts, mut ahead, mut watch) = (Cuts::new(shrink), Ahead::default(), Watch::default());
     // Torques beside the law's that hold the tube open anyway leave this much to |η|.
