@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks files of tubes as docs/tube-file.md states them, with Python and python-flint alone: check_tube.py FILE... [--all] [--sample K]
+"""Checks files of tubes as docs/tube.md states them, with Python and python-flint alone: check_tube.py FILE... [--all] [--sample K]
 
 Checked are the start, `torque` at every instant, and for K control periods spread evenly (20 unless told) or, with --all, for every one: 1, 2, 3 and 5 of that page, and `rate`.
 `error` needs every period before: without --all it is compared with the extents of all sections alone. The line of a file says which periods were checked.
@@ -89,7 +89,7 @@ class Form(Sums):
         return Form(self.on, self.c * other.c, self.g * other.c + other.g * self.c, self.h * b + other.h * a + cross + cross.transpose())
     def inverse(self):
         c, r = 1 / self.c, 1 / self.range()
-        return self.through(c, -c * c, -r * r, 2 * r**3)
+        return self.through(c, -c * c, -r * r, 2 * r * r * r)
     def sin_cos(self):
         (s, c), (sr, cr) = self.c.sin_cos(), self.range().sin_cos()
         return self.through(s, c, cr, -sr), self.through(c, -s, -sr, -cr)
@@ -156,7 +156,7 @@ def solve(matrix, right):  # a symmetric positive definite matrix, by eliminatio
 class TwoLink:
     def __init__(self, links):
         (m1, m2), (r1, r2), (i1, i2), l1 = (links[key] for key in ("mass", "com", "inertia", "length"))
-        self.a1, self.a2, self.b = m1 * r1**2 + m2 * l1**2 + i1, m2 * r2**2 + i2, m2 * l1 * r2
+        self.a1, self.a2, self.b = m1 * r1 * r1 + m2 * l1 * l1 + i1, m2 * r2 * r2 + i2, m2 * l1 * r2
     def at(self, q):
         return [x * self.b for x in q[1].sin_cos()]
     def matrix(self, at):
@@ -179,7 +179,7 @@ def applied(rows, x):
 def flipped(rows):
     return [list(column) for column in zip(*rows)]
 def nearest(rows):  # contains the nearest unit vector (one row) or rotation: the distance is at most |R R' - 1|
-    defect = sum((dot(x, y) - (x is y)) ** 2 for x in rows for y in rows).abs_upper().sqrt()
+    defect = length_of([dot(x, y) - (x is y) for x in rows for y in rows])
     need(defect < 1e-6 and (len(rows) == 1 or dot(cross(*rows[:2]), rows[2]) > 0), "bodies: an axis or rotation is none")
     return [[thin(x + UNIT * defect) for x in row] for row in rows]
 def thin(x):  # sums and products with the number 0 are left out
@@ -280,19 +280,36 @@ class Law:
             torques.append((inner - e_m * motor["metric"][i] - (v_m[i] - v_mr) * motor["damping"][i])[0])
         return torques
 
-def reference(raw, t):  # its Taylor coefficients at the time t, for each joint
+def product(a, b):  # of polynomials, the lowest coefficient first
+    return [sum(a[i] * b[k - i] for i in range(k + 1) if i < len(a) and k - i < len(b)) for k in range(len(a) + len(b) - 1)]
+def polynomial(coefficients, x):
+    value = 0
+    for c in reversed(coefficients):
+        value = value * x + arb(fmpq(c.numerator, c.denominator))
+    return value
+# Of degree 7, with the first, second and third of (value, rate, second rate) 1 at 0, all others and the third rate 0, and all four 0 at 1: their integrals from 0
+BRAKES = [[Fraction(0)] + [Fraction(c, k + 1) for k, c in enumerate(product([0] * i + [1], product([1, -4, 6, -4, 1], [1, 4, 10, 20][:4 - i])))] for i in range(3)]
+def stopped(x, settle, t, time):  # from the motion x, Taylor coefficients to the third
+    starts = [x[1] * settle, x[2] * settle * settle * 2, x[3] * settle * settle * settle * 3]  # the third polynomial is twice as large
+    def along(tau):
+        return [polynomial(brake, tau) * start for brake, start in zip(BRAKES, starts)]
+    return until(t, settle, sum(along(time / settle), x[0]), constant(sum(along(ONE), x[0])))
+def until(t, end, before, after):  # series; where t may be on both sides, what encloses the two
+    if t.high <= end.low:
+        return before
+    return after if t.low >= end.high else Series(lambda k: before[k].union(after[k]))
+
+def reference(raw, t, motion):  # its Taylor coefficients at the time t, for each joint; motion has those of the links at 0
     time, all, join = Series(lambda k: ONE if k == 1 else ZERO, [t]), [constant(x) for x in raw["offset"]], raw["join"]
     for term in raw["terms"]:
         waves = [(time * w + phase).sin_cos()[0] * a for a, w, phase in zip(*(term[key] for key in ("amplitude", "frequency", "phase")))]
         all = plus(all, waves)
-    if join is None or t.low >= join["duration"].high:
+    if join is None:
         return all
     x = time / join["duration"]
     s = x * x * x * x * x * (126 - x * (420 - x * (540 - x * (315 - x * 70))))
-    joined = [(q - q_0) * s + q_0 for q, q_0 in zip(all, join["position"])]
-    if t.high <= join["duration"].low:
-        return joined
-    return [Series(lambda k, a=a, b=b: a[k].union(b[k])) for a, b in zip(all, joined)]  # one of the two
+    stops = [stopped(q, join["settle"], t, time) for q in motion]
+    return [until(t, join["duration"], p + (q - p) * s, q) for p, q in zip(stops, all)]
 
 # ---- Motions under held torques
 def combined(rows, forms):  # rows of numbers times forms
@@ -353,7 +370,7 @@ def largest(square, times):  # of a symmetric positive semidefinite matrix, abov
 def bend(form):  # its slopes differ from those at 0 by at most so much times |y|
     return largest(form.h.transpose() * form.h, 6).sqrt().abs_upper()
 def length_of(all):
-    return sum(x.abs_upper() ** 2 for x in all).abs_upper().sqrt()
+    return sum(arb(x).abs_upper() ** 2 for x in all).abs_upper().sqrt()
 
 # ---- The file: exactly the keys, lengths and kinds of the specification
 class Number(arb):  # a decimal, or a pair for a real between two, that knows its rational ends
@@ -416,7 +433,7 @@ def read_file(data):
         "controller": {"phi": str, "link": gains | {"hardening": (from_zero,)}, "motor": gains},
         "gravity": [number] * 3 if kind == "tree" else type(None),
         "reference": ({"offset": numbers, "terms": [{"amplitude": numbers, "frequency": numbers, "phase": numbers}, ...],
-                       "join": ({"duration": positive, "position": numbers},)},),
+                       "join": ({"duration": positive, "settle": positive},)},),
         "loop": {"control_period": positive, "waiting": int, "offset": (positive,), "off": [not_negative, ...],
                  "filter": ({"feedback": [number] * 2, "forward": [number] * 2},)},
         "initial": [number] * 4 * n, "asked": {"extents": above, "rate": positive}, "periods": int,
@@ -458,6 +475,7 @@ class Loop:
         self.lengths = [self.h] if first is None else [first, self.h - first]
         self.m = self.n * ((8 if self.filter else 4) + self.waiting)
         self.sections = [Section(text, self.m) for text in file["sections"]]
+        self.begins = self.robot.motion(file["initial"], None)[2][0]
     def parts(self, state):  # positions, velocities, r_1, r_2
         return [state[k * 2 * self.n:][:2 * self.n] for k in range(4)]
     def start(self):
@@ -476,7 +494,7 @@ class Loop:
         v = [x * b0 + r for x, r in zip(q, r1)]
         return q + v, [x * (b1 - b0) + y * a1 + r for x, y, r in zip(q, v, r2)] + [y * a2 - x * b1 for x, y in zip(q, v)]
     def torques(self, k, state):  # of the law at instant k
-        return self.law.asked(reference(self.file["reference"], enclosing(self.h.low * k, self.h.high * k)), self.seen(state)[0])
+        return self.law.asked(reference(self.file["reference"], enclosing(self.h.low * k, self.h.high * k), self.begins), self.seen(state)[0])
     def period(self, k, asked):  # where all of it is at the next instant, as functions of y and w, torques asked for being c + g y + s w
         n, state = self.n, self.sections[k].forms(self.n)
         x, on = state[:4 * n], state[0].on

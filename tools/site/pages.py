@@ -29,7 +29,7 @@ NAVIGATION = {
         ("docs/controllers.md",),
         ("docs/estimators.md",),
         ("docs/certificate.md",),
-        ("docs/tube-file.md",),
+        ("docs/tube.md",),
         ("docs/notation.md",),
         ("docs/equations.md", "Equations"),
         ("docs/errata.md",),

@@ -113,7 +113,7 @@ pub enum Command {
     )]
     /// Check a certificate's claims without what made it, or follow the tube of a sampled loop anew.
     Verify {
-        /// Certificate, or tube of a sampled loop: JSON files as docs/certificate.md and docs/tube-file.md have them.
+        /// Certificate, or tube of a sampled loop: JSON files as docs/certificate.md and docs/tube.md have them.
         #[arg(value_name = "CERTIFICATE")]
         certificate: PathBuf,
         /// Scenario, a file or a built-in name: is it the loop that the file is about? Tubes are checked with it only.

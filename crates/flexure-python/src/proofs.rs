@@ -1,18 +1,20 @@
 //! Proofs, certificates and margins: what `certify`, `verify` and `margins` of the command line do. Results are dicts with the keys of
 //! `--json`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use flexure::files::{Problems, folder_of, prepare, read_text, spare};
 use flexure::prove::question::{Direct, Question, Region, prove_watched};
+use flexure::prove::sampled_data::check::{self, Checked};
+use flexure::prove::sampled_data::file;
 use flexure::prove::subject::differences;
 use flexure::prove::summary::ProofSummary;
-use flexure::report::write_certificate;
+use flexure::report::{write_certificate, write_tube};
 use flexure::sampled::probe;
 use flexure::verify::Rejected;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyList};
 
 use crate::arrays::Numbers;
 use crate::documents::document;
@@ -61,6 +63,9 @@ pub fn certify<'py>(
         // Said before minutes of proof, not after.
         spare(out, "certificate", |text| text.contains("flexure-certificate"), &[])
             .map_err(|problem| refused(py, &problem))?;
+        if sampled_tube.is_some() {
+            file::spare(&file::beside(out)).map_err(|problem| refused(py, &problem))?;
+        }
         prepare(folder_of(out)).map_err(unwritten)?;
     }
     let loaded = scenario.loaded.clone();
@@ -95,13 +100,18 @@ pub fn certify<'py>(
     if let (Some(out), Some(certificate)) = (&out, certificate) {
         write_certificate(out, certificate).map_err(unwritten)?;
     }
+    if let (Some(out), Some(Ok(tube))) = (&out, &proof.sampled_tube) {
+        let text = tube.file(&scenario.loaded).map_err(|problems| raised(py, &problems))?;
+        write_tube(&file::beside(out), &text).map_err(unwritten)?;
+    }
     let text = certificate.map(serde_json::to_string_pretty).transpose();
     found.set_item("certificate", text.map_err(|error| PyRuntimeError::new_err(error.to_string()))?)?;
     Ok(found)
 }
 
 /// Checks the claims of a certificate, its text or the path of its file, without what made it, as `flexure verify`: a dict. With `against`,
-/// what it has differently from that scenario. Raises FlexureError for a claim that does not hold, and for what is no certificate.
+/// what it has differently from that scenario. Of the path of a tube's file, which needs `against`, it follows every ellipsoid. Raises FlexureError for a claim that does not
+/// hold, and for what is no such file.
 #[pyfunction]
 #[pyo3(signature = (certificate, *, against = None))]
 pub fn verify<'py>(
@@ -109,19 +119,17 @@ pub fn verify<'py>(
     certificate: PathBuf,
     against: Option<&Scenario>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    if file::is_tube(&certificate) {
+        return verify_tube(py, &certificate, against);
+    }
     let given = certificate.to_string_lossy().into_owned();
     let text = if given.trim_start().starts_with('{') {
         given
     } else {
         read_text(&certificate, flexure::verify::LARGEST).map_err(|problem| refused(py, &problem))?
     };
-    let report = py.detach(|| flexure::verify::verify(&text)).map_err(|rejected| {
-        let message = match rejected {
-            Rejected::False { claim, reason } => format!("{claim} does not hold: {reason}"),
-            Rejected::Malformed { place, reason, .. } => format!("no certificate: {place}: {reason}"),
-        };
-        said(py, "certificate", &message, "")
-    })?;
+    let report =
+        py.detach(|| flexure::verify::verify(&text)).map_err(|found| rejected(py, "certificate", found))?;
     let found = PyDict::new(py);
     found.set_item("name", report.name)?;
     found.set_item("contraction_rate", report.contraction_rate)?;
@@ -135,6 +143,46 @@ pub fn verify<'py>(
         found.set_item("differences", document(py, &found_there)?)?;
     }
     Ok(found)
+}
+
+/// That a file is no `what`, or that what it claims does not hold.
+fn rejected(py: Python<'_>, what: &str, rejected: Rejected) -> PyErr {
+    let message = match rejected {
+        Rejected::False { claim, reason } => format!("{claim} does not hold: {reason}"),
+        Rejected::Malformed { place, reason, .. } => format!("no {what}: {place}: {reason}"),
+    };
+    said(py, what, &message, "")
+}
+
+/// `verify` of the file of a tube.
+fn verify_tube<'py>(
+    py: Python<'py>,
+    path: &Path,
+    against: Option<&Scenario>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let Some(scenario) = against else {
+        return Err(PyTypeError::new_err(
+            "a tube is checked by following a loop: give its scenario as against",
+        ));
+    };
+    let text = read_text(path, check::LARGEST).map_err(|problem| refused(py, &problem))?;
+    let checked = watched(py, None, |progress| check::check(&text, &scenario.loaded, progress))?;
+    match checked.map_err(|problems| raised(py, &problems))? {
+        Checked::Holds(tube) => {
+            let found = document(py, &tube)?.cast_into::<PyDict>()?;
+            found.set_item("same", true)?;
+            found.set_item("differences", PyList::empty(py))?;
+            Ok(found)
+        }
+        Checked::Differs(differences) => {
+            let found = PyDict::new(py);
+            found.set_item("same", false)?;
+            found.set_item("differences", document(py, &differences)?)?;
+            Ok(found)
+        }
+        Checked::Rejected(found) => Err(rejected(py, "tube", found)),
+        Checked::BrokenOff => Err(PyKeyboardInterrupt::new_err(())),
+    }
 }
 
 /// How much delay, torque gain, stiffness error and noise the loop bears, as `flexure margins`: a dict. With `sampled_tube`, a list of rad, also the delay up to which a tube of

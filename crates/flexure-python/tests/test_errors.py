@@ -60,6 +60,21 @@ class TestErrors:
         with pytest.raises(flexure.FlexureError, match="does not hold|no certificate"):
             flexure.verify(json.dumps(document))
 
+    def test_a_forged_tube(self, tmp_path: Path) -> None:
+        scenario = flexure.Scenario("two-link-tanh-smooth", set={"duration": 0.01})
+        flexure.certify(scenario, sampled_tube=1e-5, out=tmp_path / "arm.json")
+        file = tmp_path / "arm.tube.json"
+        found = flexure.verify(file, against=scenario)
+        assert found["same"] and found["periods"] == 10 and found["rate"] > 10.0
+        assert flexure.verify(file, against="two-link-tanh-smooth")["differences"][0]["place"] == "periods"
+        with pytest.raises(TypeError, match="against"):
+            flexure.verify(file)
+        document = json.loads(file.read_text())
+        document["claims"]["rate"] = "100"
+        file.write_text(json.dumps(document))
+        with pytest.raises(flexure.FlexureError, match="rate does not hold"):
+            flexure.verify(file, against=scenario)
+
     def test_files_that_are_gone(self, tmp_path: Path) -> None:
         file = tmp_path / "s.toml"
         text = 'robot = "pendulum-1dof"\nduration = 1.0\ncontrol_period = 0.001\n[reference]\nkind = "sine"\namplitude = [0.5]\nfrequency = [1.0]\n[controller]\nkind = "vcbc"\n'

@@ -1,9 +1,10 @@
 //! `flexure certify`: a proof and its certificate.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use flexure::files::{Problem, Reading, Unfinished, folder_of, prepare, spare};
 use flexure::prove::question::{Direct, Question, Region, prove_watched};
+use flexure::prove::sampled_data::file;
 use flexure::prove::standing::{Standing, outside_of_proofs};
 use flexure::prove::summary::ProofSummary;
 use flexure::report::{proof_table, proof_verdict, write_certificate, write_certified, write_tube};
@@ -12,7 +13,6 @@ use flexure::scenario::{Scenario, load_scenario_with};
 use serde::Serialize;
 
 use super::print;
-use super::verify_tube::is_tube;
 use crate::args::Certify;
 use crate::failure::{Failure, say};
 use crate::progress::Progress;
@@ -42,9 +42,9 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
         .unwrap_or_else(|| PathBuf::from(format!("out/{}.certificate.json", scenario.name)));
     // Said before minutes of proof, not after.
     spare(&path, "certificate", |text| text.contains("flexure-certificate"), &[])?;
-    let tube_path = beside(&path);
+    let tube_path = file::beside(&path);
     if options.sampled_tube.is_some() {
-        spare_tube(&tube_path)?;
+        file::spare(&tube_path)?;
     }
     prepare(folder_of(&path))?;
     options.paged.prepare(&scenario.name, "certify", 1, &[&path])?;
@@ -108,19 +108,6 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
         Err(Failure::Undecided(reports)) if proof.broken_off => Err(Failure::Interrupted(reports)),
         ended => ended,
     }
-}
-
-/// The file of a tube beside the certificate: NAME.tube.json beside NAME.certificate.json.
-fn beside(certificate: &Path) -> PathBuf {
-    let name = certificate.file_name().unwrap_or_default().to_string_lossy();
-    let name = name.strip_suffix(".json").unwrap_or(&name);
-    certificate.with_file_name(format!("{}.tube.json", name.strip_suffix(".certificate").unwrap_or(name)))
-}
-
-/// That a tube may be written there.
-fn spare_tube(path: &Path) -> Result<(), Problem> {
-    // Not by its text, which may be long.
-    if is_tube(path) { Ok(()) } else { spare(path, "tube", |_| false, &[]) }
 }
 
 /// What the options ask for, if it fits the robot.

@@ -3,13 +3,14 @@
 use std::path::Path;
 
 use flexure::files::{Reading, read_text};
+use flexure::prove::sampled_data::file::is_tube;
 use flexure::prove::subject::{Difference, differences};
 use flexure::scenario::load_scenario_with;
 use flexure::verify::{self, CheckReport, Claim, Rejected, quoted};
 use serde::Serialize;
 
 use super::print;
-use super::verify_tube::{is_tube, verify_tube};
+use super::verify_tube::verify_tube;
 use crate::failure::{Failure, Place};
 
 /// Characters of a text of the file beyond these are not shown.
@@ -57,7 +58,7 @@ pub fn verify(file: &Path, against: Option<&str>, reading: Reading<'_>, json: bo
         }
         Err(Rejected::False { claim, reason }) => rejected(file, &claim, &reason, json),
         Err(Rejected::Malformed { place, reason, line, column }) => {
-            Err(malformed(file, "certificate", "certificate", &place, &reason, (line, column)))
+            Err(malformed(file, "certificate", &place, &reason, (line, column)))
         }
     }
 }
@@ -196,11 +197,10 @@ pub(super) fn rejected(file: &Path, claim: &str, reason: &str, json: bool) -> Re
     Err(Failure::no("verify", message, "nothing else in the file is to be relied on either"))
 }
 
-/// That the file is no `what` as docs/`page`.md has it.
+/// That the file is no `what` as docs/`what`.md has it.
 pub(super) fn malformed(
     file: &Path,
     what: &str,
-    page: &str,
     place: &str,
     reason: &str,
     (line, column): (Option<usize>, Option<usize>),
@@ -215,6 +215,6 @@ pub(super) fn malformed(
         clipped(&shown(place)),
         clipped(&shown(reason))
     );
-    let hint = format!("the file must be a {what} as docs/{page}.md has it");
+    let hint = format!("the file must be a {what} as docs/{what}.md has it");
     Failure::input_at(Place { file: named(file), line, column }, "verify", message, &hint)
 }

@@ -1,13 +1,13 @@
 //! `flexure verify` of a tube of the sampled loop: does every ellipsoid hold for a period of the loop of this scenario?
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 use flexure::files::{Reading, read_text};
 use flexure::prove::sampled_data::SampledTube;
-use flexure::prove::sampled_data::file::{Checked, FORMAT, LARGEST, check};
+use flexure::prove::sampled_data::check::{Checked, LARGEST, check};
 use flexure::scenario::load_scenario_with;
+use flexure::units::{self, Unit, of_joints};
+use flexure::verify::Rejected;
 use serde::Serialize;
 
 use super::print;
@@ -22,17 +22,6 @@ struct Answer<'a> {
     scenario: &'a str,
     #[serde(flatten)]
     tube: &'a SampledTube,
-}
-
-/// Whether the file begins as one of a tube.
-pub fn is_tube(file: &Path) -> bool {
-    // What is in a pipe can be read once.
-    if !file.is_file() {
-        return false;
-    }
-    let mut begin = Vec::new();
-    let read = File::open(file).and_then(|file| file.take(64).read_to_end(&mut begin));
-    read.is_ok() && begin.windows(FORMAT.len()).any(|part| part == FORMAT.as_bytes())
 }
 
 /// `flexure verify` of such a file.
@@ -66,9 +55,15 @@ pub fn verify_tube(
                 tube.periods, tube.period
             ))?;
             let list = |all: &[f64]| all.iter().map(|x| format!("{x:.3e}")).collect::<Vec<_>>().join(", ");
+            let kinds: Vec<_> = scenario.robot.joints.iter().map(|joint| joint.kind).collect();
+            let unit = |unit: Unit| of_joints(unit, "", &kinds);
             print::line(&format!("rate: at least {} 1/s in every period", tube.rate))?;
-            print::line(&format!("error: at most {} rad, links then motors", list(&tube.error)))?;
-            print::line(&format!("torque: at most {} N m", list(&tube.torque)))?;
+            print::line(&format!(
+                "error: at most {} {}, links then motors",
+                list(&tube.error),
+                unit(units::ANGLE)
+            ))?;
+            print::line(&format!("torque: at most {} {}", list(&tube.torque), unit(units::TORQUE)))?;
             print::line(&format!("verified: it is about {}, as sampled", shown(name)))?;
             if scenario.robot.tolerances.are_none() {
                 return Ok(());
@@ -85,11 +80,9 @@ pub fn verify_tube(
             }
             ending(file, &against)
         }
-        Checked::Rejected(flexure::verify::Rejected::False { claim, reason }) => {
-            rejected(file, &claim, &reason, json)
-        }
-        Checked::Rejected(flexure::verify::Rejected::Malformed { place, reason, line, column }) => {
-            Err(malformed(file, "tube file", "tube-file", &place, &reason, (line, column)))
+        Checked::Rejected(Rejected::False { claim, reason }) => rejected(file, &claim, &reason, json),
+        Checked::Rejected(Rejected::Malformed { place, reason, line, column }) => {
+            Err(malformed(file, "tube", &place, &reason, (line, column)))
         }
         Checked::BrokenOff => Err(Failure::interrupted(
             "broken off: not every ellipsoid was followed".to_owned(),

@@ -66,7 +66,7 @@ fn tubes_are_verified() {
     folder.write(file, &text[..text.len() / 2]);
     let outcome = verify(&against);
     assert_eq!(outcome.code, Some(2), "{outcome:?}");
-    assert!(outcome.stderr.contains("is not a tube file"), "{outcome:?}");
+    assert!(outcome.stderr.contains("is not a tube: "), "{outcome:?}");
     // What is no tube stays.
     folder.write(file, "mine");
     let outcome = folder.run(&[&["certify"], &loop_of[..], &["--sampled-tube", "1e-5"]].concat());

@@ -25,7 +25,7 @@ use crate::scenario::Scenario;
 
 pub(crate) use crate::feasible::bounds::limit_words;
 pub use crate::feasible::effort::{effort, peak_torque};
-pub(crate) use crate::feasible::reference::{at_speed, enclosed_initial_motion};
+pub(crate) use crate::feasible::reference::at_speed;
 pub use crate::feasible::reference::{enclosed_reference, reference};
 pub use crate::feasible::search::speed;
 

@@ -38,18 +38,11 @@ pub fn enclosed_reference<const N: usize>(
         Some(Speed::Given(speed)) => scenario.bounds(speed),
         Some(Speed::Within(_)) | None => Interval::point(speed(scenario)?),
     };
-    AnyReference::at_speed(&plan(scenario), speed, &|x| scenario.bounds(x), || {
-        enclosed_initial_motion(scenario)
-    })
-}
-
-/// The links' motion when a scenario begins, to the jerk, with its decimals enclosed.
-///
-/// # Errors
-/// If the robot has too many joints.
-pub(crate) fn enclosed_initial_motion(scenario: &Scenario) -> Result<Vec<Jet<Interval, 4>>, Problems> {
-    let arm = scenario.robot.enclosed_arm()?;
-    Ok(initial_motion(&*arm, &scenario.initial, &|x| scenario.bounds(x)))
+    let motion = || {
+        let arm = scenario.robot.enclosed_arm()?;
+        Ok(initial_motion(&*arm, &scenario.initial, &|x| scenario.bounds(x)))
+    };
+    AnyReference::at_speed(&plan(scenario), speed, &|x| scenario.bounds(x), motion)
 }
 
 fn plan(scenario: &Scenario) -> Plan<'_> {

@@ -1,6 +1,7 @@
 //! How far motions of a scenario's sampled loop can be from its run, and how fast they come closer: the law at its control period, with its delay,
 //! its torques held and within limits, on readings in counts and filtered velocities.
 
+pub mod check;
 pub mod file;
 mod spoken_of;
 mod words;
@@ -86,8 +87,11 @@ pub struct Asked {
 /// Why there is none.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NoTube {
-    /// In words with numbers.
+    /// In words with numbers, and what else may have one.
     pub at: String,
+    /// The same without that advice.
+    #[serde(skip)]
+    pub not_shown: String,
 }
 
 /// The rate that is looked for, as a part of the rate at which small errors decay.
@@ -103,7 +107,7 @@ pub fn sampled_tube(
     progress: Progress<'_>,
 ) -> Result<Option<Result<SampledTube, NoTube>>, Problems> {
     suitable_when_sampled(scenario)?;
-    let none = |at: String| Ok(Some(Err(NoTube { at })));
+    let none = |at: String| Ok(Some(Err(NoTube { not_shown: at.clone(), at })));
     let rate = match sampled::probe(scenario)? {
         Some(found) if found.stable => PART * found.rate,
         Some(_) => return none("small errors do not shrink in it".to_owned()),

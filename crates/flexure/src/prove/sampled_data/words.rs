@@ -21,26 +21,22 @@ pub fn not_looked_at(scenario: &Scenario) -> String {
 pub fn why(scenario: &Scenario, rate: f64, sensors: &Sensors, ends: &Ends) -> NoTube {
     let time = format!("at t = {} s", short(ends.period as f64 * scenario.control_period, 5));
     let unit = |unit: Unit, joint: usize| unit.of(scenario.robot.joints[joint].kind).plain;
-    let other = if sensors.off.is_empty() { "a smaller one" } else { "another width" };
+    let narrower = if sensors.off.is_empty() { "a smaller one" } else { "another width" };
     let at = match ends.why {
         Why::NotStable => {
             format!("at the start small errors do not shrink at {} 1/s", engineering(rate))
         }
         Why::StartsOutside => "the start of the run is not in the first ellipsoid".to_owned(),
-        Why::Unbounded => format!(
-            "{time} motions in it were not shown to stay bounded for a control period; {other} may have one"
-        ),
-        Why::Grows => format!("{time} motions in it were not shown to come closer; {other} may have one"),
+        Why::Unbounded => format!("{time} motions in it were not shown to stay bounded for a control period"),
+        Why::Grows => format!("{time} motions in it were not shown to come closer"),
         Why::Widens(link, reach) => format!(
-            "{time} it would have to be so wide that link {} is up to {} {} from the run; {other} may have one",
+            "{time} it would have to be so wide that link {} is up to {} {} from the run",
             link + 1,
             engineering(reach),
             unit(units::ANGLE, link)
         ),
         Why::Missed => {
-            format!(
-                "{time} where its middle goes is not known as closely as motions come closer; a larger one may have one"
-            )
+            format!("{time} where its middle goes is not known as closely as motions come closer")
         }
         Why::Beyond(Beyond { limit, joint, found, passes }) => {
             let (what, of, who) = match limit {
@@ -64,5 +60,10 @@ pub fn why(scenario: &Scenario, rate: f64, sensors: &Sensors, ends: &Ends) -> No
             format!("{time} {what} of joint {} may come to {found} {unit}, {who} {passes} {unit}", joint + 1)
         }
     };
-    NoTube { at }
+    let other = match ends.why {
+        Why::Unbounded | Why::Grows | Why::Widens(..) => Some(narrower),
+        Why::Missed => Some("a larger one"),
+        Why::NotStable | Why::StartsOutside | Why::Beyond(_) => None,
+    };
+    NoTube { at: other.map_or(at.clone(), |other| format!("{at}; {other} may have one")), not_shown: at }
 }

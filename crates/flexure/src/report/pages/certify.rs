@@ -136,8 +136,8 @@ pub(crate) fn certify_page(
             "In the middle: the link error of each joint over time, and the funnel that no run of the ideal loop leaves. "
         }
         @if matches!(summary.sampled_tube, Some(SampledTubeSummary::Proved(_))) {
-            "Before the planes: the link error of each joint over time, and where links are at control instants of all motions of the loop in the file, as sampled, that \
-             start in its tube. "
+            "In the middle, too: the link error of each joint over time in the tube, where links are at control instants of all motions that start in it, of the loop in the \
+             file, as sampled. "
         }
         "Below: the position errors of each joint, from the ring on"
         @if summary.region.as_ref().is_some_and(|region| region.level.is_some()) {

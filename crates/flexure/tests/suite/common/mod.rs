@@ -1,5 +1,7 @@
 //! What several modules share: the workspace, numbers at random, places in texts, distances, an oracle for linear motion.
 
+pub mod python;
+
 use std::path::{Path, PathBuf};
 
 use flexure_core::linalg::Matrix;

@@ -1,6 +1,7 @@
 //! Tubes of sampled loops against simulated ones: what starts in a tube ends where it was said to, and no tube is found where none is.
 
 mod file;
+mod python;
 mod random;
 mod readings;
 

@@ -1,56 +1,28 @@
 //! The second checker, in Python, says the same of every certificate and every mutant.
 //!
-//! mpmath is taken from the interpreter if it is there, else from PyPI into a virtual environment under the target folder.
-//! Set `FLEXURE_OFFLINE=1` to leave the test out where neither can be had.
+//! Set `FLEXURE_OFFLINE=1` to leave the test out where mpmath cannot be had.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 use std::sync::LazyLock;
 
 use super::mutants::all;
 use super::{CERTIFICATES, tree_with_a_rod};
+use crate::common::python;
 
 const SCRIPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tools/check_certificate.py");
 
-fn run(program: &Path, arguments: &[&str]) -> Option<Output> {
-    Command::new(program).args(arguments).env_remove("PYTHONPATH").output().ok()
-}
-
-fn succeeds(program: &Path, arguments: &[&str]) -> bool {
-    run(program, arguments).is_some_and(|output| output.status.success())
-}
-
-/// An interpreter that has mpmath; none offline without it. Made once: tests side by side wait for the one that makes it.
-static INTERPRETER: LazyLock<Option<PathBuf>> = LazyLock::new(interpreter);
-
-fn interpreter() -> Option<PathBuf> {
-    let python = PathBuf::from("python3");
-    if succeeds(&python, &["-c", "import mpmath"]) {
-        return Some(python);
-    }
-    if std::env::var_os("FLEXURE_OFFLINE").is_some() {
-        return None;
-    }
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("mpmath");
-    let own = folder.join("bin/python");
-    if !succeeds(&own, &["-c", "import mpmath"]) {
-        let made = succeeds(&python, &["-m", "venv", "--clear", folder.to_str().unwrap()]);
-        assert!(made, "Python 3.11 or newer with venv is needed (on Debian: apt-get install python3-venv)");
-        let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "mpmath==1.3.0"];
-        assert!(succeeds(&own, &install), "PyPI is needed; FLEXURE_OFFLINE=1 leaves this test out");
-    }
-    Some(own)
-}
+/// An interpreter that has mpmath; none offline without it.
+static INTERPRETER: LazyLock<Option<PathBuf>> = LazyLock::new(|| python::with("mpmath", "mpmath==1.3.0"));
 
 /// Exit code and lines for these texts, a file each.
-fn checked(python: &Path, texts: &[impl AsRef<[u8]>]) -> (Option<i32>, Vec<String>) {
+fn checked(interpreter: &Path, texts: &[impl AsRef<[u8]>]) -> (Option<i32>, Vec<String>) {
     let folder = tempfile::tempdir().unwrap();
     let files: Vec<_> = (0..texts.len()).map(|i| folder.path().join(format!("{i}.json"))).collect();
     for (file, text) in files.iter().zip(texts) {
         std::fs::write(file, text).unwrap();
     }
     let names = files.iter().map(|file| file.to_str().unwrap());
-    let output = run(python, &[SCRIPT].into_iter().chain(names).collect::<Vec<_>>()).unwrap();
+    let output = python::run(interpreter, &[SCRIPT].into_iter().chain(names).collect::<Vec<_>>()).unwrap();
     let said = String::from_utf8(output.stdout).unwrap();
     let lines: Vec<_> = said.lines().map(str::to_owned).collect();
     assert_eq!(lines.len(), texts.len(), "{said}{}", String::from_utf8_lossy(&output.stderr));

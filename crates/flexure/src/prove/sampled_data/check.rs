@@ -1,0 +1,211 @@
+//! Following the file of a tube: is it about this loop, and does every section hold for a period of it?
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD as BASE64;
+use flexure_core::scalar::Interval;
+use serde_json::{Value, json};
+
+use crate::files::Problems;
+use crate::linalg::Dense;
+use crate::progress::Progress;
+use crate::prove::engine::sampled_data::section::Section;
+use crate::prove::engine::sampled_data::tube::Sections;
+use crate::prove::sampled_data::file::{AskedTexts, Claims, Document, FORMAT, VERSION, about};
+use crate::prove::sampled_data::spoken_of::{sensors, suitable_when_sampled};
+use crate::prove::sampled_data::{Asked, NoTube, SampledTube, followed, late};
+use crate::prove::subject::{Difference, compare};
+use crate::scenario::Scenario;
+use crate::verify::{Rejected, is_decimal, strict};
+
+/// Bytes that a file may have.
+pub const LARGEST: u64 = 1 << 30;
+
+/// What came of following a file.
+#[derive(Clone, Debug)]
+pub enum Checked {
+    /// It is about this loop, and everything that it claims holds.
+    Holds(Box<SampledTube>),
+    /// It is about another loop.
+    Differs(Vec<Difference>),
+    /// It is no such file, or what it claims does not hold.
+    Rejected(Rejected),
+    /// It was broken off.
+    BrokenOff,
+}
+
+/// Follows every section of the file whose text is `text` for a period of the loop of `scenario`.
+///
+/// # Errors
+/// If tubes do not speak of such a loop.
+pub fn check(text: &str, scenario: &Scenario, progress: Progress<'_>) -> Result<Checked, Problems> {
+    suitable_when_sampled(scenario)?;
+    let document = match document(text) {
+        Ok(document) => document,
+        Err(rejected) => return Ok(Checked::Rejected(rejected)),
+    };
+    let differences = differences(&document, &about(scenario)?);
+    if !differences.is_empty() {
+        return Ok(Checked::Differs(differences));
+    }
+    let given = match given(&document, scenario) {
+        Ok(given) => given,
+        Err(rejected) => return Ok(Checked::Rejected(rejected)),
+    };
+    let sections = Sections::Given(&given.sections, &document.kept);
+    Ok(match followed(scenario, given.asked, sections, progress)? {
+        None => Checked::BrokenOff,
+        Some(Err(NoTube { not_shown, .. })) => Checked::Rejected(refuted("sections", not_shown)),
+        Some(Ok(tube)) => match compared(&document.claims, &tube) {
+            Ok(()) => Checked::Holds(Box::new(tube)),
+            Err(rejected) => Checked::Rejected(rejected),
+        },
+    })
+}
+
+fn malformed(place: impl Into<String>, reason: impl Into<String>) -> Rejected {
+    Rejected::Malformed { place: place.into(), reason: reason.into(), line: None, column: None }
+}
+
+fn refuted(claim: &str, reason: impl Into<String>) -> Rejected {
+    Rejected::False { claim: claim.to_owned(), reason: reason.into() }
+}
+
+/// What the file says.
+fn document(text: &str) -> Result<Document, Rejected> {
+    let value = strict(text).map_err(|error| Rejected::Malformed {
+        place: "the file".to_owned(),
+        reason: error.to_string(),
+        line: Some(error.line()),
+        column: Some(error.column()),
+    })?;
+    // What is read into structs may not be lists.
+    if !value.is_object() || !["asked", "claims"].iter().all(|key| value[*key].is_object()) {
+        return Err(malformed("the file", "must be an object, asked and claims too"));
+    }
+    let document: Document =
+        serde_json::from_value(value).map_err(|error| malformed("the file", error.to_string()))?;
+    if document.format != FORMAT || document.version != VERSION {
+        return Err(malformed("format", format!("must be \"{FORMAT}\", version {VERSION}")));
+    }
+    Ok(document)
+}
+
+/// Where what the file says of its loop is not what the scenario's is.
+fn differences(ours: &Document, theirs: &Document) -> Vec<Difference> {
+    let mut found = Vec::new();
+    for (place, ours, theirs) in [
+        ("robot", &ours.robot, &theirs.robot),
+        ("controller", &ours.controller, &theirs.controller),
+        ("gravity", &ours.gravity, &theirs.gravity),
+        ("reference", &ours.reference, &theirs.reference),
+        ("loop", &ours.sampled, &theirs.sampled),
+        ("initial", &ours.initial, &theirs.initial),
+        ("periods", &ours.periods.into(), &theirs.periods.into()),
+        ("subject", &ours.subject, &theirs.subject),
+    ] {
+        compare(place, ours, theirs, &mut found);
+    }
+    found.retain(|difference| difference.place != "robot.name");
+    // Equal but for spelling, and keys that are missing or too many.
+    let told = |of: &Document| {
+        let mut parts =
+            json!([of.robot, of.controller, of.gravity, of.reference, of.sampled, of.initial, of.subject]);
+        parts[0]["name"] = Value::Null;
+        parts
+    };
+    if found.is_empty() && (told(ours) != told(theirs) || !ours.robot["name"].is_string()) {
+        let all = |of: &Document| told(of).to_string();
+        found.push(Difference { place: "loop".to_owned(), certificate: all(ours), scenario: all(theirs) });
+    }
+    found
+}
+
+/// What a file gives of its tube.
+struct Given {
+    asked: Asked,
+    sections: Vec<Section>,
+}
+
+/// What `document`, which is about `scenario`, gives of its tube, if it has as much as it must.
+fn given(document: &Document, scenario: &Scenario) -> Result<Given, Rejected> {
+    let Document { asked, claims, kept, sections, periods, .. } = document;
+    let n = scenario.robot.joint_count();
+    let Claims { rate, error, torque } = claims;
+    if [asked.extents.len(), torque.len()] != [n; 2] || error.len() != 2 * n {
+        return Err(malformed("claims", format!("must be of {n} joints, and asked.extents too")));
+    }
+    let asked = asked.read().ok_or_else(|| malformed("asked", "must be positive numbers"))?;
+    for (what, all) in [("rate", std::slice::from_ref(rate)), ("error", error), ("torque", torque)] {
+        if let Some(text) = all.iter().find(|text| !is_decimal(text)) {
+            return Err(malformed(format!("claims.{what}"), format!("'{text}' is no number")));
+        }
+    }
+    if sections.len() != periods + 1 {
+        return Err(malformed("sections", format!("are {}, must be {}", sections.len(), periods + 1)));
+    }
+    let sensors = sensors(scenario);
+    let most = sensors.off.len();
+    let is_kept = kept.first() == Some(&0) && kept.windows(2).all(|two| two[1] <= two[0] + most);
+    if kept.len() != sections.len() || !is_kept {
+        let reason =
+            format!("must be {} numbers from 0, each at most {most} more than the last", periods + 1);
+        return Err(malformed("kept", reason));
+    }
+    let size = 4 * n + sensors.remembered(n) + late(scenario).waiting * n;
+    let section = |(k, text): (usize, &String)| {
+        read(text, size).map_err(|reason| malformed(format!("sections[{k}]"), reason))
+    };
+    Ok(Given { asked, sections: sections.iter().enumerate().map(section).collect::<Result<_, _>>()? })
+}
+
+impl AskedTexts {
+    /// The floats that they restore, if all of them are positive.
+    fn read(&self) -> Option<Asked> {
+        let positive = |text: &String| text.parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite());
+        let extents = self.extents.iter().map(positive).collect::<Option<_>>()?;
+        Some(Asked { extents, rate: positive(&self.rate)? })
+    }
+}
+
+/// The section of `size` numbers that `text` is, without P; or what is wrong with it.
+fn read(text: &str, size: usize) -> Result<Section, String> {
+    let bytes = BASE64.decode(text).map_err(|error| format!("is no base64: {error}"))?;
+    let (all, []) = bytes.as_chunks::<8>() else { return Err("is no list of 64-bit numbers".to_owned()) };
+    let all: Vec<_> = all.iter().map(|&bytes| f64::from_le_bytes(bytes)).collect();
+    let own = size + size * (size + 1) / 2;
+    if all.len() != own {
+        return Err(format!("has {} numbers, must have {own}", all.len()));
+    }
+    if !all.iter().all(|x| x.is_finite()) {
+        return Err("has numbers that are not finite".to_owned());
+    }
+    let lower = |i: usize, j: usize| if j <= i { all[size + i * (i + 1) / 2 + j] } else { 0.0 };
+    let section = Section {
+        center: all[..size].to_vec(),
+        lower: Dense::from_fn(size, size, lower),
+        past: Dense::zeros(size, 0),
+    };
+    match (0..size).find(|&i| section.lower[(i, i)] <= 0.0) {
+        Some(i) => Err(format!("has a diagonal that is not positive, at {i}")),
+        None => Ok(section),
+    }
+}
+
+/// Whether what is claimed, in decimals, is not more than what was found.
+fn compared(Claims { rate, error, torque }: &Claims, tube: &SampledTube) -> Result<(), Rejected> {
+    let bounds = |text: &str| Interval::from_decimal(text).unwrap_or(Interval::ENTIRE);
+    let holds = bounds(rate).hi() <= tube.rate;
+    if !holds {
+        return Err(refuted("rate", format!("{rate} 1/s are claimed, {} are there", tube.rate)));
+    }
+    for (what, claimed, found) in [("error", error, &tube.error), ("torque", torque, &tube.torque)] {
+        for (i, (text, &found)) in claimed.iter().zip(found).enumerate() {
+            let holds = bounds(text).lo() >= found;
+            if !holds {
+                let reason = format!("at most {text} is claimed, {found} is there");
+                return Err(refuted(&format!("{what}[{i}]"), reason));
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,107 @@
+//! The second checker of tubes, in Python, accepts what is written, for arms and trees, early and late, and nothing that says more.
+//!
+//! Set `FLEXURE_OFFLINE=1` to leave the test out where python-flint cannot be had.
+
+use std::path::PathBuf;
+use std::sync::LazyLock;
+
+use serde_json::{Value, json};
+
+use crate::common::python;
+use crate::sampled_tubes::file::{file, numbers, text_of};
+use crate::sampled_tubes::{scenario, with_delay};
+
+const SCRIPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tools/check_tube.py");
+
+/// An interpreter that has python-flint; none offline without it.
+static INTERPRETER: LazyLock<Option<PathBuf>> =
+    LazyLock::new(|| python::with("flint", "python-flint==0.9.0"));
+
+/// Exit code and words for a file, so many of whose periods are followed.
+fn checked(text: &str, sample: usize) -> Option<(i32, String)> {
+    let interpreter = INTERPRETER.as_deref()?;
+    let place = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(&place, text).unwrap();
+    let options = [SCRIPT, "--sample", &sample.to_string(), place.path().to_str().unwrap()];
+    let output = python::run(interpreter, &options).unwrap();
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+    Some((output.status.code().unwrap(), said))
+}
+
+#[test]
+fn the_second_checker_accepts_tubes() {
+    let late = |delay: f64| {
+        let mut late = with_delay(delay);
+        late.duration = 0.12;
+        late
+    };
+    let moving = ["duration = 0.12", "reference.smooth_start.duration = 0.1"];
+    // Under gravity, at rest but for rounding: their smooth start brings them to rest.
+    let tree = ["duration = 0.01"];
+    for (scenario, error, sample) in [
+        (scenario("two-link-tanh-smooth", &moving), 1e-5, 3),
+        (scenario("two-link-linear-smooth", &moving), 1e-5, 2),
+        (late(5e-4), 1e-5, 2),
+        (scenario("planar-2r-tanh", &tree), 1e-5, 2),
+        (scenario("planar-3r-tanh", &tree), 1e-6, 1),
+    ] {
+        let Some((code, said)) = checked(&file(&scenario, error), sample) else {
+            println!("left out: FLEXURE_OFFLINE is set and python3 has no python-flint");
+            return;
+        };
+        println!("{}: {said}", scenario.name);
+        assert!(code == 0 && said.contains("proved for periods 0"), "{}: {said}", scenario.name);
+    }
+}
+
+/// A period or two of the arm with the paper's gains, with claims and numbers that say more, and what is no such file.
+#[test]
+fn the_second_checker_is_not_fooled() {
+    let scenario =
+        scenario("two-link-tanh-smooth", &["duration = 0.002", "reference.smooth_start.duration = 0.1"]);
+    let text = file(&scenario, 1e-5);
+    let document: Value = serde_json::from_str(&text).unwrap();
+    let with = |place: &str, value: Value| {
+        let mut other = document.clone();
+        *other.pointer_mut(place).unwrap() = value;
+        other.to_string()
+    };
+    let claimed = |place: &str, factor: f64| {
+        let claim: f64 = document.pointer(place).unwrap().as_str().unwrap().parse().unwrap();
+        with(place, json!(format!("{}", claim * factor)))
+    };
+    let section = |k: usize, i: usize, change: &dyn Fn(f64) -> f64| {
+        let mut moved = numbers(&document["sections"][k]);
+        moved[i] = change(moved[i]);
+        with(&format!("/sections/{k}"), text_of(&moved))
+    };
+    let refuted = [
+        (claimed("/claims/rate", 1.02), "rate"),
+        (claimed("/claims/error/0", 0.99), "error"),
+        (claimed("/claims/torque/1", 0.99), "torque"),
+        // The run is then so far from the middle.
+        (section(1, 0, &|c| c + 1e-9), "error"),
+        (section(1, 8, &|l| 0.99 * l), "period 0"),
+        (section(0, 0, &|c| c + 2e-5), "the start is not in E_0"),
+        (with("/loop/control_period", json!("0.0011")), "period 0"),
+    ];
+    for (text, what) in refuted {
+        let Some((code, said)) = checked(&text, 2) else { return };
+        assert!(code == 1 && said.contains(what), "{what}: {said}");
+    }
+    let twice = text.replacen("\"waiting\": 0", "\"waiting\": 0, \"waiting\": 0", 1);
+    let unknown = [
+        (String::new(), "not a file of a tube"),
+        (text[..text.len() / 2].to_owned(), "not a file of a tube"),
+        (twice, "not a file of a tube"),
+        (with("/sections/1", json!("###")), "not a file of a tube"),
+        (section(1, 0, &|_| f64::NAN), "not finite"),
+        (with("/kept/1", json!(4)), "kept"),
+        (with("/reference", Value::Null), "does not know"),
+    ];
+    for (text, what) in unknown {
+        let (code, said) = checked(&text, 2).unwrap();
+        assert!(code == 2 && said.contains(what), "{what}: {said}");
+    }
+}
