@@ -5,8 +5,8 @@ use std::path::Path;
 use flexure::files::{Reading, read_text};
 use flexure::prove::sampled_data::SampledTube;
 use flexure::prove::sampled_data::check::{Checked, LARGEST, check};
+use flexure::report::tube_lines;
 use flexure::scenario::load_scenario_with;
-use flexure::units::{self, Unit, of_joints};
 use flexure::verify::Rejected;
 use serde::Serialize;
 
@@ -48,22 +48,9 @@ pub fn verify_tube(
             print::json(&Answer { verdict: "verified", scenario: name, tube: &tube })
         }
         Checked::Holds(tube) => {
-            let late =
-                if tube.delay > 0.0 { format!(", torques {} s late", tube.delay) } else { String::new() };
-            print::line(&format!(
-                "{} ellipsoids followed for a control period of {} s each{late}",
-                tube.periods, tube.period
-            ))?;
-            let list = |all: &[f64]| all.iter().map(|x| format!("{x:.3e}")).collect::<Vec<_>>().join(", ");
-            let kinds: Vec<_> = scenario.robot.joints.iter().map(|joint| joint.kind).collect();
-            let unit = |unit: Unit| of_joints(unit, "", &kinds);
-            print::line(&format!("rate: at least {} 1/s in every period", tube.rate))?;
-            print::line(&format!(
-                "error: at most {} {}, links then motors",
-                list(&tube.error),
-                unit(units::ANGLE)
-            ))?;
-            print::line(&format!("torque: at most {} {}", list(&tube.torque), unit(units::TORQUE)))?;
+            for line in tube_lines(&tube, &scenario.robot.kinds()) {
+                print::line(&line)?;
+            }
             print::line(&format!("verified: it is about {}, as sampled", shown(name)))?;
             if scenario.robot.tolerances.are_none() {
                 return Ok(());

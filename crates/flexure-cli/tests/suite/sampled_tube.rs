@@ -42,7 +42,10 @@ fn tubes_are_verified() {
     let verify = |options: &[&str]| folder.run(&[&["verify", file], options].concat());
     let against = [&["--against"], &loop_of[..]].concat();
     let said = verify(&against).done().stdout;
-    assert!(said.contains("20 ellipsoids") && said.contains("verified: it is about two-link"), "{said}");
+    assert!(
+        said.contains("20 control periods, one by one") && said.contains("verified: it is about two-link"),
+        "{said}"
+    );
     let said = verify(&[&against[..], &["--json"]].concat()).done().json();
     assert_eq!((&said["verdict"], &said["periods"]), (&"verified".into(), &20.into()));
     let cases: [(&[&str], i32, &str); 4] = [

@@ -47,5 +47,6 @@ pub use tables::practical::practical_table;
 pub use tables::proof::{certificate_table, proof_table};
 pub use tables::summary::{joint_table, summary_table, usage_table};
 pub use tables::sweep::sweep_table;
+pub use tables::tube::tube_lines;
 pub use ultimate::{Practical, Ultimate};
 pub use view::{Film, Viewed, view};

@@ -11,3 +11,4 @@ pub(crate) mod practical;
 pub(crate) mod proof;
 pub(crate) mod summary;
 pub(crate) mod sweep;
+pub(crate) mod tube;

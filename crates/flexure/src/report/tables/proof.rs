@@ -13,6 +13,7 @@ use crate::prove::standing::outside_of_proofs;
 use crate::prove::summary::{
     BlockSummary, FunnelSummary, ProofSummary, SampledTubeSummary, WithinSummary, WitnessSummary,
 };
+use crate::report::tables::tube::tube_lines;
 use crate::robot::JointKind;
 use crate::units::{self, Unit};
 
@@ -287,49 +288,10 @@ fn funnel(found: &FunnelSummary, summary: &ProofSummary) -> Vec<String> {
 
 /// What holds of motions of the sampled loop.
 fn sampled_tube(found: &SampledTubeSummary, summary: &ProofSummary) -> Vec<String> {
-    let found = match found {
-        SampledTubeSummary::Proved(found) => found,
-        SampledTubeSummary::Undecided(none) => {
-            return vec![format!("sampled      no tube was found: {}", none.at)];
-        }
-    };
-    let [rad, torque] = [units::ANGLE, units::TORQUE].map(|unit| summary.unit(unit));
-    let (links, motors) = found.error.split_at(found.error.len() / 2);
-    let alone = &found.alone[..links.len()];
-    let late = if found.delay > 0.0 { format!(" and {} s late", found.delay) } else { String::new() };
-    let held = format!("its torque held for {} s{late}", found.period);
-    let velocities = if found.filtered { "filtered velocities" } else { "true velocities" };
-    let (seen, run, of_readings) = match found.readings[..] {
-        [] if found.filtered => (format!("on true positions and {velocities}"), "the run", ""),
-        [] => ("on true states".to_owned(), "the run", ""),
-        [..] => (
-            format!("on positions up to {} {rad} off and {velocities}", at_most(&found.readings)),
-            "the run on exact readings",
-            ", of the same errors of readings,",
-        ),
-    };
-    let s = if found.periods == 1 { "" } else { "s" };
-    vec![
-        format!("sampled      the loop with {held}, {seen}: {} control period{s}, one by one", found.periods),
-        format!(
-            "sampled      motions that start in a tube around {run} stay in it, |q_l − run| ≤ {} {rad}, |q_m − run| ≤ {} {rad} at every control instant",
-            at_most(links),
-            at_most(motors)
-        ),
-        format!(
-            "sampled      and any two of them{of_readings} come closer, in its norms, at {} 1/s or faster in every period; with the numbers of the files, without tolerances",
-            significant(rounded_down(found.rate, 4), 4)
-        ),
-        format!(
-            "sampled      a link that starts off alone is in it up to {} {rad}",
-            list(&alone.iter().map(|&e| rounded_down(e, 3)).collect::<Vec<_>>())
-        ),
-        format!(
-            "sampled      at the control instants of its last quarter the run's links are within {} {rad} of the reference; |u_m| ≤ {} {torque} in the tube",
-            at_most(&found.tracking),
-            at_most(&found.torque)
-        ),
-    ]
+    match found {
+        SampledTubeSummary::Proved(found) => tube_lines(found, &summary.kinds),
+        SampledTubeSummary::Undecided(none) => vec![format!("sampled      no tube was found: {}", none.at)],
+    }
 }
 
 /// Under which torques, and of which robots, a funnel is; the number is exact.
@@ -451,7 +413,7 @@ fn most(bound: f64) -> String {
 }
 
 /// Upper bounds to three digits.
-fn at_most(bounds: &[f64]) -> String {
+pub(super) fn at_most(bounds: &[f64]) -> String {
     list(&bounds.iter().map(|&bound| above(bound)).collect::<Vec<_>>())
 }
 
@@ -460,7 +422,7 @@ fn above(bound: f64) -> f64 {
 }
 
 /// Numbers with blanks; one if all are the same.
-fn list(numbers: &[f64]) -> String {
+pub(super) fn list(numbers: &[f64]) -> String {
     match numbers {
         [first, rest @ ..] if rest.iter().all(|x| x.total_cmp(first).is_eq()) => short(*first, 3),
         _ => format!("({})", numbers.iter().map(|&x| short(x, 3)).collect::<Vec<_>>().join(", ")),
