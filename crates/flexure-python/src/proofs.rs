@@ -31,7 +31,7 @@ fn list(name: &'static str, given: Option<&Bound<'_, PyAny>>) -> PyResult<Option
 /// its text, or None if nothing was proved. Errors in rad, links then motors, torques in N m, rates in 1/s.
 #[pyfunction]
 #[pyo3(signature = (scenario, *, error_box = None, initial_error = None, rate = None, disturbance = None, link_disturbance = None,
-                    up_to_limits = false, slabs = None, velocity_error = None, sampled_tube = None,
+                    up_to_limits = false, slabs = None, velocity_error = None, sampled_tube = None, strongest = false,
                     direct = false, budget = 10_000, out = None, progress = None))]
 #[expect(clippy::too_many_arguments, reason = "keywords")]
 pub fn certify<'py>(
@@ -46,6 +46,7 @@ pub fn certify<'py>(
     slabs: Option<usize>,
     velocity_error: Option<&Bound<'py, PyAny>>,
     sampled_tube: Option<&Bound<'py, PyAny>>,
+    strongest: bool,
     direct: bool,
     budget: usize,
     out: Option<PathBuf>,
@@ -63,7 +64,7 @@ pub fn certify<'py>(
         // Said before minutes of proof, not after.
         spare(out, "certificate", |text| text.contains("flexure-certificate"), &[])
             .map_err(|problem| refused(py, &problem))?;
-        if sampled_tube.is_some() {
+        if sampled_tube.is_some() || strongest {
             file::spare(&file::beside(out)).map_err(|problem| refused(py, &problem))?;
         }
         prepare(folder_of(out)).map_err(unwritten)?;
@@ -73,6 +74,9 @@ pub fn certify<'py>(
     let [disturbance, link_disturbance] =
         [list("disturbance", disturbance)?, list("link_disturbance", link_disturbance)?];
     let velocity_error = list("velocity_error", velocity_error)?;
+    if sampled_tube.is_some() && strongest {
+        return Err(PyTypeError::new_err("sampled_tube or strongest, not both"));
+    }
     let sampled_tube = list("sampled_tube", sampled_tube)?;
     let question = Question {
         region,
@@ -83,6 +87,7 @@ pub fn certify<'py>(
         slabs,
         velocity_error,
         sampled_tube,
+        strongest,
         direct,
     };
     let question = question.fitting(&loaded).map_err(|problem| refused(py, &problem))?;

@@ -8,6 +8,7 @@ use flexure::compare::{BUDGET, SEEDS};
 use super::{Output, Paged, Traced};
 
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
 pub struct Certify {
     /// Scenario file, or the name of a built-in scenario.
     pub scenario: String,
@@ -46,6 +47,10 @@ pub struct Certify {
     /// with the control period, delay, encoders, velocity filter, guard and limits of the file. Begin with 1e-5 and try smaller and larger ones.
     #[arg(long, value_name = "E", value_delimiter = ',', allow_negative_numbers = true)]
     pub sampled_tube: Option<Vec<f64>>,
+    /// Prove the strongest statement that can be proved of the loop in the file: looks for the widest tube of the sampled loop by itself, from 0.1 rad down to 1e-7,
+    /// which takes a minute or two for two joints and much longer for many. Where there is none, what is proved of the ideal loop stands, and it is said why.
+    #[arg(long, conflicts_with = "sampled_tube")]
+    pub strongest: bool,
     /// Prove the certified contraction rate once more, from the full inequality; of theorems only that the rate of the mass matrix cancels.
     #[arg(long)]
     pub direct: bool,

@@ -43,7 +43,7 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
     // Said before minutes of proof, not after.
     spare(&path, "certificate", |text| text.contains("flexure-certificate"), &[])?;
     let tube_path = file::beside(&path);
-    if options.sampled_tube.is_some() {
+    if options.sampled_tube.is_some() || options.strongest {
         file::spare(&tube_path)?;
     }
     prepare(folder_of(&path))?;
@@ -123,6 +123,7 @@ fn question(options: &Certify, scenario: &Scenario) -> Result<Question, Problem>
     let velocity_error = options.velocity_error.clone();
     let up_to_limits = options.up_to_limits;
     let sampled_tube = options.sampled_tube.clone();
+    let strongest = options.strongest;
     let (rate, slabs) = (options.rate, options.slabs);
     Question {
         region,
@@ -133,6 +134,7 @@ fn question(options: &Certify, scenario: &Scenario) -> Result<Question, Problem>
         slabs,
         velocity_error,
         sampled_tube,
+        strongest,
         direct,
     }
     .fitting(scenario)

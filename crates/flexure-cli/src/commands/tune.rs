@@ -103,6 +103,9 @@ fn show(found: &Design, scenario: &Scenario) -> Result<(), Failure> {
             print::line(&line)?;
         }
     }
+    if let Some(tube) = evidence.tube {
+        print::line(&format!("of the sampled loop {} is proved", tube.words()))?;
+    }
     if let Some(frail) = found.frail() {
         print::line(&format!(
             "the loop is frail: with {frail} small errors grow or it does not follow; that it bears this is wished for, a SPEC can ask for it. \

@@ -81,6 +81,7 @@ def certify(
     slabs: int | None = None,
     velocity_error: Numbers | None = None,
     sampled_tube: Numbers | None = None,
+    strongest: bool = False,
     direct: bool = False,
     budget: int = 10_000,
     out: Path | None = None,
@@ -91,7 +92,8 @@ def certify(
     The dict has the keys of `--json`, with `verdict` ("proved", "proved (ideal loop)", "refuted", "undecided", …), and `certificate`,
     the text that `verify` checks, None if nothing was proved. Errors in rad, links then motors; rate in 1/s; disturbance in N m, on
     the motors, link_disturbance on the links, with up_to_limits multiplied until a limit may act; a funnel may have so many slabs of
-    time; velocity errors in rad/s, links then motors. A sampled_tube says how far links reach in a tube around the run of the sampled loop, in rad.
+    time; velocity errors in rad/s, links then motors. A sampled_tube says how far links reach in a tube around the run of the sampled loop, in rad;
+    strongest looks for the widest by itself. `step` is the highest step of the ladder of docs/proofs.md that is proved.
     """
     scenario = _scenario(scenario)
     return _watched(
@@ -108,6 +110,7 @@ def certify(
             slabs=slabs,
             velocity_error=velocity_error,
             sampled_tube=sampled_tube,
+            strongest=strongest,
             direct=direct,
             budget=budget,
             out=out,

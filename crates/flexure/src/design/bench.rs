@@ -10,6 +10,7 @@ use crate::files::Problems;
 use crate::files::number::short;
 use crate::laws::Controller;
 use crate::margins::Change;
+use crate::prove::sampled_data::{rate_in_tubes, reads_exactly};
 use crate::sampled::Outlook;
 use crate::scenario::Scenario;
 use crate::simulate::{Criteria, Run, measure_together};
@@ -24,6 +25,8 @@ pub(super) struct Bench {
     corners: Vec<Corner>,
     /// Largest part of the instants at which a torque limit may act.
     at_limit: f64,
+    /// The rate that tubes of the sampled loop shall have [1/s], if that is asked.
+    pub sampled_rate: Option<f64>,
 }
 
 /// Something that a loop shall bear.
@@ -63,7 +66,16 @@ const BROKEN: f64 = 100.0;
 const DIVERGED: f64 = 200.0;
 const UNSTABLE: f64 = 300.0;
 
+/// Part of the rate that is looked for in a tube that is shown, about: on exact readings, and where they are off.
+const SHOWN: [f64; 2] = [0.97, 0.8];
+
 impl Trial {
+    /// By what small errors grow in the sampled loop in a control period; 0 where that is not looked at.
+    pub fn growth(&self) -> f64 {
+        let radius = self.constraints.iter().find(|constraint| constraint.what == NOMINAL);
+        radius.map_or(0.0, |radius| radius.value)
+    }
+
     /// Whether every constraint is kept that was looked at, wishes aside.
     pub fn keeps(&self) -> bool {
         self.constraints.iter().all(Constraint::is_met)
@@ -84,7 +96,7 @@ impl Bench {
         };
         let corners = wanted(scenarios[0].control_period, spec).into_iter().map(corner).collect();
         let at_limit = scenarios[0].accept.at_limit.unwrap_or(0.0);
-        Ok(Self { scenarios, criteria, corners, at_limit })
+        Ok(Self { scenarios, criteria, corners, at_limit, sampled_rate: spec.sampled_rate })
     }
 
     /// Looks at the sampled loops, gains aside: once for all trials.
@@ -123,6 +135,14 @@ impl Bench {
             let cost = UNSTABLE + bounded(unstable.value - 1.0);
             return Ok(Trial { controller, cost, constraints, runs: Vec::new() });
         }
+        let rate = self.sampled_rate.zip(radius).map(|(asked, radius)| {
+            let scenario = &self.scenarios[0];
+            let [exact, off] = SHOWN;
+            let shown = if reads_exactly(scenario) { exact } else { off };
+            let rate = rate_in_tubes(-radius.ln() / scenario.control_period);
+            Constraint::sampled_rate(shown * rate, asked, None)
+        });
+        constraints.extend(rate);
         let runs = self.runs(&self.scenarios, &controller, watch)?;
         let diverged = |(run, scenario): (&Run, &Scenario)| Some((run.divergence?.time, scenario.duration));
         if let Some((time, duration)) = runs.iter().zip(&self.scenarios).find_map(diverged) {
@@ -133,6 +153,8 @@ impl Bench {
         constraints.extend(Constraint::of_runs(&runs, self.at_limit));
         let error = runs.iter().map(|run| penalised_error(&run.summary)).fold(0.0, f64::max);
         let kept = cost(error);
+        // Where a slower loop than the best may be chosen, all are looked at.
+        let best = if self.sampled_rate.is_some() { f64::INFINITY } else { best };
         if broken(&constraints, true) == 0.0 && kept < best {
             watch.check()?;
             constraints.extend(self.borne(outlooks, &controller));

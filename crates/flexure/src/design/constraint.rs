@@ -44,6 +44,8 @@ pub enum Kind {
     Lost,
     /// The certified rate.
     Rate,
+    /// The rate of the sampled loop: that of a tube where one was looked for, else what one may have.
+    SampledRate,
 }
 
 /// Spectral radius up to which a loop counts as stable: computed to about 1e-12.
@@ -162,6 +164,16 @@ impl Constraint {
             asked: true,
             kind: Kind::Rate,
             note: None,
+        }
+    }
+
+    /// That motions of the sampled loop come closer at `rate` at least, where `asked` is asked [1/s]; `note` says why no tube is there.
+    pub(super) fn sampled_rate(rate: f64, asked: f64, note: Option<String>) -> Self {
+        Self {
+            what: "rate of the sampled loop near its run, at least".to_owned(),
+            kind: Kind::SampledRate,
+            note,
+            ..Self::rate(rate, asked)
         }
     }
 

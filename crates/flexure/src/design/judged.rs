@@ -2,9 +2,12 @@
 
 use crate::design::bench::{Bench, Trial};
 use crate::design::constraint::{Constraint, Kind};
+use crate::design::search::Found;
 use crate::design::watch::Watch;
 use crate::files::Problems;
+use crate::progress::Progress;
 use crate::prove::question::{Proof, Question, prove_watched};
+use crate::prove::sampled_data::{SampledTube, widest_tube};
 use crate::scenario::Scenario;
 
 /// Gains with the proof of their rate, and with what they lose although small errors shrink.
@@ -14,14 +17,20 @@ pub(super) struct Judged {
     pub tuned: Scenario,
     /// None where none can be, and where it was broken off.
     pub proof: Option<Proof>,
+    /// A tube of the sampled loop under each reference, where they are asked for and the rest is kept.
+    pub tubes: Vec<SampledTube>,
     /// Everything that was looked at.
     pub constraints: Vec<Constraint>,
     /// Whether more would have been looked at.
     pub broken_off: bool,
 }
 
+/// How often slower loops are halved in the search for one that has a tube.
+const HALVINGS: usize = 3;
+
 impl Judged {
-    /// `trial`, of which a rate may be `asked` [1/s]; nothing more is looked at where the search was `broken_off`.
+    /// `trial`, of which a rate may be `asked` [1/s]; nothing more is looked at where the search was `broken_off`. `proving` is told how far
+    /// proofs of the sampled loop are.
     ///
     /// # Errors
     /// As [`Scenario::open`].
@@ -31,10 +40,11 @@ impl Judged {
         asked: Option<f64>,
         broken_off: bool,
         watch: &Watch<'_>,
+        proving: Progress<'_>,
     ) -> Result<Self, Problems> {
         let tuned = bench.scenarios[0].under(&trial.controller);
         let constraints = trial.constraints.clone();
-        let mut judged = Self { trial, tuned, proof: None, constraints, broken_off };
+        let mut judged = Self { trial, tuned, proof: None, tubes: Vec::new(), constraints, broken_off };
         if broken_off {
             return Ok(judged);
         }
@@ -48,7 +58,79 @@ impl Judged {
                 lost => judged.constraints.extend(lost?),
             }
         }
+        match bench.sampled_rate {
+            Some(asked) if judged.keeps() && !judged.broken_off => judged.sampled(bench, asked, proving)?,
+            _ => {}
+        }
         Ok(judged)
+    }
+
+    /// The best of what was `found`; where a tube of the sampled loop is asked and there is none, of slower loops the one that tracks best of
+    /// those with one, nearly.
+    ///
+    /// # Errors
+    /// As [`of`](Self::of).
+    pub fn chosen(
+        found: Found,
+        bench: &Bench,
+        asked: Option<f64>,
+        watch: &Watch<'_>,
+        proving: Progress<'_>,
+    ) -> Result<Self, Problems> {
+        let Found { best, mut slower, broken_off, .. } = found;
+        let judge = |trial: Trial| Self::of(trial, bench, asked, broken_off, watch, proving);
+        let first = judge(best)?;
+        let lacks_a_tube = |judged: &Self| {
+            judged.constraints.iter().any(|broken| broken.kind == Kind::SampledRate && !broken.is_met())
+        };
+        if broken_off || !lacks_a_tube(&first) {
+            return Ok(first);
+        }
+        // The slowest is the likeliest to have one.
+        let Some(last) = slower.pop() else { return Ok(first) };
+        let mut with_one = judge(last)?;
+        if !with_one.keeps() {
+            return Ok(first);
+        }
+        let (mut without, mut with) = (0, slower.len());
+        for _ in 0..HALVINGS {
+            if without >= with || with_one.broken_off {
+                break;
+            }
+            let middle = usize::midpoint(without, with);
+            let judged = judge(slower[middle].clone())?;
+            if judged.keeps() {
+                (with, with_one) = (middle, judged);
+            } else {
+                without = middle + 1;
+            }
+        }
+        Ok(with_one)
+    }
+
+    /// Looks for a tube of the sampled loop in which motions come closer at `asked` 1/s, under each reference.
+    fn sampled(&mut self, bench: &Bench, asked: f64, proving: Progress<'_>) -> Result<(), Problems> {
+        self.constraints.retain(|constraint| constraint.kind != Kind::SampledRate);
+        let count = bench.scenarios.len() as f64;
+        for (scenario, i) in bench.scenarios.iter().zip(0_u32..) {
+            let scenario = scenario.under(&self.trial.controller);
+            let told = |fraction: f64| proving((f64::from(i) + fraction) / count);
+            match widest_tube(&scenario, asked, &told)? {
+                None => {
+                    self.broken_off = true;
+                    return Ok(());
+                }
+                Some(Err(none)) => {
+                    let note = format!("none was proved: {}", none.at);
+                    self.constraints.push(Constraint::sampled_rate(0.0, asked, Some(note)));
+                    return Ok(());
+                }
+                Some(Ok(tube)) => self.tubes.push(tube),
+            }
+        }
+        let slowest = self.tubes.iter().map(|tube| tube.rate).fold(f64::INFINITY, f64::min);
+        self.constraints.push(Constraint::sampled_rate(slowest, asked, None));
+        Ok(())
     }
 
     /// The rate that is proved [1/s].

@@ -1,5 +1,7 @@
 //! A tuned loop with everything that speaks for it.
 
+use std::fmt::Display;
+
 use serde::Serialize;
 
 use crate::design::bench::Bench;
@@ -11,6 +13,7 @@ use crate::design::search::{Found, Search, work};
 use crate::design::spec::{Rate, SpecFile};
 use crate::design::specified::{Specified, TUNED};
 use crate::design::trade::{Trade, trades, untraded};
+use crate::design::tube::Tube;
 use crate::design::watch::{Effort, Watch, side_by_side};
 use crate::files::number::{rounded_down, short};
 use crate::files::{Problem, Problems};
@@ -18,6 +21,7 @@ use crate::imperfections::Imperfection;
 use crate::laws::{Controller, drives};
 use crate::margins::{Margins, margins};
 use crate::progress::Progress;
+use crate::prove::sampled_data::suitable_when_sampled;
 use crate::prove::standing::Standing;
 use crate::sampled::{Sampled, probe};
 use crate::scenario::Scenario;
@@ -59,6 +63,8 @@ pub struct Evidence {
     pub rate_certified: Option<f64>,
     /// What that is worth for the loop in the file, in words; none for laws other than v-CBC.
     pub verdict: Option<&'static str>,
+    /// What is proved of the sampled loop; none where a rate of it is not asked for, or not proved.
+    pub tube: Option<Tube>,
     /// What the loop bears; none where the search was broken off or the loop does not follow.
     pub margins: Option<Margins>,
 }
@@ -91,20 +97,18 @@ pub fn design(
 ) -> Result<Design, Problems> {
     let scenario = &specified.scenarios[0];
     let start = scenario.under(&base(scenario)?);
-    let least = match file.spec.rate {
-        Some(_) => {
-            file.refuse_rate_of(&start)?;
-            Least::of(&start)?
-        }
-        None => None,
-    };
+    let spec = &file.spec;
+    file.refuse_rates(&start, &specified.scenarios)?;
+    let least = if spec.rate.is_some() { Least::of(&start)? } else { None };
     let family = Family::new(start.controller, least, &drives(&scenario.robot)?);
     let bench = Bench::new(&specified.scenarios, &file.spec)?;
     let outlooks = bench.outlooks()?;
     // Where each part of the work ends, in runs.
     let effort = Effort::of(scenario);
     let searched = work(&family, effort, budget);
-    let borne = searched + side_by_side(bench.corners());
+    let tubes = spec.sampled_rate.map_or(0.0, |_| effort.tube * specified.scenarios.len() as f64);
+    let proved = searched + tubes;
+    let borne = proved + side_by_side(bench.corners());
     let traded = borne + effort.trial * side_by_side(scenario.controller.gains().len());
     let all = traded + side_by_side(MARGINS) / specified.scenarios.len() as f64;
     let watch = Watch::new(progress, all);
@@ -123,11 +127,15 @@ pub fn design(
         _ => None,
     };
     let judged = |found: Found| {
-        let judged = Judged::of(found.best, &bench, asked, found.broken_off, &watch)?;
-        Ok::<_, Problems>((judged, found.runs))
+        let proving = |fraction: f64| {
+            watch.reach(searched + tubes * fraction);
+            watch.go_on()
+        };
+        let runs = found.runs;
+        Ok::<_, Problems>((Judged::chosen(found, &bench, asked, &watch, &proving)?, runs))
     };
     let (mut chosen, mut runs) = judged(search(pace).run(&own, budget, seed)?)?;
-    watch.reach(searched);
+    watch.reach(proved);
     let mut instead = None;
     if let (Some(asked), false, false) = (asked, chosen.keeps(), chosen.broken_off) {
         // This search does not know the rate that is asked: who asks for what it finds gets the same gains.
@@ -146,7 +154,7 @@ pub fn design(
     watch.reach(borne);
     let feasible = chosen.keeps();
     let rate = chosen.rate();
-    let Judged { trial: best, tuned, proof, constraints, mut broken_off } = chosen;
+    let Judged { trial: best, tuned, proof, tubes, constraints, mut broken_off } = chosen;
     // What was broken off comes back at once.
     let sampled = if broken_off { None } else { probe(&tuned)? };
     let verdict = proof.as_ref().map(|proof| Standing::of(&tuned, proof, sampled.as_ref()).words());
@@ -177,6 +185,7 @@ pub fn design(
             sampled,
             rate_certified: rate,
             verdict,
+            tube: Tube::of(&tubes),
             margins,
         },
         controller: best.controller,
@@ -207,14 +216,22 @@ fn base(scenario: &Scenario) -> Result<Controller, Problems> {
 
 impl SpecFile {
     /// # Errors
-    /// If a rate is asked of a law of which none can be proved.
-    fn refuse_rate_of(&self, scenario: &Scenario) -> Result<(), Problem> {
-        let refused = scenario.vcbc().err();
-        refused.map_or(Ok(()), |problem| {
-            let message = format!("rate is asked for: {problem}");
-            let help = "leave rate out: the loop is then tuned to track well inside all limits";
-            Err(self.problem("rate", "unsupported", message, help))
-        })
+    /// If a rate is asked that cannot be proved of such a law, that of `start`, or of such a loop as one of `scenarios`.
+    fn refuse_rates(&self, start: &Scenario, scenarios: &[Scenario]) -> Result<(), Problem> {
+        if self.spec.rate.is_some() {
+            start.vcbc().map_err(|problem| self.refused("rate", &problem))?;
+        }
+        for scenario in scenarios.iter().filter(|_| self.spec.sampled_rate.is_some()) {
+            suitable_when_sampled(scenario).map_err(|problems| self.refused("sampled_rate", &problems))?;
+        }
+        Ok(())
+    }
+
+    /// What to say where what is asked at `key` is a rate that cannot be proved, for the reason `why`.
+    fn refused(&self, key: &str, why: &dyn Display) -> Problem {
+        let message = format!("{key} is asked for: {why}");
+        let help = format!("leave {key} out: the loop is then tuned to track well inside all limits");
+        self.problem(key, "unsupported", message, help)
     }
 }
 
@@ -231,9 +248,13 @@ impl Design {
         let rate = self.evidence.rate_certified.map_or_else(String::new, |rate| {
             format!(" Of the ideal loop a contraction rate of {} 1/s is proved.", short(rate, 4))
         });
+        let tube = self
+            .evidence
+            .tube
+            .map_or_else(String::new, |tube| format!(" Of the sampled loop {} is proved.", tube.words()));
         let passing = self.evidence.sampled.as_ref().filter(|sampled| sampled.passes());
         format!(
-            "{}{}: rms error {} mrad, {} kept.{rate}{}\n\
+            "{}{}: rms error {} mrad, {} kept.{rate}{tube}{}\n\
              Gains follow from the robot, the reference and the imperfections below: tune again if they change.",
             TUNED,
             if self.broken_off { ", broken off" } else { "" },
@@ -334,6 +355,7 @@ impl Design {
             ),
             Kind::Lost => "a SPEC that asks for less uncertainty and margin, or accept.error above what it leaves".to_owned(),
             Kind::Rate => "a lower rate".to_owned(),
+            Kind::SampledRate => format!("a lower sampled_rate; or {}", quicker(scenario, file)),
         };
         Some(format!("{slower}{way}"))
     }

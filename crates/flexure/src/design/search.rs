@@ -44,6 +44,8 @@ pub(super) struct Search<'a> {
 pub(super) struct Found {
     /// The best that was tried.
     pub best: Trial,
+    /// Others that keep every constraint, from fast to slow, each tracking better than all slower ones; where a rate of the sampled loop is asked.
+    pub slower: Vec<Trial>,
     /// Loops that were run.
     pub runs: usize,
     /// Whether it was broken off.
@@ -58,7 +60,10 @@ impl Search<'_> {
     /// As [`Scenario::open`](crate::Scenario::open), and [`Problems::interrupted`] if it was broken off before anything was tried.
     pub fn run(&self, given: &[Controller], budget: usize, seed: u64) -> Result<Found, Problems> {
         let start = self.at(&self.slowed(), f64::INFINITY, 1)?;
-        let state = State { best: RefCell::new(Some(start)), ..State::default() };
+        let state = State { collects: self.bench.sampled_rate.is_some(), ..State::default() };
+        note(&state, vec![Ok(start)]);
+        // It is beside the budget.
+        state.runs.set(0);
         let own = |controller: &Controller| {
             let trial =
                 self.bench.try_out(self.outlooks, controller.clone(), f64::ln, f64::INFINITY, self.watch);
@@ -89,7 +94,8 @@ impl Search<'_> {
         let runs = state.runs.get();
         match (state.best.into_inner(), state.failed.into_inner()) {
             (Some(best), failed) if failed.as_ref().is_none_or(Problems::is_interrupted) => {
-                Ok(Found { best, runs, broken_off: failed.is_some() })
+                let slower = slower(&best, state.kept.into_inner());
+                Ok(Found { best, slower, runs, broken_off: failed.is_some() })
             }
             (_, failed) => Err(failed.unwrap_or_else(Problems::interrupted)),
         }
@@ -174,6 +180,9 @@ impl Search<'_> {
 #[derive(Default)]
 struct State {
     best: RefCell<Option<Trial>>,
+    /// Those that keep every constraint, if they are collected.
+    kept: RefCell<Vec<Trial>>,
+    collects: bool,
     runs: Cell<usize>,
     failed: RefCell<Option<Problems>>,
 }
@@ -184,6 +193,9 @@ fn note(state: &State, trials: Vec<Result<Trial, Problems>>) -> Vec<f64> {
         Ok(trial) => {
             state.runs.set(state.runs.get() + 1);
             let cost = trial.cost;
+            if state.collects && trial.keeps() {
+                state.kept.borrow_mut().push(trial.clone());
+            }
             let mut best = state.best.borrow_mut();
             if best.as_ref().is_none_or(|best| cost < best.cost) {
                 *best = Some(trial);
@@ -196,6 +208,20 @@ fn note(state: &State, trials: Vec<Result<Trial, Problems>>) -> Vec<f64> {
         }
     };
     trials.into_iter().map(note).collect()
+}
+
+/// Those of `kept` that are slower than `best`, from fast to slow, each better than all that are slower.
+fn slower(best: &Trial, mut kept: Vec<Trial>) -> Vec<Trial> {
+    kept.retain(|trial| trial.growth() > best.growth());
+    kept.sort_by(|a, b| b.growth().total_cmp(&a.growth()));
+    let mut least = f64::INFINITY;
+    kept.retain(|trial| {
+        let is_better = trial.cost < least;
+        least = least.min(trial.cost);
+        is_better
+    });
+    kept.reverse();
+    kept
 }
 
 /// Dampings, and metrics with balances, that are looked at for each speed.

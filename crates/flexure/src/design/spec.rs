@@ -17,6 +17,8 @@ use crate::files::{Problem, Problems};
 pub struct Spec {
     /// The rate at which errors shall decay, proved of the ideal loop; for v-CBC alone.
     pub rate: Option<Rate>,
+    /// The rate at which motions near its run shall come closer in every control period, proved of the sampled loop [1/s]; for v-CBC alone.
+    pub sampled_rate: Option<f64>,
     /// Shortest and longest delay from the sensors to the torque that the loop shall bear, in s; none for the scenario's own.
     pub delay: Option<[f64; 2]>,
     /// How wrong the model may be.
@@ -68,6 +70,7 @@ const FORM: Form = Form {
     required: &[],
     optional: &[
         "rate",
+        "sampled_rate",
         "delay",
         "uncertainty",
         "margins",
@@ -84,6 +87,8 @@ const FORM: Form = Form {
 };
 
 const DECAY: Quantity = Quantity::positive("rate at which errors shall decay", crate::units::RATE);
+const CLOSER: Quantity =
+    Quantity::positive("rate at which motions of the sampled loop shall come closer", crate::units::RATE);
 const UNCERTAIN: Quantity =
     Quantity::non_negative("largest part that the model may be off by", crate::units::NONE);
 const FACTOR: Quantity = Quantity::positive("factor on the torque", crate::units::NONE);
@@ -155,11 +160,13 @@ impl SpecFile {
 
 fn spec(root: &Table<'_>) -> Option<Spec> {
     let rate = root.optional("rate", rate);
+    let sampled_rate = root.optional("sampled_rate", |field| field.number(&CLOSER));
     let delay = root.optional("delay", delay);
     let uncertainty = root.optional("uncertainty", uncertainty);
     let margins = root.optional("margins", margins);
     Some(Spec {
         rate: rate?,
+        sampled_rate: sampled_rate?,
         delay: delay?,
         uncertainty: uncertainty?.unwrap_or_default(),
         margins: margins?.unwrap_or_default(),

@@ -58,6 +58,8 @@ pub(super) struct Effort {
     pub idea: f64,
     /// A run with a look at the sampled loop and at what it shall bear.
     pub trial: f64,
+    /// A tube of the sampled loop.
+    pub tube: f64,
 }
 
 impl Effort {
@@ -66,7 +68,11 @@ impl Effort {
     pub fn of(scenario: &Scenario) -> Self {
         let periods = scenario.duration / scenario.control_period;
         let joints = scenario.robot.joint_count() as f64;
-        Self { idea: 140.0 * joints.powf(1.5) / periods, trial: 1.0 + 5000.0 * joints / periods }
+        Self {
+            idea: 140.0 * joints.powf(1.5) / periods,
+            trial: 1.0 + 5000.0 * joints / periods,
+            tube: 3000.0 * joints.powf(1.75),
+        }
     }
 }
 

@@ -21,12 +21,12 @@ use crate::prove::engine::verdict::Verdict;
 use crate::prove::engine::witness::RateWitness;
 use crate::prove::paper::paper_rate;
 use crate::prove::robust::{NoFunnel, Robust, robust, up_to_limits};
-use crate::prove::sampled_data::{NoTube, SampledTube, sampled_tube, suitable_when_sampled};
+use crate::prove::sampled_data::{NoTube, SampledTube, sampled_tube, strongest_tube, suitable_when_sampled};
 use crate::prove::sampling::{Sampled, sample};
 use crate::prove::subject::subject;
 use crate::prove::verified::certify;
 use crate::prove::within::{Open, Within, spread, within};
-use crate::scenario::Scenario;
+use crate::scenario::{Hold, Scenario};
 use crate::{laws, robot};
 
 /// What to prove of a scenario.
@@ -59,6 +59,8 @@ pub struct Question {
     pub velocity_error: Option<Vec<f64>>,
     /// How far link positions reach in a tube of the sampled loop in rad, one number a link, if one is asked for.
     pub sampled_tube: Option<Vec<f64>>,
+    /// Whether the widest tube of the sampled loop is looked for where none is named: what is proved then is the strongest that can be.
+    pub strongest: bool,
     /// Whether the direct engine shall prove the rate once more, and how hard it may try.
     pub direct: Option<Direct>,
 }
@@ -118,6 +120,8 @@ pub struct Proof {
     pub robust: Option<Result<Robust, NoFunnel>>,
     /// How fast motions of the sampled loop come closer near its run, if that was asked for; or why nothing was shown.
     pub sampled_tube: Option<Result<SampledTube, NoTube>>,
+    /// Whether the strongest statement that can be proved was asked for: that there is no tube then leaves the others.
+    pub strongest: bool,
     /// Bounds along the reference inside the tube of W, if a disturbance of the motors or tolerances were named and there is no funnel.
     pub along: Option<Along>,
     /// Options that were not given, and numbers that no source vouches for.
@@ -266,7 +270,9 @@ pub fn prove_watched(
     progress: Progress<'_>,
 ) -> Result<Proof, Problems> {
     let broken_off = AtomicBool::new(false);
-    let share = if question.sampled_tube.is_some() { BEFORE_TUBE } else { 1.0 };
+    // In continuous time there is no tube, and no loop that it would be nearer to.
+    let looks = question.strongest && scenario.hold != Hold::Continuous;
+    let share = if question.sampled_tube.is_some() || looks { BEFORE_TUBE } else { 1.0 };
     let told = |fraction: f64| {
         let flow = progress(fraction);
         broken_off.fetch_or(flow.is_break(), Ordering::Relaxed);
@@ -312,15 +318,7 @@ pub fn prove_watched(
     };
     let feels = question.disturbance.is_some() || needs_funnel || has_tolerances;
     let (robust, begun) = match verdict.proved().filter(|_| feels && suitable(scenario).is_ok()) {
-        Some(_) if !is_broken_off() => {
-            let number = |torques: &Option<Vec<f64>>| {
-                torques.as_ref().map(|all| all.iter().map(|&d| Number::decimal(d)).collect::<Vec<_>>())
-            };
-            let [motors, links] = [&question.disturbance, &question.link_disturbance].map(number);
-            let spread = spread(&scenario.robot, motors.as_deref(), links.as_deref());
-            let bounds = if question.up_to_limits { up_to_limits } else { robust };
-            (bounds(scenario, &spread, question.slabs, &between(begun, ROBUST))?, ROBUST)
-        }
+        Some(_) if !is_broken_off() => (funnel(scenario, question, &between(begun, ROBUST))?, ROBUST),
         _ => (None, begun),
     };
     // Where the robot need not be that of the file, the level is that of all robots that it may be.
@@ -346,15 +344,16 @@ pub fn prove_watched(
         Some(level) if !is_broken_off() => along(scenario, &level, budget, &between(middle, 1.0))?,
         _ => None,
     };
+    let last = |fraction: f64| told(share + (1.0 - share) * fraction);
     let sampled_tube = match &question.sampled_tube {
-        Some(error) if !is_broken_off() => {
-            sampled_tube(scenario, error, &|fraction| told(share + (1.0 - share) * fraction))?
-        }
+        Some(error) if !is_broken_off() => sampled_tube(scenario, error, &last)?,
+        None if looks && !is_broken_off() => strongest_tube(scenario, &last)?,
         _ => None,
     };
     Ok(Proof {
         confirmation,
         sampled_tube,
+        strongest: question.strongest,
         start,
         within,
         needs_funnel,
@@ -367,6 +366,21 @@ pub fn prove_watched(
         wall_seconds: started.elapsed().as_secs_f64(),
         broken_off: is_broken_off(),
     })
+}
+
+/// The funnel that `question` asks for.
+fn funnel(
+    scenario: &Scenario,
+    question: &Question,
+    progress: Progress<'_>,
+) -> Result<Option<Result<Robust, NoFunnel>>, Problems> {
+    let number = |torques: &Option<Vec<f64>>| {
+        torques.as_ref().map(|all| all.iter().map(|&d| Number::decimal(d)).collect::<Vec<_>>())
+    };
+    let [motors, links] = [&question.disturbance, &question.link_disturbance].map(number);
+    let spread = spread(&scenario.robot, motors.as_deref(), links.as_deref());
+    let bounds = if question.up_to_limits { up_to_limits } else { robust };
+    bounds(scenario, &spread, question.slabs, progress)
 }
 
 /// The level of W that a run from `start` never leaves under the certificate's disturbance: that of the tube, or of the start

@@ -55,6 +55,13 @@ pub struct Robust {
     pub profile: Profile,
 }
 
+impl Robust {
+    /// Whether the robot has limits, and all of them were proved not to be reached.
+    pub fn keeps_limits(&self) -> bool {
+        !self.limits.is_empty() && self.limits.iter().all(|limit| limit.verdict.proved().is_some())
+    }
+}
+
 /// Bounds of position errors, part by part of the run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Profile {

@@ -1,7 +1,10 @@
 //! What a proof is worth for the loop in the file.
 
 use crate::files::Problem;
+use serde::Serialize;
+
 use crate::prove::question::Proof;
+use crate::prove::robust::Robust;
 use crate::sampled::Sampled;
 use crate::scenario::Scenario;
 
@@ -56,6 +59,53 @@ impl<'a> Standing<'a> {
             Self::Unstable { proved: false, .. } => "undecided for continuous time; unstable as sampled",
             Self::Refuted(_) => "refuted",
             Self::Undecided(_) => "undecided",
+        }
+    }
+}
+
+/// A step of the ladder of docs/proofs.md: each is about a loop that is nearer to the one that runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Step {
+    /// The law in continuous time, on exact states of the robot in the file, without limits.
+    Ideal,
+    /// The same under unknown torques, or of every robot within the tolerances.
+    Robust,
+    /// The same, with limits of torques, speeds and deflections none of which acts.
+    Limited,
+    /// The loop in the file: control period, delay, encoders, filters, guard and limits.
+    Sampled,
+}
+
+impl Step {
+    /// The highest that `proof` has reached; none where not even the first is proved.
+    pub fn of(proof: &Proof) -> Option<Self> {
+        let certificate = proof.verdict.proved()?;
+        let robust = proof.robust.as_ref().and_then(|found| found.as_ref().ok());
+        let is_robust = robust.is_some() || matches!(proof.within, Some(Ok(_))) || certificate.tube.is_some();
+        Some(match proof.sampled_tube {
+            Some(Ok(_)) => Self::Sampled,
+            _ if robust.is_some_and(Robust::keeps_limits) => Self::Limited,
+            _ if is_robust => Self::Robust,
+            _ => Self::Ideal,
+        })
+    }
+
+    /// Its name, and what it is about.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Ideal => {
+                "ideal: the law in continuous time, on exact states of the robot in the file, without limits"
+            }
+            Self::Robust => {
+                "robust: the law in continuous time, under these torques and of every robot within the tolerances"
+            }
+            Self::Limited => {
+                "limited: the law in continuous time, under these torques, with the robot's limits, none of which acts"
+            }
+            Self::Sampled => {
+                "sampled: the loop in the file with its control period and all devices, near its run"
+            }
         }
     }
 }

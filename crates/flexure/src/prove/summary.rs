@@ -12,13 +12,13 @@ use crate::prove::engine::verdict::Verdict;
 use crate::prove::engine::witness::WitnessState;
 use crate::prove::question::{Proof, inside};
 use crate::prove::robust::{NoFunnel, Robust};
-use crate::prove::sampled_data::{NoTube, SampledTube};
+use crate::prove::sampled_data::{NoTube, SampledTube, suitable_when_sampled};
 use crate::prove::sampling;
-use crate::prove::standing::Standing;
+use crate::prove::standing::{Standing, Step};
 use crate::prove::within::{Closer, Open, Within};
 use crate::robot::JointKind;
 use crate::sampled::Sampled;
-use crate::scenario::Scenario;
+use crate::scenario::{Hold, Scenario};
 use crate::units::{Unit, of_joints};
 
 /// What was proved, as numbers.
@@ -32,6 +32,11 @@ pub struct ProofSummary {
     /// On everything that was asked, as [`Standing::words`] has it. Rates stand where they were proved of the law in continuous
     /// time.
     pub verdict: &'static str,
+    /// The highest step of the ladder of docs/proofs.md that is proved; none where nothing is, or the loop is unstable as sampled.
+    pub step: Option<Step>,
+    /// Whether a higher one was not looked for, and may be there.
+    #[serde(skip)]
+    pub may_be_higher: bool,
     /// What the loop in the file has that the proof leaves out: options of the plant, imperfections, estimators, guard.
     pub left_out: Vec<&'static str>,
     /// Whether the loop is stable that holds its torque for a control period; none for laws in continuous time.
@@ -292,6 +297,10 @@ impl ProofSummary {
             name: scenario.name.clone(),
             kinds: scenario.robot.kinds(),
             verdict: Standing::of(scenario, proof, sampled.as_ref()).words(),
+            step: Step::of(proof).filter(|_| sampled.as_ref().is_none_or(|sampled| sampled.stable)),
+            may_be_higher: proof.sampled_tube.is_none()
+                && scenario.hold != Hold::Continuous
+                && suitable_when_sampled(scenario).is_ok(),
             left_out: scenario.beyond_ideal(),
             contraction_rate: certificate.and_then(|c| Some(c.contraction_rate.as_ref()?.approximate())),
             convergence_rate: certificate.map(|c| c.convergence_rate.approximate()),

@@ -4,6 +4,7 @@
 pub mod check;
 pub mod file;
 mod spoken_of;
+mod widest;
 mod words;
 
 use std::ops::Add;
@@ -26,7 +27,9 @@ use crate::prove::sampled_data::words::{not_looked_at, why};
 use crate::sampled;
 use crate::scenario::Scenario;
 
-pub(crate) use spoken_of::suitable_when_sampled;
+pub(crate) use spoken_of::{reads_exactly, suitable_when_sampled};
+pub(crate) use widest::strongest_tube;
+pub use widest::widest_tube;
 
 /// A tube around the run, in which motions come closer. Where readings are off, the run is the one on exact readings.
 #[derive(Clone, Debug, Serialize)]
@@ -92,10 +95,32 @@ pub struct NoTube {
     /// The same without that advice.
     #[serde(skip)]
     pub not_shown: String,
+    /// Which tubes may be there instead.
+    #[serde(skip)]
+    pub way: Way,
+    /// Control periods that were shown.
+    #[serde(skip)]
+    pub shown: usize,
+}
+
+/// Which tubes may be there where one is not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// Narrower ones.
+    Narrower,
+    /// Wider ones.
+    Wider,
+    /// None: width is not what is in the way.
+    None,
 }
 
 /// The rate that is looked for, as a part of the rate at which small errors decay.
 const PART: f64 = 0.6;
+
+/// The rate that is looked for in tubes of a loop in which small errors decay at `decay` \[1/s\].
+pub(crate) fn rate_in_tubes(decay: f64) -> f64 {
+    PART * decay
+}
 
 /// What is shown of `scenario` in a tube that link positions reach so far in, each its number of `error` in rad. None where `progress` breaks it off.
 ///
@@ -107,13 +132,26 @@ pub fn sampled_tube(
     progress: Progress<'_>,
 ) -> Result<Option<Result<SampledTube, NoTube>>, Problems> {
     suitable_when_sampled(scenario)?;
-    let none = |at: String| Ok(Some(Err(NoTube { not_shown: at.clone(), at })));
-    let rate = match sampled::probe(scenario)? {
-        Some(found) if found.stable => PART * found.rate,
-        Some(_) => return none("small errors do not shrink in it".to_owned()),
-        None => return none(not_looked_at(scenario)),
-    };
-    followed(scenario, Asked { extents: error.to_vec(), rate }, Sections::Made, progress)
+    match rate_to_look_for(scenario)? {
+        Ok(rate) => followed(scenario, Asked { extents: error.to_vec(), rate }, Sections::Made, progress),
+        Err(none) => Ok(Some(Err(none))),
+    }
+}
+
+/// The rate that is looked for in `scenario` [1/s], or why none is.
+fn rate_to_look_for(scenario: &Scenario) -> Result<Result<f64, NoTube>, Problems> {
+    Ok(match sampled::probe(scenario)? {
+        Some(found) if found.stable => Ok(rate_in_tubes(found.rate)),
+        Some(_) => Err(NoTube::at_all("small errors do not shrink in it".to_owned())),
+        None => Err(NoTube::at_all(not_looked_at(scenario))),
+    })
+}
+
+impl NoTube {
+    /// Of no width.
+    pub(crate) fn at_all(at: String) -> Self {
+        Self { not_shown: at.clone(), at, way: Way::None, shown: 0 }
+    }
 }
 
 /// What is shown of `scenario` in sections that are made or given, one for each of its control instants.

@@ -83,6 +83,11 @@ pub fn sensors(scenario: &Scenario) -> Sensors {
     Sensors { off, filter }
 }
 
+/// Whether no reading of `scenario` is off.
+pub(crate) fn reads_exactly(scenario: &Scenario) -> bool {
+    sensors(scenario).off.is_empty()
+}
+
 /// Whether tubes of the sampled loop are what such a scenario is.
 pub(crate) fn suitable_when_sampled(scenario: &Scenario) -> Result<(), Problems> {
     scenario.vcbc()?;

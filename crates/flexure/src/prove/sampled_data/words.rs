@@ -4,7 +4,7 @@ use crate::files::number::{engineering, short};
 use crate::prove::engine::sampled_data::sensors::Sensors;
 use crate::prove::engine::sampled_data::tube::{Ends, Why};
 use crate::prove::engine::sampled_data::watch::{Beyond, Limit};
-use crate::prove::sampled_data::NoTube;
+use crate::prove::sampled_data::{NoTube, Way};
 use crate::sampled;
 use crate::scenario::Scenario;
 use crate::units::{self, Unit};
@@ -60,10 +60,13 @@ pub fn why(scenario: &Scenario, rate: f64, sensors: &Sensors, ends: &Ends) -> No
             format!("{time} {what} of joint {} may come to {found} {unit}, {who} {passes} {unit}", joint + 1)
         }
     };
-    let other = match ends.why {
-        Why::Unbounded | Why::Grows | Why::Widens(..) => Some(narrower),
-        Why::Missed => Some("a larger one"),
-        Why::NotStable | Why::StartsOutside | Why::Beyond(_) => None,
+    let (way, other) = match ends.why {
+        Why::Unbounded | Why::Grows | Why::Widens(..) => (Way::Narrower, Some(narrower)),
+        // A run that stays below the limit by itself has a tube that does.
+        Why::Beyond(_) => (Way::Narrower, None),
+        Why::Missed => (Way::Wider, Some("a larger one")),
+        Why::NotStable | Why::StartsOutside => (Way::None, None),
     };
-    NoTube { at: other.map_or(at.clone(), |other| format!("{at}; {other} may have one")), not_shown: at }
+    let advised = other.map_or(at.clone(), |other| format!("{at}; {other} may have one"));
+    NoTube { at: advised, not_shown: at, way, shown: ends.period }
 }

@@ -115,6 +115,7 @@ fn evidence(scenario: &Scenario, design: &Design) -> Markup {
             @if let Some((verdict, rate)) = proved {
                 li { "Contraction rate: " (short(rate, 4)) " 1/s, " (verdict) @if let Some(outside) = outside { ": " (outside) } "." }
             }
+            @if let Some(tube) = evidence.tube { li { "Of the sampled loop " (tube.words()) " is proved." } }
         }
     }
 }

@@ -20,6 +20,11 @@ use crate::units::{self, Unit};
 /// What was proved, refuted or left undecided; the table in so many columns.
 pub fn proof_table(summary: &ProofSummary, width: usize) -> String {
     let mut text = format!("{}: {}\n", summary.name, summary.verdict);
+    if let Some(step) = summary.step {
+        let more = if summary.may_be_higher { "; --strongest looks for the sampled one" } else { "" };
+        // Writing to a text cannot fail.
+        let _ = writeln!(text, "highest step proved: {}{more}", step.words());
+    }
     if let Some(outside) = outside_of_proofs(&summary.left_out) {
         let but = match &summary.sampled_tube {
             Some(SampledTubeSummary::Proved(_)) => {
@@ -27,7 +32,6 @@ pub fn proof_table(summary: &ProofSummary, width: usize) -> String {
             }
             _ => "",
         };
-        // Writing to a text cannot fail.
         let _ = writeln!(text, "{outside}{but}");
     }
     if let Some(sampled) = &summary.sampled {

@@ -1,0 +1,105 @@
+//! The widest tube of a sampled loop, by trying.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::files::Problems;
+use crate::files::number::{engineering, short};
+use crate::progress::Progress;
+use crate::prove::engine::sampled_data::tube::Sections;
+use crate::prove::sampled_data::{
+    Asked, NoTube, SampledTube, Way, followed, rate_to_look_for, suitable_when_sampled,
+};
+use crate::scenario::Scenario;
+
+/// How far links may reach in rad, from wide to narrow: three a decade.
+const WIDTHS: [f64; 19] = [
+    1e-1, 5e-2, 2e-2, 1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6, 2e-6, 1e-6, 5e-7,
+    2e-7, 1e-7,
+];
+
+/// A tube that ends after this part of the run has cost something: the next is narrower by a decade.
+const LATE: f64 = 0.1;
+const DECADE: usize = 3;
+
+/// The widest tube of those that were tried in which two motions come closer at `least` 1/s or faster, all links reaching equally far at
+/// the start; or why there is none. None where `progress` breaks it off.
+///
+/// Too wide a tube ends within a few periods, so that trying from wide to narrow costs little beside the tube that is found.
+///
+/// # Errors
+/// As [`sampled_tube`](super::sampled_tube).
+pub fn widest_tube(
+    scenario: &Scenario,
+    least: f64,
+    progress: Progress<'_>,
+) -> Result<Option<Result<SampledTube, NoTube>>, Problems> {
+    suitable_when_sampled(scenario)?;
+    let rate = match rate_to_look_for(scenario)? {
+        Ok(rate) => rate,
+        Err(none) => return Ok(Some(Err(none))),
+    };
+    // A narrower tube begins anew: what is told never goes back. Bits of positive floats are ordered as they are.
+    let farthest = AtomicU64::new(0);
+    let told = |fraction: f64| {
+        let before = farthest.fetch_max(fraction.to_bits(), Ordering::Relaxed);
+        progress(f64::from_bits(before.max(fraction.to_bits())))
+    };
+    let n = scenario.robot.joint_count();
+    let (mut at, mut tried, mut best): (_, _, Option<(f64, NoTube)>) = (0, 0, None);
+    loop {
+        let width = WIDTHS[at];
+        tried += 1;
+        let asked = Asked { extents: vec![width; n], rate };
+        let none = match followed(scenario, asked, Sections::Made, &told)? {
+            None => return Ok(None),
+            Some(Ok(tube)) if tube.rate >= least => return Ok(Some(Ok(tube))),
+            Some(Ok(tube)) => too_slow(&tube, least),
+            Some(Err(none)) => none,
+        };
+        let is_late = none.shown as f64 > LATE * f64::from(scenario.periods());
+        at += if is_late { DECADE } else { 1 };
+        let is_last = none.way != Way::Narrower || at >= WIDTHS.len();
+        if best.as_ref().is_none_or(|(_, best)| best.shown <= none.shown) {
+            best = Some((width, none));
+        }
+        if let (Some((width, best)), true) = (best.as_ref(), is_last) {
+            return Ok(Some(Err(best.farthest(tried, *width))));
+        }
+    }
+}
+
+/// The widest tube at any rate; for a loop that tubes do not speak of, that.
+pub(crate) fn strongest_tube(
+    scenario: &Scenario,
+    progress: Progress<'_>,
+) -> Result<Option<Result<SampledTube, NoTube>>, Problems> {
+    match suitable_when_sampled(scenario) {
+        Ok(()) => widest_tube(scenario, 0.0, progress),
+        Err(problems) => {
+            let all: Vec<_> = problems.iter().map(ToString::to_string).collect();
+            Ok(Some(Err(NoTube::at_all(all.join("; ")))))
+        }
+    }
+}
+
+fn too_slow(tube: &SampledTube, least: f64) -> NoTube {
+    let at = format!(
+        "motions in it were shown to come closer at {} 1/s, where {} 1/s are asked for",
+        engineering(tube.rate),
+        short(least, 5)
+    );
+    NoTube { way: Way::Narrower, shown: tube.periods, ..NoTube::at_all(at) }
+}
+
+impl NoTube {
+    /// As the one of so many that came farthest, of `width` in rad.
+    fn farthest(&self, tried: usize, width: f64) -> Self {
+        let of_all = if tried == 1 {
+            String::new()
+        } else {
+            format!("{tried} widths were tried; that of {width:e} rad came farthest: ")
+        };
+        let at = format!("{of_all}{}", self.not_shown);
+        Self { not_shown: at.clone(), at, ..self.clone() }
+    }
+}
