@@ -424,7 +424,7 @@ def read_file(data):
     known(kind != "pendulum" and phi != "coupled-tanh", f"{kind} with {phi}")
     links = {"planar-two-link": {"mass": [positive] * 2, "length": positive, "com": [number] * 2, "inertia": [positive] * 2},
              "tree": {"bodies": [partial(read_body, k) for k in range(n)]}}
-    numbers, from_zero, above = [number] * n, [not_negative] * n, [positive] * n
+    numbers, from_zero, above, some = [number] * n, [not_negative] * n, [positive] * n, [(number,)] * n
     gains = {"metric": above, "shaping": above, "damping": above, "kappa": type(None), "hardening": type(None)}
     file = read(raw, {
         "format": str, "version": range(1, 2), "name": str, "made_by": str, "subject": ({"robot": digest, "scenario": digest},),
@@ -435,7 +435,9 @@ def read_file(data):
         "reference": ({"offset": numbers, "terms": [{"amplitude": numbers, "frequency": numbers, "phase": numbers}, ...],
                        "join": ({"duration": positive, "settle": positive},)},),
         "loop": {"control_period": positive, "waiting": int, "offset": (positive,), "off": [not_negative, ...],
-                 "filter": ({"feedback": [number] * 2, "forward": [number] * 2},)},
+                 "filter": ({"feedback": [number] * 2, "forward": [number] * 2},),
+                 "limits": {"torque": some, "torque_step": some, "readings": ({"lowest": some, "highest": some, "speed": some, "deflection": some,
+                                                                             "jump": some, "travel": positive},)}},
         "initial": [number] * 4 * n, "asked": {"extents": above, "rate": positive}, "periods": int,
         "claims": {"rate": number, "error": [number] * 2 * n, "torque": [number] * n}, "kept": [int, ...], "sections": [str, ...]})
     known(file["reference"] is not None, "references of other forms")

@@ -4,13 +4,16 @@ use std::path::{Path, PathBuf};
 
 use flexure::feasible;
 use flexure::files::number::short;
-use flexure::files::{Problem, Reading, folder_of, prepare_for};
+use flexure::files::{Problem, Reading, folder_of, prepare_for, read_text};
+use flexure::prove::sampled_data::beside::{Beside, InTube};
+use flexure::prove::sampled_data::check::LARGEST;
 use flexure::prove::standing::outside_of_proofs;
 use flexure::report::{RunTold, Verdict, summary_table, view_name, write_ran, write_view};
 use flexure::reproduce::{Experiment, trace_file, write_experiment};
 use flexure::sampled::{Sampled, not_looked_at};
 use flexure::scenario::{Scenario, load_scenario_with};
 use flexure::simulate::{Excerpt, FaultLog, Summary, preload};
+use flexure::verify::Rejected;
 use serde::Serialize;
 
 use super::objections::objections;
@@ -31,6 +34,9 @@ pub struct Outcome<'a> {
     /// What the guard kept of its stops; not there without a guard.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub faults: Option<&'a FaultLog>,
+    /// Where it was in its tube; not there without `--tube`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tube: Option<&'a InTube>,
     pub files: Vec<PathBuf>,
     /// Its page and the figure of that; not there without `--page`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -39,7 +45,7 @@ pub struct Outcome<'a> {
 
 /// Two runs, and the page that shows both.
 #[derive(Serialize)]
-struct Beside<'a> {
+struct Both<'a> {
     runs: Vec<Outcome<'a>>,
     files: Vec<PathBuf>,
 }
@@ -53,6 +59,7 @@ impl<'a> Outcome<'a> {
             diverged_at,
             sampled: experiment.sampled.as_ref(),
             faults: run.faults.as_ref(),
+            tube: None,
             files,
             pages: Vec::new(),
         }
@@ -92,6 +99,8 @@ struct Finished {
     experiment: Experiment,
     /// The answers that are no, the first first; nothing for a run that was broken off, of which that is not known.
     answers: Vec<Problem>,
+    /// Where it was in the tube beside which it was watched.
+    tube: Option<InTube>,
     files: Vec<PathBuf>,
     /// Its page and the figure of that, if they were asked for.
     pages: Vec<PathBuf>,
@@ -155,8 +164,10 @@ pub fn told(
 
 /// Runs a scenario and writes its trace and its figure.
 fn run_of(scenario: Scenario, traced: &Traced) -> Result<Finished, Failure> {
-    let Traced { output, columns, every, view: _, paged: _ } = traced;
+    let Traced { output, columns, every, tube, view: _, paged: _ } = traced;
+    let mut tube = tube.as_deref().map(|file| beside(file, &scenario)).transpose()?;
     let signals = scenario.signals()?;
+    let signals = tube.as_ref().map_or(signals.clone(), |tube| tube.signals(signals));
     let excerpt = Excerpt::new(&signals, columns, *every)?;
     say(&scenario.warnings);
     say(&preload(&scenario)?);
@@ -165,18 +176,48 @@ fn run_of(scenario: Scenario, traced: &Traced) -> Result<Finished, Failure> {
     let mut trace = trace_file(&output.out, &scenario, excerpt)?;
     let experiment = {
         let progress = Progress::of_one(&scenario.name);
-        Experiment::new(scenario, &mut [&mut trace], &|fraction| progress.set(0, fraction))?
+        let told = |fraction| progress.set(0, fraction);
+        match &mut tube {
+            None => Experiment::new(scenario, &mut [&mut trace], &told)?,
+            Some(tube) => Experiment::new(scenario, &mut [&mut tube.before(&mut trace)], &told)?,
+        }
     };
+    let tube = tube.map(|tube| tube.found());
     let files = write_experiment(&experiment, trace)?;
     if experiment.run.divergence.is_none() {
         say(&experiment.exceeded);
     }
     say(unbalanced(&experiment).as_slice());
+    let left = tube.as_ref().and_then(|tube| outside(&experiment.scenario, tube));
     let answers = match experiment.run.broken_off {
         Some(_) => Vec::new(),
-        None => objections(&experiment).into_iter().chain(beyond).collect(),
+        None => objections(&experiment).into_iter().chain(beyond).chain(left).collect(),
     };
-    Ok(Finished { experiment, answers, files, pages: Vec::new() })
+    Ok(Finished { experiment, answers, tube, files, pages: Vec::new() })
+}
+
+/// The tube of `file`, for a run of `scenario`.
+fn beside(file: &Path, scenario: &Scenario) -> Result<Beside, Failure> {
+    let text = read_text(file, LARGEST)?;
+    match Beside::new(&text, scenario)? {
+        Ok(beside) => Ok(beside),
+        Err(Rejected::Malformed { place, reason, .. }) => {
+            let message = format!("{} is not a tube: {place}: {reason}", file.display());
+            let hint = "certify --strongest and certify --sampled-tube write files of tubes";
+            Err(Failure::input("tube", message, hint))
+        }
+        Err(Rejected::False { claim, reason }) => {
+            Err(Failure::input("tube", format!("{}: {claim}: {reason}", file.display()), ""))
+        }
+    }
+}
+
+/// That a run was not in its tube from beginning to end, if it was not.
+fn outside(scenario: &Scenario, tube: &InTube) -> Option<Problem> {
+    let is_out = tube.void.is_some() || tube.left.is_some();
+    let message = format!("{}: the tube {}", scenario.name, tube.words());
+    let help = "what is proved of the tube is not known of this run; without --tube it is judged by itself";
+    is_out.then(|| scenario.places.problem("controller", "tube", message, help))
 }
 
 /// The runs in motion, as a page.
@@ -227,7 +268,11 @@ impl Finished {
     /// Its summary and its files, `page` among them.
     fn outcome(&self, page: Option<PathBuf>) -> Outcome<'_> {
         let files = self.files.iter().cloned().chain(page).collect();
-        Outcome { pages: self.pages.clone(), ..Outcome::new(&self.experiment, files) }
+        Outcome {
+            pages: self.pages.clone(),
+            tube: self.tube.as_ref(),
+            ..Outcome::new(&self.experiment, files)
+        }
     }
 
     /// What the numbers do not say of the loop.
@@ -235,7 +280,9 @@ impl Finished {
         let Experiment { scenario, run, sampled, .. } = &self.experiment;
         let conditions = scenario.vcbc().map_or_else(|_| Vec::new(), |_| scenario.beyond_ideal());
         let sampled = sampled.as_ref().map(Sampled::line).or_else(|| not_looked_at(scenario));
-        [summary_line(&run.summary), outside_of_proofs(&conditions), sampled].into_iter().flatten().collect()
+        let tube = self.tube.as_ref().map(|tube| format!("the tube {}", tube.words()));
+        let all = [summary_line(&run.summary), outside_of_proofs(&conditions), sampled, tube];
+        all.into_iter().flatten().collect()
     }
 
     /// What came of it, and whether that is good: not known of a run that was broken off.
@@ -269,7 +316,7 @@ impl Finished {
 fn document(finished: &[Finished], page: Option<PathBuf>) -> Result<(), Failure> {
     match finished {
         [one] => print::json(&one.outcome(page)),
-        runs => print::json(&Beside {
+        runs => print::json(&Both {
             runs: runs.iter().map(|run| run.outcome(None)).collect(),
             files: page.into_iter().collect(),
         }),

@@ -76,3 +76,47 @@ fn tubes_are_verified() {
     assert_eq!(outcome.code, Some(2), "{outcome:?}");
     assert!(outcome.stderr.contains("exists and is no tube") && folder.read(file) == "mine", "{outcome:?}");
 }
+
+/// The ladder is climbed without being told how far, and a run beside the file that comes of it says where it is.
+#[test]
+fn the_strongest_statement_is_looked_for() {
+    let folder = Place::new();
+    let loop_of = ["two-link-tanh-smooth", "--set", "duration=0.02"];
+    let certify = |options: &[&str]| folder.run(&[&["certify"], &loop_of[..], options].concat());
+    let plain = certify(&[]).done().stdout;
+    assert!(plain.contains("highest step proved: ideal") && plain.contains("--strongest looks"), "{plain}");
+    let found = certify(&["--strongest", "--json"]).done().json();
+    assert_eq!((&found["step"], &found["sampled_tube"]["verdict"]), (&"sampled".into(), &"proved".into()));
+    let said = certify(&["--strongest"]).done().stdout;
+    assert!(said.contains("highest step proved: sampled") && said.contains("region = ["), "{said}");
+    assert_eq!(certify(&["--strongest", "--sampled-tube", "1e-5"]).code, Some(2));
+    // Where there is none, the ideal loop's proof stands, and it is said why.
+    let none = folder.run(&["certify", "two-link-everything", "--strongest"]).done().stdout;
+    assert!(
+        none.contains("highest step proved: ideal") && none.contains("no tube was found: this loop"),
+        "{none}"
+    );
+
+    let file = "out/two-link-tanh-smooth.tube.json";
+    let run = |options: &[&str]| folder.run(&[&["run"], &loop_of[..], &["--tube", file], options].concat());
+    let said = run(&[]).done().stdout;
+    assert!(said.contains("the tube holds the run at every control instant"), "{said}");
+    let header = folder.read("out/two-link-tanh-smooth.csv");
+    assert!(header.lines().next().unwrap().ends_with(",rate,certificate,tube"), "{header}");
+    let found = run(&["--json", "--columns", "tube"]).done().json()["tube"].clone();
+    assert_eq!((&found["certified_fraction"], &found["left"]), (&1.0.into(), &serde_json::Value::Null));
+    let other = run(&["--set", "controller.link.damping=[1.0, 1.0]"]);
+    assert_eq!(other.code, Some(1), "{other:?}");
+    assert!(other.stderr.contains("the tube says nothing of this run: controller.link.damping"), "{other:?}");
+    let longer = run(&["--set", "duration=0.03"]);
+    assert_eq!(longer.code, Some(1), "{longer:?}");
+    assert!(longer.stderr.contains("ends before t = 0.021 s"), "{longer:?}");
+    for (text, complaint) in [("", "is not a tube"), ("{}", "is not a tube"), ("[1, 2]", "is not a tube")] {
+        folder.write(file, text);
+        let outcome = run(&[]);
+        assert_eq!(outcome.code, Some(2), "{outcome:?}");
+        assert!(outcome.stderr.contains(complaint), "{outcome:?}");
+    }
+    let outcome = folder.run(&["run", "pendulum-tanh", "--tube", "nowhere.json"]);
+    assert_eq!(outcome.code, Some(2), "{outcome:?}");
+}

@@ -24,6 +24,9 @@ pub struct Settings<C, const N: usize> {
     pub plausible: Plausible<C, N>,
     /// What is done when something pushes a link; none to let it push.
     pub collision: Option<Collision<C, N>>,
+    /// How far the links may be from the reference in rad for what is proved of the loop to hold; infinite where nothing is said of that.
+    /// Beyond it nothing is done: the status tells.
+    pub region: Vector<C, N>,
     /// When the law may take over again.
     pub rejoin: Rejoin<C, N>,
     /// Control periods of a stop after which no torque is given any more, until [`reset`](super::Guard::reset); none to hold for ever.
@@ -65,6 +68,7 @@ impl<C: Float, const N: usize> Settings<C, N> {
             allowed_age: 0,
             plausible: Plausible::ANYTHING,
             collision: None,
+            region: any,
             rejoin: Rejoin { after: 1, speed: any, error: any },
             off_after: None,
             latch: None,
@@ -80,6 +84,7 @@ impl<C: Float, const N: usize> Settings<C, N> {
             && self.torque_limit.iter().all(above_zero)
             && self.torque_rate_limit.iter().all(above_zero)
             && self.stop_damping.iter().all(|d| d.is_finite() && d >= C::ZERO)
+            && self.region.iter().all(above_zero)
             && *after > 0
             && speed.iter().all(above_zero)
             && error.iter().all(above_zero)

@@ -13,6 +13,8 @@ pub struct Status<const N: usize> {
     pub torque_limited: Vector<bool, N>,
     /// Joints at their torque-rate limit.
     pub rate_limited: Vector<bool, N>,
+    /// Joints whose links are farther from the reference than [`region`](super::Settings::region).
+    pub outside: Vector<bool, N>,
     /// What is wrong with the readings of the links.
     pub link_fault: Vector<Option<Fault>, N>,
     /// What is wrong with the readings of the motors.
@@ -44,6 +46,8 @@ pub struct Suspension {
     pub torque_limited: bool,
     /// A joint is at its torque-rate limit.
     pub rate_limited: bool,
+    /// A link is outside of the region that a proof speaks of.
+    pub outside: bool,
     /// The law went by a motion that in part was predicted.
     pub coasting: bool,
     /// The torque goes over from that of a stop to the law's.
@@ -54,8 +58,14 @@ pub struct Suspension {
 
 impl Suspension {
     /// No reason.
-    pub const NONE: Self =
-        Self { torque_limited: false, rate_limited: false, coasting: false, joining: false, stopped: false };
+    pub const NONE: Self = Self {
+        torque_limited: false,
+        rate_limited: false,
+        outside: false,
+        coasting: false,
+        joining: false,
+        stopped: false,
+    };
 }
 
 impl<const N: usize> Status<N> {
@@ -73,6 +83,7 @@ impl<const N: usize> Status<N> {
         let suspension = Suspension {
             torque_limited: any(&self.torque_limited),
             rate_limited: any(&self.rate_limited),
+            outside: any(&self.outside),
             coasting: self.phase == Phase::Coasting,
             joining: self.joining,
             stopped: !self.phase.is_law_s(),

@@ -233,6 +233,7 @@ impl<C: Float, const N: usize> Guard<C, N> {
             phase,
             torque_limited: allowed.torque_limited,
             rate_limited: allowed.rate_limited,
+            outside: self.outside(seen),
             link_fault: faults.link,
             motor_fault: faults.motor,
             controller_fault: faults.controller,
@@ -240,6 +241,17 @@ impl<C: Float, const N: usize> Guard<C, N> {
             latched: self.state.latched,
         };
         Decision { torque: allowed.torque, status }
+    }
+
+    /// Which links are farther from the reference than what is proved speaks of, or may be.
+    #[inline]
+    fn outside(&self, seen: &Seen<C, N>) -> Vector<bool, N> {
+        let region = &self.settings.region;
+        let off = |target: Vector<C, N>, i: usize| Piecewise::abs(seen.x.q_l[i] - target[i]);
+        Vector::from_fn(|i| {
+            let is_inside = seen.target.is_none_or(|target| off(target, i) <= region[i]);
+            region[i].is_finite() && !is_inside
+        })
     }
 
     /// What is wrong, before the law is asked.

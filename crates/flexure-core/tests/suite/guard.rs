@@ -197,6 +197,35 @@ fn limits_are_reported_in_the_same_step() {
     assert!(matches!(status.certificate(), Certificate::Suspended(Suspension { stopped: true, .. })));
 }
 
+/// Links that are farther from the reference than what is proved speaks of suspend the certificate in that step, and nothing else; so does
+/// where they are not known. Without a target nothing is compared.
+#[test]
+fn outside_of_a_region_nothing_is_done_and_it_is_said() {
+    let region = Settings { region: Vector([0.1, f64::INFINITY]), ..settings() };
+    let [mut guard, mut without] =
+        [region, settings()].map(|settings| Guard::new(settings).expect("sound settings"));
+    let seen = |q: f64, target: Option<f64>| Seen {
+        target: target.map(|target| Vector([target, 5.0])),
+        ..Seen::fresh(&Motion::at_rest(Vector([q, 0.0])))
+    };
+    let none = Suspension::NONE;
+    for (q, target, outside) in
+        [(0.0, Some(0.1), false), (0.2, Some(0.09), true), (-0.2, Some(-0.09), true), (0.2, None, false)]
+    {
+        let step = |guard: &mut Guard<f64, 2>| {
+            let law = |_: &Motion<f64, 2>| Vector([0.1, 0.1]);
+            guard.step(&seen(q, target), &mut (law, |_: &Vector<f64, 2>| Vector::ZERO))
+        };
+        let (with, plain) = (step(&mut guard), step(&mut without));
+        assert_eq!((with.torque, with.status.phase), (plain.torque, plain.status.phase));
+        assert_eq!(with.status.outside, Vector([outside, false]), "{q} {target:?}");
+        let suspended = Certificate::Suspended(Suspension { outside: true, ..none });
+        assert_eq!(with.status.certificate(), if outside { suspended } else { Certificate::Holds });
+        assert_eq!(plain.status.certificate(), Certificate::Holds);
+    }
+    assert!(Guard::new(Settings { region: Vector([0.0, 1.0]), ..settings::<f64>() }).is_none());
+}
+
 /// Each kind of fault stops in its own step, and is reported where it is.
 #[test]
 fn faults_are_reported_by_joint_and_side() {

@@ -222,7 +222,10 @@ impl SpecFile {
             start.vcbc().map_err(|problem| self.refused("rate", &problem))?;
         }
         for scenario in scenarios.iter().filter(|_| self.spec.sampled_rate.is_some()) {
-            suitable_when_sampled(scenario).map_err(|problems| self.refused("sampled_rate", &problems))?;
+            let problems = suitable_when_sampled(scenario).err();
+            if let Some(problem) = problems.as_ref().and_then(|problems| problems.iter().next()) {
+                return Err(self.refused("sampled_rate", problem));
+            }
         }
         Ok(())
     }

@@ -18,6 +18,8 @@ pub struct GuardSettings {
     pub max_age: u32,
     /// Damping of the motors while stopped ≥ 0 [N m s/rad].
     pub stop_damping: Vec<f64>,
+    /// How far the links may be from the reference > 0 for what is proved to hold \[rad\].
+    pub region: Vec<f64>,
     /// When and how the law takes over again.
     pub rejoin: Rejoin,
     /// Time of a stop after which no torque is given any more > 0 \[s\]; none to hold for ever.
@@ -115,6 +117,7 @@ impl GuardSettings {
             torque_rate_limit: limits.torque_rate.clone(),
             max_age: 0,
             stop_damping: vec![0.0; n],
+            region: vec![f64::INFINITY; n],
             rejoin: Rejoin {
                 after: 10,
                 speed: vec![0.5; n],
@@ -145,6 +148,7 @@ const KEYS: &[&str] = &[
     "torque_rate_limit",
     "max_age",
     "stop_damping",
+    "region",
     "rejoin_after",
     "rejoin_speed",
     "rejoin_error",
@@ -181,6 +185,7 @@ pub(crate) fn read(root: &Table<'_>, context: &Context<'_>) -> Option<Option<Gua
             table.per_joint("torque_limit", &quantity::TORQUE_LIMIT, &mut guard.torque_limit),
             table.per_joint("torque_rate_limit", &quantity::TORQUE_RATE_LIMIT, &mut guard.torque_rate_limit),
             table.count("max_age", "age in control periods", 0, &mut guard.max_age),
+            table.per_joint("region", &quantity::DISTANCE, &mut guard.region),
             table.rejoin(&mut guard.rejoin),
             table.ends(&mut guard),
             table.believed(&mut guard.believed),

@@ -65,6 +65,7 @@ fn core<const N: usize>(settings: &GuardSettings, period: f64) -> Settings<f64, 
                 Reaction::Retract => guard::Reaction::Retract(periods(collision.retract, period)),
             },
         }),
+        region: bound(&settings.region),
         rejoin: guard::Rejoin {
             after: rejoin.after,
             speed: bound(&rejoin.speed),

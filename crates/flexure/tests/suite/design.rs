@@ -9,6 +9,7 @@ use flexure::files::{Problem, Reading};
 use flexure::imperfections::Imperfection;
 use flexure::progress::unwatched;
 use flexure::prove::question::{Question, prove};
+use flexure::prove::sampled_data::sampled_tube;
 use flexure::scenario::scenario_from_text;
 
 /// The pendulum for half a second, with `spec`.
@@ -40,6 +41,38 @@ fn the_rate_that_is_asked_is_proved() {
         let proof = prove(&scenario, &Question::default()).expect("a proof");
         let proved = proof.verdict.proved().expect("proved").contraction_rate.as_ref().unwrap().approximate();
         assert!(proved >= rate, "{proved} < {rate}");
+    }
+}
+
+/// A rate of the sampled loop that is asked for is that of a tube, found by the prover on its own; where small errors shrink more slowly, or no tube is
+/// found, that is said, and where tubes do not speak of a loop, before anything is run.
+#[test]
+fn the_rate_of_the_sampled_loop_that_is_asked_is_proved() {
+    let (specified, found) = tuned("sampled_rate = 8.0", 8);
+    assert!(found.feasible, "{:?}", found.constraints);
+    let tube = found.evidence.tube.expect("a tube");
+    let scenario = specified.scenarios[0].under(&found.controller);
+    let again = sampled_tube(&scenario, &[tube.width], &unwatched).unwrap().unwrap().expect("the same");
+    assert_eq!(again.rate.to_bits(), tube.rate.to_bits());
+    assert!(tube.rate >= 8.0);
+    assert!(found.comment().contains("near its run (certify --sampled-tube"), "{}", found.comment());
+    let asked = "sampled_rate = 5000.0";
+    let (specified, found) = tuned(asked, 6);
+    assert!(!found.feasible && found.evidence.tube.is_none());
+    let problem = objection(&specified, asked, &found);
+    assert!(problem.to_string().contains("rate of the sampled loop near its run"), "{problem}");
+    assert!(problem.hint().contains("a lower sampled_rate"), "{}", problem.hint());
+    let file = SpecFile::from_text("spec.toml", "sampled_rate = 5.0").unwrap();
+    for (name, why) in
+        [("two-link-everything", "has an estimator"), ("task-soft", "certificates are for 'vcbc'")]
+    {
+        let Ok(mut specified) = Specified::load(name, Reading::default(), &file) else { panic!("{name}") };
+        if name == "task-soft" {
+            specified.scenarios[0].controller =
+                flexure::laws::Controller::default_for("cascade", &specified.scenarios[0].robot).unwrap();
+        }
+        let problems = design(&specified, &file, 4, 0, &unwatched).unwrap_err();
+        assert!(problems.to_string().contains(why), "{problems}");
     }
 }
 

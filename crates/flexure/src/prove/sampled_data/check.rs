@@ -71,7 +71,7 @@ fn refuted(claim: &str, reason: impl Into<String>) -> Rejected {
 }
 
 /// What the file says.
-fn document(text: &str) -> Result<Document, Rejected> {
+pub(super) fn document(text: &str) -> Result<Document, Rejected> {
     let value = strict(text).map_err(|error| Rejected::Malformed {
         place: "the file".to_owned(),
         reason: error.to_string(),
@@ -91,7 +91,7 @@ fn document(text: &str) -> Result<Document, Rejected> {
 }
 
 /// Where what the file says of its loop is not what the scenario's is.
-fn differences(ours: &Document, theirs: &Document) -> Vec<Difference> {
+pub(super) fn differences(ours: &Document, theirs: &Document) -> Vec<Difference> {
     let mut found = Vec::new();
     for (place, ours, theirs) in [
         ("robot", &ours.robot, &theirs.robot),
@@ -121,13 +121,13 @@ fn differences(ours: &Document, theirs: &Document) -> Vec<Difference> {
 }
 
 /// What a file gives of its tube.
-struct Given {
+pub(super) struct Given {
     asked: Asked,
-    sections: Vec<Section>,
+    pub(super) sections: Vec<Section>,
 }
 
 /// What `document`, which is about `scenario`, gives of its tube, if it has as much as it must.
-fn given(document: &Document, scenario: &Scenario) -> Result<Given, Rejected> {
+pub(super) fn given(document: &Document, scenario: &Scenario) -> Result<Given, Rejected> {
     let Document { asked, claims, kept, sections, periods, .. } = document;
     let n = scenario.robot.joint_count();
     let Claims { rate, error, torque } = claims;

@@ -15,7 +15,8 @@ use crate::prove::decimals;
 use crate::prove::engine::certificate::{CertifiedPhi, DecimalLaw};
 use crate::prove::engine::number::Number;
 use crate::prove::engine::sampled_data::section::Section;
-use crate::prove::sampled_data::spoken_of::sensors;
+use crate::prove::engine::sampled_data::watch::Passes;
+use crate::prove::sampled_data::spoken_of::{passes, sensors};
 use crate::prove::sampled_data::{SampledTube, late};
 use crate::prove::subject::subject;
 use crate::references::{Reference, Term};
@@ -175,6 +176,7 @@ pub(super) fn about(scenario: &Scenario) -> Result<Document, Problems> {
             // From below: the float that is proved about is above its shortest decimal.
             "off": sensors.off.iter().map(|&off| Number::decimal(off.next_down())).collect::<Vec<_>>(),
             "filter": filter,
+            "limits": limits(&passes(scenario)),
         }),
         initial: json!(initial.concat()),
         asked: AskedTexts::default(),
@@ -183,6 +185,23 @@ pub(super) fn about(scenario: &Scenario) -> Result<Document, Problems> {
         kept: Vec::new(),
         sections: Vec::new(),
     })
+}
+
+/// What guard and drives do nothing about, null where all passes.
+fn limits(passes: &Passes) -> Value {
+    let numbers =
+        |all: &[f64]| all.iter().map(|&x| x.is_finite().then(|| Number::decimal(x))).collect::<Vec<_>>();
+    let readings = passes.readings.as_ref().map(|believed| {
+        json!({
+            "lowest": numbers(&believed.position[0]),
+            "highest": numbers(&believed.position[1]),
+            "speed": numbers(&believed.speed),
+            "deflection": numbers(&believed.deflection),
+            "jump": numbers(&believed.jump),
+            "travel": Number::decimal(believed.travel),
+        })
+    });
+    json!({ "torque": numbers(&passes.torque), "torque_step": numbers(&passes.torque_step), "readings": readings })
 }
 
 /// The reference where it is sines, from the start on or joined; none where it is of another form.

@@ -1,6 +1,7 @@
 //! How far motions of a scenario's sampled loop can be from its run, and how fast they come closer: the law at its control period, with its delay,
 //! its torques held and within limits, on readings in counts and filtered velocities.
 
+pub mod beside;
 pub mod check;
 pub mod file;
 mod spoken_of;
@@ -169,10 +170,7 @@ fn followed(
     let passes = passes(scenario);
     let sensors = sensors(scenario);
     let of = HeldLoop { system: &*system, sensors: &sensors, period, waiting, offset, passes: &passes };
-    let initial = &scenario.initial;
-    // The run begins at the decimals of the file, with the springs holding the links (`simulate::assembly`).
-    let start = [&initial.q_l, &initial.q_m, &initial.dq_l, &initial.dq_m].into_iter().flatten();
-    let start: Vec<_> = start.map(|&x| scenario.bounds(x)).collect();
+    let start = start(scenario);
     let begin = of.started(&start);
     let Asked { extents, rate } = asked.clone();
     let request = TubeRequest { periods: scenario.periods() as usize, extents, rate, start };
@@ -235,6 +233,13 @@ fn followed(
     })))
 }
 
+/// Where the run begins: at the decimals of the file, with the springs holding the links (`simulate::assembly`).
+fn start(scenario: &Scenario) -> Vec<Interval> {
+    let initial = &scenario.initial;
+    let start = [&initial.q_l, &initial.q_m, &initial.dq_l, &initial.dq_m].into_iter().flatten();
+    start.map(|&x| scenario.bounds(x)).collect()
+}
+
 /// How late torques are.
 struct Late {
     /// In s.
@@ -255,6 +260,20 @@ fn late(scenario: &Scenario) -> Late {
     let period = scenario.bounds(scenario.control_period);
     let whole_periods = Interval::point(waiting.saturating_sub(1) as f64) * period;
     Late { delay, waiting, offset: (offset > 0.0).then(|| exact - whole_periods) }
+}
+
+impl SampledTube {
+    /// How far links in the tube are from the reference in rad, as they are read, at control instants.
+    pub fn region(&self) -> Vec<f64> {
+        let TubeProfile { lowest, highest, .. } = &self.profile;
+        let largest = |of: &[f64]| of.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+        let each = lowest.iter().zip(highest).enumerate();
+        each.map(|(i, (lowest, highest))| {
+            let off = self.readings.get(i).copied().unwrap_or(0.0);
+            (Interval::point(largest(lowest).max(largest(highest))) + Interval::point(off)).hi()
+        })
+        .collect()
+    }
 }
 
 /// What is found along a tube.

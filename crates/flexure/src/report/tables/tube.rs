@@ -1,7 +1,7 @@
 //! A tube of the sampled loop in lines.
 
 use super::proof::{at_most, list};
-use crate::files::number::{rounded_down, significant};
+use crate::files::number::{rounded_down, rounded_up, significant};
 use crate::prove::sampled_data::SampledTube;
 use crate::robot::JointKind;
 use crate::units::{self, of_joints};
@@ -43,6 +43,10 @@ pub fn tube_lines(found: &SampledTube, kinds: &[JointKind]) -> Vec<String> {
             "sampled      at the control instants of its last quarter the run's links are within {} {rad} of the reference; |u_m| ≤ {} {torque} in the tube",
             at_most(&found.tracking),
             at_most(&found.torque)
+        ),
+        format!(
+            "sampled      a guard with region = [{}] {rad} tells when links are, as read, farther from the reference than this tube",
+            found.region().iter().map(|&x| format!("{:e}", rounded_up(x, 3))).collect::<Vec<_>>().join(", ")
         ),
     ]
 }

@@ -4,6 +4,7 @@ mod file;
 mod python;
 mod random;
 mod readings;
+mod strongest;
 
 use flexure::files::{Change, Reading};
 use flexure::imperfections::{Delay, Imperfection};
