@@ -17,6 +17,10 @@
     )
 )]
 
+// Fused multiplication for intervals.
+#[cfg(all(feature = "std", target_feature = "fma"))]
+extern crate std;
+
 mod array;
 pub mod contraction;
 pub mod control;

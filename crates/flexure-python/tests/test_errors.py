@@ -62,7 +62,10 @@ class TestErrors:
 
     def test_a_forged_tube(self, tmp_path: Path) -> None:
         scenario = flexure.Scenario("two-link-tanh-smooth", set={"duration": 0.01})
-        flexure.certify(scenario, sampled_tube=1e-5, out=tmp_path / "arm.json")
+        with pytest.raises(TypeError, match="not both"):
+            flexure.certify(scenario, sampled_tube=1e-5, strongest=True)
+        assert flexure.certify(scenario)["step"] == "ideal"
+        assert flexure.certify(scenario, strongest=True, out=tmp_path / "arm.json")["step"] == "sampled"
         file = tmp_path / "arm.tube.json"
         found = flexure.verify(file, against=scenario)
         assert found["same"] and found["periods"] == 10 and found["rate"] > 10.0

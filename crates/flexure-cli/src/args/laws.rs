@@ -48,7 +48,7 @@ pub struct Certify {
     #[arg(long, value_name = "E", value_delimiter = ',', allow_negative_numbers = true)]
     pub sampled_tube: Option<Vec<f64>>,
     /// Prove the strongest statement that can be proved of the loop in the file: looks for the widest tube of the sampled loop by itself, from 0.1 rad down to 1e-7,
-    /// which takes a minute or two for two joints and much longer for many. Where there is none, what is proved of the ideal loop stands, and it is said why.
+    /// which takes minutes for two joints and a long run, and much longer for many. Where there is none, what is proved of the ideal loop stands, and it is said why.
     #[arg(long, conflicts_with = "sampled_tube")]
     pub strongest: bool,
     /// Prove the certified contraction rate once more, from the full inequality; of theorems only that the rate of the mass matrix cancels.
@@ -93,7 +93,7 @@ pub struct Compare {
 pub struct Tune {
     /// Scenario file, or the name of a built-in scenario; its gains may be left out.
     pub scenario: String,
-    /// What the loop shall do: rate, delays, uncertainty, margins, references.
+    /// What the loop shall do: rates to be proved, of the ideal loop or as it is sampled, delays, uncertainty, margins, references.
     #[arg(long, value_name = "SPEC")]
     pub spec: Option<PathBuf>,
     /// Runs that the search for gains may simulate.

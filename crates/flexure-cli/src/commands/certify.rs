@@ -62,6 +62,7 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
         }
     };
     let tube = proof.sampled_tube.as_ref().and_then(|found| found.as_ref().ok());
+    let beside = tube_path.clone();
     let tube_file = match tube.filter(|_| !proof.broken_off) {
         None => None,
         Some(tube) => {
@@ -69,6 +70,8 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
             Some(tube_path)
         }
     };
+    let looked = options.sampled_tube.is_some() || options.strongest;
+    let stale = Some(beside).filter(|old| looked && tube_file.is_none() && old.exists());
     let standing = Standing::of(&scenario, &proof, sampled.as_ref());
     let pages = match &options.paged.page {
         // Of a part of a proof a page would be taken for the whole.
@@ -98,6 +101,9 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
         }
         print::wrote(file.as_slice())?;
         print::wrote(tube_file.as_slice())?;
+        if let Some(old) = stale {
+            print::line(&format!("{} is of an earlier proof", old.display()))?;
+        }
         print::wrote(&pages)?;
     }
     if !has_page {

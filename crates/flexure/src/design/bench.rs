@@ -135,13 +135,7 @@ impl Bench {
             let cost = UNSTABLE + bounded(unstable.value - 1.0);
             return Ok(Trial { controller, cost, constraints, runs: Vec::new() });
         }
-        let rate = self.sampled_rate.zip(radius).map(|(asked, radius)| {
-            let scenario = &self.scenarios[0];
-            let [exact, off] = SHOWN;
-            let shown = if reads_exactly(scenario) { exact } else { off };
-            let rate = rate_in_tubes(-radius.ln() / scenario.control_period);
-            Constraint::sampled_rate(shown * rate, asked, None)
-        });
+        let rate = self.sampled_rate.zip(radius).map(|(asked, radius)| self.outlook(asked, radius));
         constraints.extend(rate);
         let runs = self.runs(&self.scenarios, &controller, watch)?;
         let diverged = |(run, scenario): (&Run, &Scenario)| Some((run.divergence?.time, scenario.duration));
@@ -168,6 +162,20 @@ impl Bench {
             kept
         };
         Ok(Trial { controller, cost, constraints, runs })
+    }
+
+    /// What a tube of a loop in which small errors grow by `radius` in a control period may have of the rate that is `asked` \[1/s\].
+    fn outlook(&self, asked: f64, radius: f64) -> Constraint {
+        let scenario = &self.scenarios[0];
+        let [exact, off] = SHOWN;
+        let shown = if reads_exactly(scenario) { exact } else { off };
+        let decay = -radius.ln() / scenario.control_period;
+        let rate = shown * rate_in_tubes(decay);
+        let [shrink, has, wanted] = [decay, rate, asked].map(|rate| short(rate, 4));
+        let note = format!(
+            "small errors shrink by {shrink} 1/s, so that a tube may have about {has} 1/s, and {wanted} 1/s are asked"
+        );
+        Constraint::outlook(rate, asked, (rate < asked).then_some(note))
     }
 
     /// The spectral radius at each corner that is looked at.

@@ -167,10 +167,21 @@ impl Constraint {
         }
     }
 
-    /// That motions of the sampled loop come closer at `rate` at least, where `asked` is asked [1/s]; `note` says why no tube is there.
+    /// That motions of the sampled loop were proved to come closer at `rate`, where `asked` is asked \[1/s\]; `note` says why there is no tube.
     pub(super) fn sampled_rate(rate: f64, asked: f64, note: Option<String>) -> Self {
         Self {
-            what: "rate of the sampled loop near its run, at least".to_owned(),
+            what: "rate of the sampled loop near its run, proved, at least".to_owned(),
+            value: number::rounded_down(rate, 4),
+            kind: Kind::SampledRate,
+            note,
+            ..Self::rate(rate, asked)
+        }
+    }
+
+    /// That small errors shrink fast enough for a tube that has `asked`, as one may have about `rate` \[1/s\].
+    pub(super) fn outlook(rate: f64, asked: f64, note: Option<String>) -> Self {
+        Self {
+            what: "rate that a tube of the sampled loop may have, a guess".to_owned(),
             kind: Kind::SampledRate,
             note,
             ..Self::rate(rate, asked)

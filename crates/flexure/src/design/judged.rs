@@ -46,6 +46,7 @@ impl Judged {
         let constraints = trial.constraints.clone();
         let mut judged = Self { trial, tuned, proof: None, tubes: Vec::new(), constraints, broken_off };
         if broken_off {
+            judged.sampled_is_open(bench);
             return Ok(judged);
         }
         judged.proof = prove_watched(&judged.tuned, &Question::default(), &|_| watch.go_on()).ok();
@@ -60,9 +61,18 @@ impl Judged {
         }
         match bench.sampled_rate {
             Some(asked) if judged.keeps() && !judged.broken_off => judged.sampled(bench, asked, proving)?,
+            _ if judged.broken_off => judged.sampled_is_open(bench),
             _ => {}
         }
         Ok(judged)
+    }
+
+    /// Where a tube of the sampled loop is asked, and whether there is one was not looked at.
+    fn sampled_is_open(&mut self, bench: &Bench) {
+        let Some(asked) = bench.sampled_rate else { return };
+        self.constraints.retain(|constraint| constraint.kind != Kind::SampledRate);
+        let note = "broken off before a tube was found".to_owned();
+        self.constraints.push(Constraint::sampled_rate(0.0, asked, Some(note)));
     }
 
     /// The best of what was `found`; where a tube of the sampled loop is asked and there is none, of slower loops the one that tracks best of
@@ -94,11 +104,15 @@ impl Judged {
         }
         let (mut without, mut with) = (0, slower.len());
         for _ in 0..HALVINGS {
-            if without >= with || with_one.broken_off {
+            if without >= with {
                 break;
             }
             let middle = usize::midpoint(without, with);
             let judged = judge(slower[middle].clone())?;
+            if judged.broken_off {
+                with_one.broken_off = true;
+                break;
+            }
             if judged.keeps() {
                 (with, with_one) = (middle, judged);
             } else {
@@ -118,6 +132,7 @@ impl Judged {
             match widest_tube(&scenario, asked, &told)? {
                 None => {
                     self.broken_off = true;
+                    self.sampled_is_open(bench);
                     return Ok(());
                 }
                 Some(Err(none)) => {

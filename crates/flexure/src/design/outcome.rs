@@ -358,7 +358,9 @@ impl Design {
             ),
             Kind::Lost => "a SPEC that asks for less uncertainty and margin, or accept.error above what it leaves".to_owned(),
             Kind::Rate => "a lower rate".to_owned(),
-            Kind::SampledRate => format!("a lower sampled_rate; or {}", quicker(scenario, file)),
+            Kind::SampledRate => {
+                "a lower sampled_rate; or what leaves tubes more room: finer encoders, a slower reference, larger limits of torques and their rates, less delay, a shorter control_period".to_owned()
+            }
         };
         Some(format!("{slower}{way}"))
     }

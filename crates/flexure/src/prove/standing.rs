@@ -4,7 +4,6 @@ use crate::files::Problem;
 use serde::Serialize;
 
 use crate::prove::question::Proof;
-use crate::prove::robust::Robust;
 use crate::sampled::Sampled;
 use crate::scenario::Scenario;
 
@@ -80,12 +79,14 @@ pub enum Step {
 impl Step {
     /// The highest that `proof` has reached; none where not even the first is proved.
     pub fn of(proof: &Proof) -> Option<Self> {
+        if matches!(proof.sampled_tube, Some(Ok(_))) {
+            return Some(Self::Sampled);
+        }
         let certificate = proof.verdict.proved()?;
         let robust = proof.robust.as_ref().and_then(|found| found.as_ref().ok());
         let is_robust = robust.is_some() || matches!(proof.within, Some(Ok(_))) || certificate.tube.is_some();
-        Some(match proof.sampled_tube {
-            Some(Ok(_)) => Self::Sampled,
-            _ if robust.is_some_and(Robust::keeps_limits) => Self::Limited,
+        Some(match robust {
+            Some(robust) if robust.keeps_limits() => Self::Limited,
             _ if is_robust => Self::Robust,
             _ => Self::Ideal,
         })

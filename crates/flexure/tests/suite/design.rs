@@ -60,7 +60,7 @@ fn the_rate_of_the_sampled_loop_that_is_asked_is_proved() {
     let (specified, found) = tuned(asked, 6);
     assert!(!found.feasible && found.evidence.tube.is_none());
     let problem = objection(&specified, asked, &found);
-    assert!(problem.to_string().contains("rate of the sampled loop near its run"), "{problem}");
+    assert!(problem.to_string().contains("rate that a tube of the sampled loop may have"), "{problem}");
     assert!(problem.hint().contains("a lower sampled_rate"), "{}", problem.hint());
     let file = SpecFile::from_text("spec.toml", "sampled_rate = 5.0").unwrap();
     for (name, why) in
@@ -257,6 +257,10 @@ fn what_is_broken_off_soon_has_the_starting_gains() {
     let start = Scenario::load("pendulum-tanh").unwrap();
     let ratio = |i: usize| found.controller.gains()[i].1[0] / start.controller.gains()[i].1[0];
     assert!((0..start.controller.gains().len()).all(|i| ratio(i).is_finite()), "{found:?}");
+    // A rate of the sampled loop is not kept before it is proved.
+    let (specified, file) = pendulum("sampled_rate = 8.0");
+    let found = design(&specified, &file, 6, 0, &at_once).unwrap_or_else(|problems| panic!("{problems}"));
+    assert!(found.broken_off && !found.feasible && found.evidence.tube.is_none(), "{found:?}");
     let before = design(&specified, &file, 6, 0, &|_| ControlFlow::Break(()));
     assert!(before.is_err_and(|problems| problems.is_interrupted()));
 }

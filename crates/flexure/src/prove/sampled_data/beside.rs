@@ -51,8 +51,11 @@ pub struct Beside {
 pub struct InTube {
     /// Why nothing that the file claims is about this run, if so: another loop, or a start outside.
     pub void: Option<String>,
-    /// How far out it was at most: 1 is the surface.
+    /// How far out it was at most: 1 is the surface, or where readings are off a position's claimed error.
     pub farthest: f64,
+    /// Whether readings are off, so that only claimed errors are known.
+    #[serde(skip)]
+    of_errors: bool,
     /// When it was outside first, or the tube had ended, in s.
     pub left: Option<f64>,
     /// Whether that is because the tube had ended.
@@ -109,7 +112,7 @@ impl Beside {
         void: Option<String>,
         scenario: &Scenario,
     ) -> Result<Self, Problems> {
-        let signals = scenario.signals()?;
+        let (signals, of_errors) = (scenario.signals()?, error.is_some());
         let column = |name: &str| signals.iter().position(|signal| signal.name == name);
         let joints = 1..=scenario.robot.joint_count();
         let motion = ["q_l", "q_m", "dq_l", "dq_m"]
@@ -129,7 +132,14 @@ impl Beside {
             holds: void.is_none(),
             instants: 0,
             certified: 0,
-            found: InTube { void, farthest: 0.0, left: None, ended: false, certified_fraction: 0.0 },
+            found: InTube {
+                void,
+                of_errors,
+                farthest: 0.0,
+                left: None,
+                ended: false,
+                certified_fraction: 0.0,
+            },
         })
     }
 
@@ -213,8 +223,13 @@ impl InTube {
         match (&self.void, self.left) {
             (Some(why), _) => format!("says nothing of this run: {why}"),
             (None, None) => format!(
-                "holds the run at every control instant, {} % of the way to its surface at most; its file is taken at its word: `flexure verify` follows it",
-                short(100.0 * self.farthest, 3)
+                "holds the run at every control instant, {} % of {} at most; its file is taken at its word: `flexure verify` follows it",
+                short(100.0 * self.farthest, 3),
+                if self.of_errors {
+                    "the errors of positions that its file claims"
+                } else {
+                    "the way to its surface"
+                }
             ),
             (None, Some(left)) if self.ended => {
                 format!("ends before t = {} s, and the run does not", short(left, 5))
@@ -225,6 +240,9 @@ impl InTube {
 }
 
 fn differences_in_words(differences: &[Difference]) -> String {
+    if differences.first().is_some_and(|first| first.place.starts_with("subject")) {
+        return "its file does not tell a reference of this form, and is of scenario files that say something else".to_owned();
+    }
     differences.first().map_or_else(String::new, |first| {
         format!("{} is {} in the file and {} in the scenario", first.place, first.certificate, first.scenario)
     })

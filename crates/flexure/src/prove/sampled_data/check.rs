@@ -140,15 +140,15 @@ pub(super) fn given(document: &Document, scenario: &Scenario) -> Result<Given, R
             return Err(malformed(format!("claims.{what}"), format!("'{text}' is no number")));
         }
     }
-    if sections.len() != periods + 1 {
-        return Err(malformed("sections", format!("are {}, must be {}", sections.len(), periods + 1)));
+    let instants = periods.saturating_add(1);
+    if sections.len() != instants {
+        return Err(malformed("sections", format!("are {}, must be {instants}", sections.len())));
     }
     let sensors = sensors(scenario);
     let most = sensors.off.len();
     let is_kept = kept.first() == Some(&0) && kept.windows(2).all(|two| two[1] <= two[0] + most);
     if kept.len() != sections.len() || !is_kept {
-        let reason =
-            format!("must be {} numbers from 0, each at most {most} more than the last", periods + 1);
+        let reason = format!("must be {instants} numbers from 0, each at most {most} more than the last");
         return Err(malformed("kept", reason));
     }
     let size = 4 * n + sensors.remembered(n) + late(scenario).waiting * n;

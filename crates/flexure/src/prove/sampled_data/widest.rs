@@ -17,10 +17,6 @@ const WIDTHS: [f64; 19] = [
     2e-7, 1e-7,
 ];
 
-/// A tube that ends after this part of the run has cost something: the next is narrower by a decade.
-const LATE: f64 = 0.1;
-const DECADE: usize = 3;
-
 /// The widest tube of those that were tried in which two motions come closer at `least` 1/s or faster, all links reaching equally far at
 /// the start; or why there is none. None where `progress` breaks it off.
 ///
@@ -39,15 +35,15 @@ pub fn widest_tube(
         Err(none) => return Ok(Some(Err(none))),
     };
     // A narrower tube begins anew: what is told never goes back. Bits of positive floats are ordered as they are.
-    let farthest = AtomicU64::new(0);
+    let most = AtomicU64::new(0);
     let told = |fraction: f64| {
-        let before = farthest.fetch_max(fraction.to_bits(), Ordering::Relaxed);
+        let before = most.fetch_max(fraction.to_bits(), Ordering::Relaxed);
         progress(f64::from_bits(before.max(fraction.to_bits())))
     };
     let n = scenario.robot.joint_count();
-    let (mut at, mut tried, mut best): (_, _, Option<(f64, NoTube)>) = (0, 0, None);
-    loop {
-        let width = WIDTHS[at];
+    let mut tried = 0;
+    let mut farthest: Option<(f64, NoTube)> = None;
+    for width in WIDTHS {
         tried += 1;
         let asked = Asked { extents: vec![width; n], rate };
         let none = match followed(scenario, asked, Sections::Made, &told)? {
@@ -56,16 +52,15 @@ pub fn widest_tube(
             Some(Ok(tube)) => too_slow(&tube, least),
             Some(Err(none)) => none,
         };
-        let is_late = none.shown as f64 > LATE * f64::from(scenario.periods());
-        at += if is_late { DECADE } else { 1 };
-        let is_last = none.way != Way::Narrower || at >= WIDTHS.len();
-        if best.as_ref().is_none_or(|(_, best)| best.shown <= none.shown) {
-            best = Some((width, none));
+        let way = none.way;
+        if farthest.as_ref().is_none_or(|(_, best)| best.shown <= none.shown) {
+            farthest = Some((width, none));
         }
-        if let (Some((width, best)), true) = (best.as_ref(), is_last) {
-            return Ok(Some(Err(best.farthest(tried, *width))));
+        if way != Way::Narrower {
+            break;
         }
     }
+    Ok(farthest.map(|(width, none)| Err(none.farthest(tried, width))))
 }
 
 /// The widest tube at any rate; for a loop that tubes do not speak of, that.

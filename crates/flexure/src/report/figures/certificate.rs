@@ -283,12 +283,14 @@ impl Band {
         let within = self.ends.iter().map(size).fold(0.0, f64::max);
         let most = 1.12 * within.max(size(&self.run).min(OUTSIDE * within)).max(1e-15);
         let range = Range { low: -most, high: most };
-        let label = match ticks::power(range) {
+        // Numbers half as large have to fit beside the frame, too.
+        let power = ticks::power(Range { low: 0.5 * range.low, high: 0.5 * range.high });
+        let label = match power {
             0 => format!("link error [{unit}]"),
             power => format!("link error [{} {unit}]", power_of_ten(power)),
         };
         scene.text([left + LEFT, top + 16.0], name, bold(15.0, INK), Anchor::Start);
-        let y = Axis { range, ticks: ticks::several(range, 6, ticks::power(range)), label: &label };
+        let y = Axis { range, ticks: ticks::several(range, 6, power), label: &label };
         let time = span(&self.ends[0].t);
         let axes = over_time([left, top + 20.0, width, BAND - 26.0], LEFT, time, TIME, y);
         axes.draw(scene);

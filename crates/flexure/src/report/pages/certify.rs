@@ -136,7 +136,7 @@ pub(crate) fn certify_page(
             "In the middle: the link error of each joint over time, and the funnel that no run of the ideal loop leaves. "
         }
         @if matches!(summary.sampled_tube, Some(SampledTubeSummary::Proved(_))) {
-            "In the middle, too: the link error of each joint over time in the tube, where links are at control instants of all motions that start in it, of the loop in the \
+            "In the middle" @if matches!(summary.funnel, Some(FunnelSummary::Proved(_))) { ", too" } ": the link error of each joint over time in the tube, where links are at control instants of all motions that start in it, of the loop in the \
              file, as sampled. "
         }
         "Below: the position errors of each joint, from the ring on"

@@ -61,6 +61,16 @@ fn the_strongest_is_what_can_be_proved() {
     }
 }
 
+/// What is refuted of the ideal loop takes nothing from what is proved of the sampled one.
+#[test]
+fn a_rate_that_is_refuted_leaves_the_tube() {
+    let scenario = scenario("two-link-tanh-smooth", &["duration = 0.01"]);
+    let question = Question { strongest: true, rate: Some(100.0), ..Question::default() };
+    let proof = prove(&scenario, &question).unwrap_or_else(|problems| panic!("{problems}"));
+    assert!(proof.complaint(&scenario).is_some_and(|(_, wrong)| wrong));
+    assert_eq!(Step::of(&proof), Some(Step::Sampled));
+}
+
 /// Keeps the last two numbers of every row: whether what is proved holds, and how far out the run is.
 #[derive(Default)]
 struct Ends(Vec<[f64; 2]>);
@@ -175,6 +185,9 @@ fn of_another_loop_nothing_is_said() {
             .void
             .is_some_and(|void| void.starts_with("loop.limits.torque[0] is null in the file and \"5\""))
     );
+    // Numbers that nothing can be counted with.
+    let huge = file.replace("\"periods\": 20", "\"periods\": 18446744073709551615");
+    assert!(huge != file && Beside::new(&huge, &scenario("two-link-linear", &same)).unwrap().is_err());
     // Shorter ones are a part of it.
     let shorter = scenario("two-link-linear", &["duration = 0.01", same[1]]);
     assert_eq!(beside(&file, &shorter).found().void, None);
