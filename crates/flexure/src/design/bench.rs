@@ -70,12 +70,6 @@ const UNSTABLE: f64 = 300.0;
 const SHOWN: [f64; 2] = [0.97, 0.8];
 
 impl Trial {
-    /// By what small errors grow in the sampled loop in a control period; 0 where that is not looked at.
-    pub fn growth(&self) -> f64 {
-        let radius = self.constraints.iter().find(|constraint| constraint.what == NOMINAL);
-        radius.map_or(0.0, |radius| radius.value)
-    }
-
     /// Whether every constraint is kept that was looked at, wishes aside.
     pub fn keeps(&self) -> bool {
         self.constraints.iter().all(Constraint::is_met)

@@ -25,9 +25,6 @@ pub(super) struct Judged {
     pub broken_off: bool,
 }
 
-/// How often slower loops are halved in the search for one that has a tube.
-const HALVINGS: usize = 3;
-
 impl Judged {
     /// `trial`, of which a rate may be `asked` [1/s]; nothing more is looked at where the search was `broken_off`. `proving` is told how far
     /// proofs of the sampled loop are.
@@ -75,8 +72,8 @@ impl Judged {
         self.constraints.push(Constraint::sampled_rate(0.0, asked, Some(note)));
     }
 
-    /// The best of what was `found`; where a tube of the sampled loop is asked and there is none, of slower loops the one that tracks best of
-    /// those with one, nearly.
+    /// The best of what was `found`; where a tube of the sampled loop is asked and the best has none, the first that has one of the second,
+    /// third, fifth, ninth … best: neighbours are alike, and a proof takes long.
     ///
     /// # Errors
     /// As [`of`](Self::of).
@@ -87,39 +84,22 @@ impl Judged {
         watch: &Watch<'_>,
         proving: Progress<'_>,
     ) -> Result<Self, Problems> {
-        let Found { best, mut slower, broken_off, .. } = found;
+        let Found { best, kept, broken_off, .. } = found;
         let judge = |trial: Trial| Self::of(trial, bench, asked, broken_off, watch, proving);
-        let first = judge(best)?;
+        let mut first = judge(best)?;
         let lacks_a_tube = |judged: &Self| {
             judged.constraints.iter().any(|broken| broken.kind == Kind::SampledRate && !broken.is_met())
         };
-        if broken_off || !lacks_a_tube(&first) {
-            return Ok(first);
-        }
-        // The slowest is the likeliest to have one.
-        let Some(last) = slower.pop() else { return Ok(first) };
-        let mut with_one = judge(last)?;
-        if !with_one.keeps() {
-            return Ok(first);
-        }
-        let (mut without, mut with) = (0, slower.len());
-        for _ in 0..HALVINGS {
-            if without >= with {
-                break;
+        let mut place = 1;
+        while !first.broken_off && lacks_a_tube(&first) && place < kept.len() {
+            let other = judge(kept[place].clone())?;
+            if other.keeps() {
+                return Ok(other);
             }
-            let middle = usize::midpoint(without, with);
-            let judged = judge(slower[middle].clone())?;
-            if judged.broken_off {
-                with_one.broken_off = true;
-                break;
-            }
-            if judged.keeps() {
-                (with, with_one) = (middle, judged);
-            } else {
-                without = middle + 1;
-            }
+            first.broken_off = other.broken_off;
+            place *= 2;
         }
-        Ok(with_one)
+        Ok(first)
     }
 
     /// Looks for a tube of the sampled loop in which motions come closer at `asked` 1/s, under each reference.

@@ -44,8 +44,8 @@ pub(super) struct Search<'a> {
 pub(super) struct Found {
     /// The best that was tried.
     pub best: Trial,
-    /// Others that keep every constraint, from fast to slow, each tracking better than all slower ones; where a rate of the sampled loop is asked.
-    pub slower: Vec<Trial>,
+    /// All that keep every constraint, the best first, where a rate of the sampled loop is asked.
+    pub kept: Vec<Trial>,
     /// Loops that were run.
     pub runs: usize,
     /// Whether it was broken off.
@@ -94,8 +94,9 @@ impl Search<'_> {
         let runs = state.runs.get();
         match (state.best.into_inner(), state.failed.into_inner()) {
             (Some(best), failed) if failed.as_ref().is_none_or(Problems::is_interrupted) => {
-                let slower = slower(&best, state.kept.into_inner());
-                Ok(Found { best, slower, runs, broken_off: failed.is_some() })
+                let mut kept = state.kept.into_inner();
+                kept.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+                Ok(Found { best, kept, runs, broken_off: failed.is_some() })
             }
             (_, failed) => Err(failed.unwrap_or_else(Problems::interrupted)),
         }
@@ -208,20 +209,6 @@ fn note(state: &State, trials: Vec<Result<Trial, Problems>>) -> Vec<f64> {
         }
     };
     trials.into_iter().map(note).collect()
-}
-
-/// Those of `kept` that are slower than `best`, from fast to slow, each better than all that are slower.
-fn slower(best: &Trial, mut kept: Vec<Trial>) -> Vec<Trial> {
-    kept.retain(|trial| trial.growth() > best.growth());
-    kept.sort_by(|a, b| b.growth().total_cmp(&a.growth()));
-    let mut least = f64::INFINITY;
-    kept.retain(|trial| {
-        let is_better = trial.cost < least;
-        least = least.min(trial.cost);
-        is_better
-    });
-    kept.reverse();
-    kept
 }
 
 /// Dampings, and metrics with balances, that are looked at for each speed.
