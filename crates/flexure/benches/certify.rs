@@ -35,7 +35,7 @@ const TANH_CONVERGENCE: f64 = 9.950_547_536_867_305;
 fn problem(scenario: &str, error: f64) -> Proposition {
     let scenario = load_scenario(scenario).expect("built in");
     let region = Region::Errors(vec![error; 2 * scenario.robot.joint_count()]);
-    flexure::prove::question::problem(&scenario, &Question { region, ..Question::default() }, None)
+    flexure::prove::proposition::proposition(&scenario, &Question { region, ..Question::default() }, None)
         .expect("a constant metric")
 }
 

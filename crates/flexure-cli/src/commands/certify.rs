@@ -43,7 +43,8 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
     // Said before minutes of proof, not after.
     spare(&path, "certificate", |text| text.contains("flexure-certificate"), &[])?;
     let tube_path = file::beside(&path);
-    if options.sampled_tube.is_some() || options.strongest {
+    let looks = options.sampled_tube.is_some() || options.strongest;
+    if looks {
         file::spare(&tube_path)?;
     }
     prepare(folder_of(&path))?;
@@ -62,16 +63,14 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
         }
     };
     let tube = proof.sampled_tube.as_ref().and_then(|found| found.as_ref().ok());
-    let beside = tube_path.clone();
-    let tube_file = match tube.filter(|_| !proof.broken_off) {
-        None => None,
+    // What lies there without a new one is of an earlier proof.
+    let (tube_file, stale) = match tube.filter(|_| !proof.broken_off) {
+        None => (None, Some(tube_path).filter(|old| looks && old.exists())),
         Some(tube) => {
             write_tube(&tube_path, &tube.file(&scenario)?)?;
-            Some(tube_path)
+            (Some(tube_path), None)
         }
     };
-    let looked = options.sampled_tube.is_some() || options.strongest;
-    let stale = Some(beside).filter(|old| looked && tube_file.is_none() && old.exists());
     let standing = Standing::of(&scenario, &proof, sampled.as_ref());
     let pages = match &options.paged.page {
         // Of a part of a proof a page would be taken for the whole.

@@ -18,6 +18,7 @@ use serde::Serialize;
 
 use super::objections::objections;
 use super::print;
+use super::verify::{clipped, malformed, shown};
 use crate::args::Traced;
 use crate::failure::{Failure, say};
 use crate::progress::Progress;
@@ -199,23 +200,23 @@ fn run_of(scenario: Scenario, traced: &Traced) -> Result<Finished, Failure> {
 /// The tube of `file`, for a run of `scenario`.
 fn beside(file: &Path, scenario: &Scenario) -> Result<Beside, Failure> {
     let text = read_text(file, LARGEST)?;
-    match Beside::new(&text, scenario)? {
-        Ok(beside) => Ok(beside),
-        Err(Rejected::Malformed { place, reason, .. }) => {
-            let message = format!("{} is not a tube: {place}: {reason}", file.display());
-            let hint = "certify --strongest and certify --sampled-tube write files of tubes";
-            Err(Failure::input("tube", message, hint))
+    Beside::new(&text, scenario)?.map_err(|rejected| match rejected {
+        Rejected::Malformed { place, reason, line, column } => {
+            malformed(file, "tube", &place, &reason, (line, column))
         }
-        Err(Rejected::False { claim, reason }) => {
-            Err(Failure::input("tube", format!("{}: {claim}: {reason}", file.display()), ""))
-        }
-    }
+        Rejected::False { claim, reason } => malformed(file, "tube", &claim, &reason, (None, None)),
+    })
+}
+
+/// Where a run was in its tube: words of the file may be in it.
+fn where_in(tube: &InTube) -> String {
+    format!("the tube {}", clipped(&shown(&tube.words())))
 }
 
 /// That a run was not in its tube from beginning to end, if it was not.
 fn outside(scenario: &Scenario, tube: &InTube) -> Option<Problem> {
     let is_out = tube.void.is_some() || tube.left.is_some();
-    let message = format!("{}: the tube {}", scenario.name, tube.words());
+    let message = format!("{}: {}", scenario.name, where_in(tube));
     let help = "what is proved of the tube is not known of this run; without --tube it is judged by itself";
     is_out.then(|| scenario.places.problem("controller", "tube", message, help))
 }
@@ -280,7 +281,7 @@ impl Finished {
         let Experiment { scenario, run, sampled, .. } = &self.experiment;
         let conditions = scenario.vcbc().map_or_else(|_| Vec::new(), |_| scenario.beyond_ideal());
         let sampled = sampled.as_ref().map(Sampled::line).or_else(|| not_looked_at(scenario));
-        let tube = self.tube.as_ref().map(|tube| format!("the tube {}", tube.words()));
+        let tube = self.tube.as_ref().map(where_in);
         let all = [summary_line(&run.summary), outside_of_proofs(&conditions), sampled, tube];
         all.into_iter().flatten().collect()
     }

@@ -175,7 +175,7 @@ pub(super) fn shown(text: &str) -> String {
 }
 
 /// As much of a text as is shown of it.
-fn clipped(text: &str) -> String {
+pub(super) fn clipped(text: &str) -> String {
     match text.char_indices().nth(MOST_SHOWN) {
         Some((end, _)) => format!("{}…", &text[..end]),
         None => text.to_owned(),

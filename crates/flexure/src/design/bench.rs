@@ -141,7 +141,7 @@ impl Bench {
         constraints.extend(Constraint::of_runs(&runs, self.at_limit));
         let error = runs.iter().map(|run| penalised_error(&run.summary)).fold(0.0, f64::max);
         let kept = cost(error);
-        // Where a slower loop than the best may be chosen, all are looked at.
+        // Where others than the best may be chosen, corners of all are looked at.
         let best = if self.sampled_rate.is_some() { f64::INFINITY } else { best };
         if broken(&constraints, true) == 0.0 && kept < best {
             watch.check()?;

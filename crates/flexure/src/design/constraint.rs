@@ -180,12 +180,8 @@ impl Constraint {
 
     /// That small errors shrink fast enough for a tube that has `asked`, as one may have about `rate` \[1/s\].
     pub(super) fn outlook(rate: f64, asked: f64, note: Option<String>) -> Self {
-        Self {
-            what: "rate that a tube of the sampled loop may have, a guess".to_owned(),
-            kind: Kind::SampledRate,
-            note,
-            ..Self::rate(rate, asked)
-        }
+        let what = "rate that a tube of the sampled loop may have, a guess".to_owned();
+        Self { what, value: rate, ..Self::sampled_rate(rate, asked, note) }
     }
 
     /// The same, `asked` or wished for.

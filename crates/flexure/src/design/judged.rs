@@ -3,11 +3,12 @@
 use crate::design::bench::{Bench, Trial};
 use crate::design::constraint::{Constraint, Kind};
 use crate::design::search::Found;
+use crate::design::tube::Tube;
 use crate::design::watch::Watch;
 use crate::files::Problems;
 use crate::progress::Progress;
 use crate::prove::question::{Proof, Question, prove_watched};
-use crate::prove::sampled_data::{SampledTube, widest_tube};
+use crate::prove::sampled_data::widest_tube;
 use crate::scenario::Scenario;
 
 /// Gains with the proof of their rate, and with what they lose although small errors shrink.
@@ -17,8 +18,8 @@ pub(super) struct Judged {
     pub tuned: Scenario,
     /// None where none can be, and where it was broken off.
     pub proof: Option<Proof>,
-    /// A tube of the sampled loop under each reference, where they are asked for and the rest is kept.
-    pub tubes: Vec<SampledTube>,
+    /// What is proved of the sampled loop under every reference, where that is asked for and the rest is kept.
+    pub tube: Option<Tube>,
     /// Everything that was looked at.
     pub constraints: Vec<Constraint>,
     /// Whether more would have been looked at.
@@ -41,9 +42,9 @@ impl Judged {
     ) -> Result<Self, Problems> {
         let tuned = bench.scenarios[0].under(&trial.controller);
         let constraints = trial.constraints.clone();
-        let mut judged = Self { trial, tuned, proof: None, tubes: Vec::new(), constraints, broken_off };
+        let mut judged = Self { trial, tuned, proof: None, tube: None, constraints, broken_off };
         if broken_off {
-            judged.sampled_is_open(bench);
+            judged.not_looked_at(bench);
             return Ok(judged);
         }
         judged.proof = prove_watched(&judged.tuned, &Question::default(), &|_| watch.go_on()).ok();
@@ -58,18 +59,10 @@ impl Judged {
         }
         match bench.sampled_rate {
             Some(asked) if judged.keeps() && !judged.broken_off => judged.sampled(bench, asked, proving)?,
-            _ if judged.broken_off => judged.sampled_is_open(bench),
+            _ if judged.broken_off => judged.not_looked_at(bench),
             _ => {}
         }
         Ok(judged)
-    }
-
-    /// Where a tube of the sampled loop is asked, and whether there is one was not looked at.
-    fn sampled_is_open(&mut self, bench: &Bench) {
-        let Some(asked) = bench.sampled_rate else { return };
-        self.constraints.retain(|constraint| constraint.kind != Kind::SampledRate);
-        let note = "broken off before a tube was found".to_owned();
-        self.constraints.push(Constraint::sampled_rate(0.0, asked, Some(note)));
     }
 
     /// The best of what was `found`; where a tube of the sampled loop is asked and the best has none, the first that has one of the second,
@@ -104,28 +97,46 @@ impl Judged {
 
     /// Looks for a tube of the sampled loop in which motions come closer at `asked` 1/s, under each reference.
     fn sampled(&mut self, bench: &Bench, asked: f64, proving: Progress<'_>) -> Result<(), Problems> {
-        self.constraints.retain(|constraint| constraint.kind != Kind::SampledRate);
         let count = bench.scenarios.len() as f64;
+        let mut tubes = Vec::new();
         for (scenario, i) in bench.scenarios.iter().zip(0_u32..) {
             let scenario = scenario.under(&self.trial.controller);
             let told = |fraction: f64| proving((f64::from(i) + fraction) / count);
             match widest_tube(&scenario, asked, &told)? {
                 None => {
                     self.broken_off = true;
-                    self.sampled_is_open(bench);
+                    self.not_looked_at(bench);
                     return Ok(());
                 }
                 Some(Err(none)) => {
-                    let note = format!("none was proved: {}", none.at);
-                    self.constraints.push(Constraint::sampled_rate(0.0, asked, Some(note)));
+                    self.sampled_is_open(asked, format!("none was proved: {}", none.at));
                     return Ok(());
                 }
-                Some(Ok(tube)) => self.tubes.push(tube),
+                Some(Ok(tube)) => tubes.push(tube),
             }
         }
-        let slowest = self.tubes.iter().map(|tube| tube.rate).fold(f64::INFINITY, f64::min);
-        self.constraints.push(Constraint::sampled_rate(slowest, asked, None));
+        self.tube = Tube::of(&tubes);
+        let rate = self.tube.map_or(0.0, |tube| tube.rate);
+        self.constrain(Constraint::sampled_rate(rate, asked, None));
         Ok(())
+    }
+
+    /// Where a tube of the sampled loop is asked, and it was broken off before one was looked for.
+    fn not_looked_at(&mut self, bench: &Bench) {
+        if let Some(asked) = bench.sampled_rate {
+            self.sampled_is_open(asked, "broken off before a tube was found".to_owned());
+        }
+    }
+
+    /// Nothing is proved of the rate of the sampled loop, and why.
+    fn sampled_is_open(&mut self, asked: f64, why: String) {
+        self.constrain(Constraint::sampled_rate(0.0, asked, Some(why)));
+    }
+
+    /// Puts `constraint` in the place of what was guessed of it.
+    fn constrain(&mut self, constraint: Constraint) {
+        self.constraints.retain(|other| other.kind != constraint.kind);
+        self.constraints.push(constraint);
     }
 
     /// The rate that is proved [1/s].

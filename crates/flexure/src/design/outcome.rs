@@ -154,7 +154,7 @@ pub fn design(
     watch.reach(borne);
     let feasible = chosen.keeps();
     let rate = chosen.rate();
-    let Judged { trial: best, tuned, proof, tubes, constraints, mut broken_off } = chosen;
+    let Judged { trial: best, tuned, proof, tube, constraints, mut broken_off } = chosen;
     // What was broken off comes back at once.
     let sampled = if broken_off { None } else { probe(&tuned)? };
     let verdict = proof.as_ref().map(|proof| Standing::of(&tuned, proof, sampled.as_ref()).words());
@@ -185,7 +185,7 @@ pub fn design(
             sampled,
             rate_certified: rate,
             verdict,
-            tube: Tube::of(&tubes),
+            tube,
             margins,
         },
         controller: best.controller,

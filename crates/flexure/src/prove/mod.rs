@@ -11,6 +11,7 @@ mod decimals;
 pub mod engine;
 pub(crate) mod fitting;
 pub mod paper;
+pub mod proposition;
 pub mod question;
 pub mod robust;
 pub mod sampled_data;

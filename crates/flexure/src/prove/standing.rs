@@ -77,14 +77,16 @@ pub enum Step {
 }
 
 impl Step {
-    /// The highest that `proof` has reached; none where not even the first is proved.
-    pub fn of(proof: &Proof) -> Option<Self> {
+    /// The highest that `proof` of `scenario` has reached; none where not even the first is proved.
+    pub fn of(scenario: &Scenario, proof: &Proof) -> Option<Self> {
         if matches!(proof.sampled_tube, Some(Ok(_))) {
             return Some(Self::Sampled);
         }
         let certificate = proof.verdict.proved()?;
         let robust = proof.robust.as_ref().and_then(|found| found.as_ref().ok());
-        let is_robust = robust.is_some() || matches!(proof.within, Some(Ok(_))) || certificate.tube.is_some();
+        // The tube of W under a disturbance is of the numbers of the file.
+        let in_tube = certificate.tube.is_some() && scenario.robot.tolerances.are_none();
+        let is_robust = robust.is_some() || matches!(proof.within, Some(Ok(_))) || in_tube;
         Some(match robust {
             Some(robust) if robust.keeps_limits() => Self::Limited,
             _ if is_robust => Self::Robust,
@@ -99,13 +101,13 @@ impl Step {
                 "ideal: the law in continuous time, on exact states of the robot in the file, without limits"
             }
             Self::Robust => {
-                "robust: the law in continuous time, under these torques and of every robot within the tolerances"
+                "robust: the law in continuous time, on exact states, without limits, under the torques that were named and of every robot within the tolerances"
             }
             Self::Limited => {
-                "limited: the law in continuous time, under these torques, with the robot's limits, none of which acts"
+                "limited: the law in continuous time, on exact states, under these torques and of every robot within the tolerances, with the robot's limits, none of which acts"
             }
             Self::Sampled => {
-                "sampled: the loop in the file with its control period and all devices, near its run"
+                "sampled: the loop in the file, its numbers as they are, with its control period and all devices, near its run"
             }
         }
     }

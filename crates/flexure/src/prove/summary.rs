@@ -18,7 +18,7 @@ use crate::prove::standing::{Standing, Step};
 use crate::prove::within::{Closer, Open, Within};
 use crate::robot::JointKind;
 use crate::sampled::Sampled;
-use crate::scenario::{Hold, Scenario};
+use crate::scenario::Scenario;
 use crate::units::{Unit, of_joints};
 
 /// What was proved, as numbers.
@@ -297,10 +297,9 @@ impl ProofSummary {
             name: scenario.name.clone(),
             kinds: scenario.robot.kinds(),
             verdict: Standing::of(scenario, proof, sampled.as_ref()).words(),
-            step: Step::of(proof).filter(|_| sampled.as_ref().is_none_or(|sampled| sampled.stable)),
+            step: Step::of(scenario, proof).filter(|_| sampled.as_ref().is_none_or(|sampled| sampled.stable)),
             may_be_higher: proof.sampled_tube.is_none()
                 && !proof.strongest
-                && scenario.hold != Hold::Continuous
                 && suitable_when_sampled(scenario).is_ok(),
             left_out: scenario.beyond_ideal(),
             contraction_rate: certificate.and_then(|c| Some(c.contraction_rate.as_ref()?.approximate())),

@@ -10,7 +10,8 @@ use flexure::prove::engine::region::RequestedRegion;
 use flexure::prove::engine::structural::Proposition;
 use flexure::prove::engine::verdict::Verdict;
 use flexure::prove::engine::witness::WitnessState;
-use flexure::prove::question::{self, Question, prove};
+use flexure::prove::proposition::proposition;
+use flexure::prove::question::{Question, prove};
 use flexure::prove::verified::certify;
 use flexure::scenario::load_scenario;
 use flexure_core::control::{CoupledTanh, Linear, Shaping, Tanh};
@@ -186,7 +187,7 @@ fn chains_are_as_tight_as_elsewhere() {
         ("tomei-3r-5kg-tanh", 1.12880),
     ] {
         let scenario = load_scenario(name).unwrap();
-        let problem = question::problem(&scenario, &Question::default(), None).unwrap();
+        let problem = proposition(&scenario, &Question::default(), None).unwrap();
         let verdict = certify(&problem);
         let rate = &verdict.proved().unwrap().blocks[2].contraction;
         // Six digits were noted.

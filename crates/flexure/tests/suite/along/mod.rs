@@ -13,7 +13,8 @@ use flexure::core::virtual_system::{Structure, error_coordinates};
 use flexure::progress::unwatched;
 use flexure::prove::along::{Along, along, start_level};
 use flexure::prove::engine::number::Number;
-use flexure::prove::question::{Question, Region, problem};
+use flexure::prove::proposition::proposition;
+use flexure::prove::question::{Question, Region};
 use flexure::prove::verified::certify;
 use flexure::references::{PointToPoint, Profile, Reference};
 use flexure::scenario::Scenario;
@@ -30,7 +31,7 @@ fn level(scenario: &Scenario, disturbance: f64) -> Number {
         disturbance: Some(vec![disturbance; n]),
         ..Question::default()
     };
-    let verdict = certify(&problem(scenario, &question, None).unwrap());
+    let verdict = certify(&proposition(scenario, &question, None).unwrap());
     verdict.proved().unwrap_or_else(|| panic!("{verdict:?}")).tube.clone().unwrap().level
 }
 

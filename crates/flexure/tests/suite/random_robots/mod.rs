@@ -8,7 +8,8 @@ use std::time::Instant;
 
 use flexure::prove::engine::certificate::{BlockName, CertifiedPhi, LoopSide};
 use flexure::prove::engine::verdict::Verdict;
-use flexure::prove::question::{Question, Region, problem};
+use flexure::prove::proposition::proposition;
+use flexure::prove::question::{Question, Region};
 use flexure::prove::verified::certify;
 use flexure::verify::verify;
 
@@ -68,7 +69,7 @@ fn examine(numbers: impl Iterator<Item = u64>, samples: usize) -> Figures {
             disturbance: Some(vec![1e-9; n]),
             ..Question::default()
         };
-        let problem = problem(&scenario, &question, None).unwrap();
+        let problem = proposition(&scenario, &question, None).unwrap();
         let started = Instant::now();
         let verdict = certify(&problem);
         let seconds = started.elapsed().as_secs_f64();

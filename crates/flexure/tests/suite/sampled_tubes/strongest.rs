@@ -27,8 +27,16 @@ fn the_widest_of_those_that_are_tried() {
     assert!(found(&scenario, 2.0 * width).is_err() && width >= 1e-4, "{width}");
     let named = found(&scenario, width).unwrap_or_else(|none| panic!("{}", none.at));
     assert_eq!((named.rate, &named.error), (tube.rate, &tube.error));
+    // Also where wide ones end late in the run: none is passed over.
+    let short = self::scenario("two-link-tanh-smooth", &["duration = 0.05"]);
+    let width = widest(&short, 0.0).asked.extents[0];
+    assert!(found(&short, 2.5 * width).is_err(), "{width}");
     let faster = widest(&scenario, tube.rate + 0.5);
-    assert!(faster.rate >= tube.rate + 0.5 && faster.asked.extents[0] < width, "{}", faster.rate);
+    assert!(
+        faster.rate >= tube.rate + 0.5 && faster.asked.extents[0] < tube.asked.extents[0],
+        "{}",
+        faster.rate
+    );
     // Faster than small errors are: there is none, and it is said how far off that is.
     let none =
         widest_tube(&scenario, 40.0, &unwatched).expect("suitable").expect("not broken off").unwrap_err();
@@ -49,11 +57,15 @@ fn the_strongest_is_what_can_be_proved() {
     for (scenario, step, why) in [
         (scenario("two-link-tanh-smooth", &LOOP), Step::Sampled, None),
         (scenario("two-link-everything", &[]), Step::Ideal, Some("has an estimator")),
-        (scenario("two-link-tanh-smooth", &["hold = \"continuous\""]), Step::Ideal, None),
+        (
+            scenario("two-link-tanh-smooth", &["hold = \"continuous\""]),
+            Step::Ideal,
+            Some("acts in continuous time"),
+        ),
         (scenario("two-link-hardware", &["duration = 0.3"]), Step::Ideal, Some("widths were tried")),
     ] {
         let proof = prove(&scenario, &strongest).unwrap_or_else(|problems| panic!("{problems}"));
-        assert_eq!(Step::of(&proof), Some(step), "{}", scenario.name);
+        assert_eq!(Step::of(&scenario, &proof), Some(step), "{}", scenario.name);
         assert!(proof.complaint(&scenario).is_none(), "{}", scenario.name);
         let said = proof.sampled_tube.and_then(Result::err).map(|none| none.at);
         assert_eq!(said.is_some(), why.is_some(), "{said:?}");
@@ -68,7 +80,7 @@ fn a_rate_that_is_refuted_leaves_the_tube() {
     let question = Question { strongest: true, rate: Some(100.0), ..Question::default() };
     let proof = prove(&scenario, &question).unwrap_or_else(|problems| panic!("{problems}"));
     assert!(proof.complaint(&scenario).is_some_and(|(_, wrong)| wrong));
-    assert_eq!(Step::of(&proof), Some(Step::Sampled));
+    assert_eq!(Step::of(&scenario, &proof), Some(Step::Sampled));
 }
 
 /// Keeps the last two numbers of every row: whether what is proved holds, and how far out the run is.

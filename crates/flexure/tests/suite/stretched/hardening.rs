@@ -5,7 +5,8 @@ use std::path::Path;
 use flexure::Scenario;
 use flexure::files::SCENARIOS;
 use flexure::prove::engine::number::Number;
-use flexure::prove::question::{Question, problem};
+use flexure::prove::proposition::proposition;
+use flexure::prove::question::Question;
 use flexure::scenario::scenario_from_text;
 use flexure::verify::{Rejected, verify};
 use serde_json::{Value, json};
@@ -75,7 +76,7 @@ fn both_checkers_read_it_and_refuse_what_is_not_claimed() {
     for name in ["two-link-linear-smooth", "two-link-tanh-smooth"] {
         let scenario = hardening(name);
         assert!(
-            problem(&scenario, &Question::default(), None)
+            proposition(&scenario, &Question::default(), None)
                 .unwrap_err()
                 .to_string()
                 .contains("metric_hardening")

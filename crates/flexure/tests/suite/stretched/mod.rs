@@ -8,7 +8,8 @@ mod random;
 use flexure::Scenario;
 use flexure::prove::engine::Certificate;
 use flexure::prove::engine::number::Number;
-use flexure::prove::question::{Question, Region, problem};
+use flexure::prove::proposition::proposition;
+use flexure::prove::question::{Question, Region};
 use flexure::prove::verified::certify;
 use flexure::verify::verify;
 
@@ -22,7 +23,7 @@ pub fn certified(scenario: &Scenario, error: f64, speed: f64) -> Certificate {
         velocity_error: Some(vec![speed; both]),
         ..Question::default()
     };
-    let verdict = certify(&problem(scenario, &question, None).unwrap());
+    let verdict = certify(&proposition(scenario, &question, None).unwrap());
     verdict.proved().unwrap_or_else(|| panic!("{}: {verdict:?}", scenario.name)).clone()
 }
 

@@ -3,7 +3,8 @@
 use flexure::Scenario;
 use flexure::prove::engine::number::Number;
 use flexure::prove::engine::verdict::Verdict;
-use flexure::prove::question::{Question, Region, problem};
+use flexure::prove::proposition::proposition;
+use flexure::prove::question::{Question, Region};
 use flexure::prove::verified::certify;
 use flexure::robot::JointKind;
 
@@ -91,7 +92,7 @@ fn examine(
             velocity_error: Some(speed.clone()),
             ..Question::default()
         };
-        let verdict = certify(&problem(&scenario, &question, None).unwrap());
+        let verdict = certify(&proposition(&scenario, &question, None).unwrap());
         let certificate = match verdict {
             Verdict::Proved(certificate) => certificate,
             // Where a metric hardens by much and errors are fast there need be no rate; else the constant metric has one.

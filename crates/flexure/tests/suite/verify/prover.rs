@@ -2,7 +2,8 @@
 //! more, or lacks a case.
 
 use flexure::files::SCENARIOS;
-use flexure::prove::question::{Question, Region, problem};
+use flexure::prove::proposition::proposition;
+use flexure::prove::question::{Question, Region};
 use flexure::prove::verified::certify;
 use flexure::robot::robot_from_text;
 use flexure::scenario::load_scenario;
@@ -25,7 +26,7 @@ pub fn certificates() -> Vec<(&'static str, Value)> {
                 velocity_error: (scenario.controller.phi() == Some("tanh")).then(|| vec![0.1; 2 * n]),
                 ..Question::default()
             };
-            let verdict = certify(&problem(&scenario, &question, None).unwrap());
+            let verdict = certify(&proposition(&scenario, &question, None).unwrap());
             let certificate = verdict.proved().unwrap_or_else(|| panic!("{name}: {verdict:?}"));
             (name, serde_json::to_value(certificate).unwrap())
         })
@@ -76,7 +77,7 @@ fn mutants(certificate: &Value) -> Vec<Value> {
 #[test]
 fn forms_that_bound_nothing_are_refused() {
     let scenario = load_scenario("panda-tanh-smooth").unwrap();
-    let verdict = certify(&problem(&scenario, &Question::default(), None).unwrap());
+    let verdict = certify(&proposition(&scenario, &Question::default(), None).unwrap());
     let certificate = serde_json::to_value(verdict.proved().unwrap()).unwrap();
     let path = |joint: usize, i: usize| format!("/mass_matrix/forms/{joint}/{i}");
     let (mut wrong, mut malformed) = (Vec::new(), Vec::new());
@@ -118,7 +119,7 @@ fn a_sliding_joint_on_the_way() {
         position_lower = [-3.0, -0.5, -3.0]\nposition_upper = [3.0, 2.0, 3.0]\n";
     let mut scenario = load_scenario("tomei-3r-tanh").unwrap();
     scenario.robot = robot_from_text("slider.toml", text, ".".as_ref()).unwrap();
-    let verdict = certify(&problem(&scenario, &Question::default(), None).unwrap());
+    let verdict = certify(&proposition(&scenario, &Question::default(), None).unwrap());
     let certificate =
         serde_json::to_string(verdict.proved().unwrap_or_else(|| panic!("{verdict:?}"))).unwrap();
     verify(&certificate).unwrap_or_else(|rejected| panic!("{rejected}"));

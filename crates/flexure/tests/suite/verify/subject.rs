@@ -143,7 +143,8 @@ fn another_program_finds_the_same_hashes() {
     for (name, hashes) in names.iter().zip(hashes.chunks(2)) {
         let scenario = load_scenario(name).unwrap();
         // Where there is no certificate, there is no hash to be seen.
-        let Ok(problem) = flexure::prove::question::problem(&scenario, &Question::default(), None) else {
+        let Ok(problem) = flexure::prove::proposition::proposition(&scenario, &Question::default(), None)
+        else {
             continue;
         };
         let subject = problem.subject.unwrap();
