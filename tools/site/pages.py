@@ -29,6 +29,7 @@ NAVIGATION = {
         ("docs/controllers.md",),
         ("docs/estimators.md",),
         ("docs/certificate.md",),
+        ("docs/funnel.md",),
         ("docs/tube.md",),
         ("docs/notation.md",),
         ("docs/equations.md", "Equations"),

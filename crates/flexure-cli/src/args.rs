@@ -111,12 +111,12 @@ pub enum Command {
     #[command(
         after_help = "Example:\n  flexure verify out/two-link-tanh.certificate.json --against two-link-tanh"
     )]
-    /// Check a certificate's claims without what made it, or follow the tube of a sampled loop anew.
+    /// Check a certificate's claims without what made it, or follow a funnel, or the tube of a sampled loop, anew.
     Verify {
-        /// Certificate, or tube of a sampled loop: JSON files as docs/certificate.md and docs/tube.md have them.
+        /// Certificate, funnel, or tube of a sampled loop: JSON files as docs/certificate.md, docs/funnel.md and docs/tube.md have them.
         #[arg(value_name = "CERTIFICATE")]
         certificate: PathBuf,
-        /// Scenario, a file or a built-in name: is it the loop that the file is about? Tubes are checked with it only.
+        /// Scenario, a file or a built-in name: is it the loop that the file is about? Funnels and tubes are checked with it only.
         #[arg(long, value_name = "SCENARIO")]
         against: Option<String>,
     },

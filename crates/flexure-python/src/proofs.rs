@@ -4,17 +4,18 @@
 use std::path::{Path, PathBuf};
 
 use flexure::files::{Problems, folder_of, prepare, read_text, spare};
+use flexure::prove::documents::{Checked, FUNNEL, Kind, LARGEST, TUBE};
 use flexure::prove::question::{Direct, Question, Region, prove_watched};
-use flexure::prove::sampled_data::check::{self, Checked};
-use flexure::prove::sampled_data::file;
 use flexure::prove::subject::differences;
 use flexure::prove::summary::ProofSummary;
-use flexure::report::{write_certificate, write_tube};
+use flexure::prove::{robust, sampled_data};
+use flexure::report::{write_certificate, write_document};
 use flexure::sampled::probe;
 use flexure::verify::Rejected;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
+use serde::Serialize;
 
 use crate::arrays::Numbers;
 use crate::documents::document;
@@ -65,7 +66,7 @@ pub fn certify<'py>(
         spare(out, "certificate", |text| text.contains("flexure-certificate"), &[])
             .map_err(|problem| refused(py, &problem))?;
         if sampled_tube.is_some() || strongest {
-            file::spare(&file::beside(out)).map_err(|problem| refused(py, &problem))?;
+            TUBE.spare(&TUBE.beside(out)).map_err(|problem| refused(py, &problem))?;
         }
         prepare(folder_of(out)).map_err(unwritten)?;
     }
@@ -91,6 +92,9 @@ pub fn certify<'py>(
         direct,
     };
     let question = question.fitting(&loaded).map_err(|problem| refused(py, &problem))?;
+    if let Some(out) = out.as_ref().filter(|_| question.looks_for_funnel(&loaded)) {
+        FUNNEL.spare(&FUNNEL.beside(out)).map_err(|problem| refused(py, &problem))?;
+    }
     let found = watched(py, progress, |progress| {
         let proof = prove_watched(&loaded, &question, progress)?;
         let sampled = probe(&loaded)?;
@@ -105,9 +109,16 @@ pub fn certify<'py>(
     if let (Some(out), Some(certificate)) = (&out, certificate) {
         write_certificate(out, certificate).map_err(unwritten)?;
     }
-    if let (Some(out), Some(Ok(tube))) = (&out, &proof.sampled_tube) {
-        let text = tube.file(&scenario.loaded).map_err(|problems| raised(py, &problems))?;
-        write_tube(&file::beside(out), &text).map_err(unwritten)?;
+    if let Some(out) = &out {
+        let loaded = &scenario.loaded;
+        let tube = proof.sampled_tube.as_ref().and_then(|found| found.as_ref().ok());
+        let funnel = proof.robust.as_ref().and_then(|found| found.as_ref().ok());
+        let texts =
+            [(TUBE, tube.map(|tube| tube.file(loaded))), (FUNNEL, funnel.map(|funnel| funnel.file(loaded)))];
+        for (kind, text) in texts {
+            let text = text.transpose().map_err(|problems| raised(py, &problems))?;
+            text.map_or(Ok(()), |text| write_document(&kind.beside(out), &text)).map_err(unwritten)?;
+        }
     }
     let text = certificate.map(serde_json::to_string_pretty).transpose();
     found.set_item("certificate", text.map_err(|error| PyRuntimeError::new_err(error.to_string()))?)?;
@@ -124,8 +135,8 @@ pub fn verify<'py>(
     certificate: PathBuf,
     against: Option<&Scenario>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    if file::is_tube(&certificate) {
-        return verify_tube(py, &certificate, against);
+    if let Some(kind) = [TUBE, FUNNEL].into_iter().find(|kind| kind.is_of(&certificate)) {
+        return verify_beside(py, kind, &certificate, against);
     }
     let given = certificate.to_string_lossy().into_owned();
     let text = if given.trim_start().starts_with('{') {
@@ -159,22 +170,33 @@ fn rejected(py: Python<'_>, what: &str, rejected: Rejected) -> PyErr {
     said(py, what, &message, "")
 }
 
-/// `verify` of the file of a tube.
-fn verify_tube<'py>(
+/// `verify` of a file of this `kind`.
+fn verify_beside<'py>(
     py: Python<'py>,
+    kind: Kind,
     path: &Path,
     against: Option<&Scenario>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let Some(scenario) = against else {
-        return Err(PyTypeError::new_err(
-            "a tube is checked by following a loop: give its scenario as against",
-        ));
+        let message = format!("a {} is checked by following a loop: give its scenario as against", kind.name);
+        return Err(PyTypeError::new_err(message));
     };
-    let text = read_text(path, check::LARGEST).map_err(|problem| refused(py, &problem))?;
-    let checked = watched(py, None, |progress| check::check(&text, &scenario.loaded, progress))?;
-    match checked.map_err(|problems| raised(py, &problems))? {
-        Checked::Holds(tube) => {
-            let found = document(py, &tube)?.cast_into::<PyDict>()?;
+    let text = read_text(path, LARGEST).map_err(|problem| refused(py, &problem))?;
+    let loaded = &scenario.loaded;
+    if kind == FUNNEL {
+        let checked = watched(py, None, |progress| robust::check::check(&text, loaded, progress))?;
+        followed(py, kind, checked.map_err(|problems| raised(py, &problems))?)
+    } else {
+        let checked = watched(py, None, |progress| sampled_data::check::check(&text, loaded, progress))?;
+        followed(py, kind, checked.map_err(|problems| raised(py, &problems))?)
+    }
+}
+
+/// What came of following a file of this `kind`.
+fn followed<T: Serialize>(py: Python<'_>, kind: Kind, checked: Checked<T>) -> PyResult<Bound<'_, PyDict>> {
+    match checked {
+        Checked::Holds(found) => {
+            let found = document(py, &found)?.cast_into::<PyDict>()?;
             found.set_item("same", true)?;
             found.set_item("differences", PyList::empty(py))?;
             Ok(found)
@@ -185,7 +207,7 @@ fn verify_tube<'py>(
             found.set_item("differences", document(py, &differences)?)?;
             Ok(found)
         }
-        Checked::Rejected(found) => Err(rejected(py, "tube", found)),
+        Checked::Rejected(found) => Err(rejected(py, kind.name, found)),
         Checked::BrokenOff => Err(PyKeyboardInterrupt::new_err(())),
     }
 }

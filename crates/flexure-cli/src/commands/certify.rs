@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use flexure::files::{Problem, Reading, Unfinished, folder_of, prepare, spare};
+use flexure::prove::documents::{FUNNEL, TUBE};
 use flexure::prove::question::{Direct, Question, Region, prove_watched};
-use flexure::prove::sampled_data::file;
 use flexure::prove::standing::{Standing, outside_of_proofs};
 use flexure::prove::summary::ProofSummary;
-use flexure::report::{proof_table, proof_verdict, write_certificate, write_certified, write_tube};
+use flexure::report::{proof_table, proof_verdict, write_certificate, write_certified, write_document};
 use flexure::sampled::{not_looked_at, probe};
 use flexure::scenario::{Scenario, load_scenario_with};
 use serde::Serialize;
@@ -27,6 +27,9 @@ struct Outcome {
     /// The file of the tube of the sampled loop; not there where there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     tube_file: Option<PathBuf>,
+    /// The file of the funnel; not there where there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    funnel_file: Option<PathBuf>,
     /// Its page and figure; not there without `--page`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pages: Vec<PathBuf>,
@@ -42,10 +45,14 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
         .unwrap_or_else(|| PathBuf::from(format!("out/{}.certificate.json", scenario.name)));
     // Said before minutes of proof, not after.
     spare(&path, "certificate", |text| text.contains("flexure-certificate"), &[])?;
-    let tube_path = file::beside(&path);
+    let (tube_path, funnel_path) = (TUBE.beside(&path), FUNNEL.beside(&path));
     let looks = options.sampled_tube.is_some() || options.strongest;
     if looks {
-        file::spare(&tube_path)?;
+        TUBE.spare(&tube_path)?;
+    }
+    let feels = question.looks_for_funnel(&scenario);
+    if feels {
+        FUNNEL.spare(&funnel_path)?;
     }
     prepare(folder_of(&path))?;
     options.paged.prepare(&scenario.name, "certify", 1, &[&path])?;
@@ -63,14 +70,20 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
         }
     };
     let tube = proof.sampled_tube.as_ref().and_then(|found| found.as_ref().ok());
-    // What lies there without a new one is of an earlier proof.
-    let (tube_file, stale) = match tube.filter(|_| !proof.broken_off) {
-        None => (None, Some(tube_path).filter(|old| looks && old.exists())),
-        Some(tube) => {
-            write_tube(&tube_path, &tube.file(&scenario)?)?;
-            (Some(tube_path), None)
+    let tube = tube.map(|tube| tube.file(&scenario)).transpose()?;
+    let funnel = proof.robust.as_ref().and_then(|found| found.as_ref().ok());
+    let funnel = funnel.map(|funnel| funnel.file(&scenario)).transpose()?;
+    let mut stale = Vec::new();
+    let mut beside = |path: PathBuf, text: Option<String>, looks: bool| match text {
+        Some(text) if !proof.broken_off => write_document(&path, &text).map(|()| Some(path)),
+        // What lies there without a new one is of an earlier proof.
+        _ => {
+            stale.extend(Some(path).filter(|old| looks && old.exists()));
+            Ok(None)
         }
     };
+    let tube_file = beside(tube_path, tube, looks)?;
+    let funnel_file = beside(funnel_path, funnel, feels)?;
     let standing = Standing::of(&scenario, &proof, sampled.as_ref());
     let pages = match &options.paged.page {
         // Of a part of a proof a page would be taken for the whole.
@@ -89,7 +102,7 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
     let pages = pages.unwrap_or_default();
     let ended = ending(&scenario, standing, options.strict);
     if json {
-        print::json(&Outcome { summary, file, tube_file, pages })?;
+        print::json(&Outcome { summary, file, tube_file, funnel_file, pages })?;
     } else {
         if proof.broken_off {
             print::line("broken off: what is here is proved, not all that was asked was looked at")?;
@@ -100,7 +113,8 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
         }
         print::wrote(file.as_slice())?;
         print::wrote(tube_file.as_slice())?;
-        if let Some(old) = stale {
+        print::wrote(funnel_file.as_slice())?;
+        for old in stale {
             print::line(&format!("{} is of an earlier proof", old.display()))?;
         }
         print::wrote(&pages)?;

@@ -21,7 +21,7 @@ mod run;
 mod sweep;
 mod tune;
 mod verify;
-mod verify_tube;
+mod verify_beside;
 
 pub use certify::certify;
 pub use check::check;

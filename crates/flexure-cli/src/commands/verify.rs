@@ -3,14 +3,13 @@
 use std::path::Path;
 
 use flexure::files::{Reading, read_text};
-use flexure::prove::sampled_data::file::is_tube;
 use flexure::prove::subject::{Difference, differences};
 use flexure::scenario::load_scenario_with;
 use flexure::verify::{self, CheckReport, Claim, Rejected, quoted};
 use serde::Serialize;
 
 use super::print;
-use super::verify_tube::verify_tube;
+use super::verify_beside::{kind, verify_beside};
 use crate::failure::{Failure, Place};
 
 /// Characters of a text of the file beyond these are not shown.
@@ -47,8 +46,8 @@ pub(super) struct Against {
 }
 
 pub fn verify(file: &Path, against: Option<&str>, reading: Reading<'_>, json: bool) -> Result<(), Failure> {
-    if is_tube(file) {
-        return verify_tube(file, against, reading, json);
+    if let Some(kind) = kind(file) {
+        return verify_beside(kind, file, against, reading, json);
     }
     let text = read_text(file, verify::LARGEST)?;
     match verify::verify(&text) {

@@ -8,6 +8,7 @@ mod command;
 mod compare;
 mod divergence;
 mod eval_model;
+mod funnel;
 mod guide;
 mod hostile;
 mod identified;

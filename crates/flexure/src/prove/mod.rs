@@ -8,6 +8,7 @@ mod complaint;
 pub mod confirmation;
 pub mod decay;
 mod decimals;
+pub mod documents;
 pub mod engine;
 pub(crate) mod fitting;
 pub mod paper;

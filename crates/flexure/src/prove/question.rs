@@ -81,6 +81,19 @@ pub enum Region {
     Start(Vec<f64>),
 }
 
+impl Question {
+    /// Whether it asks for what only a funnel can say, whatever the robot.
+    fn is_of_funnels(&self) -> bool {
+        self.link_disturbance.is_some() || self.up_to_limits
+    }
+
+    /// Whether a funnel is looked for: under disturbances, and of robots with tolerances.
+    pub fn looks_for_funnel(&self, scenario: &Scenario) -> bool {
+        let feels = self.disturbance.is_some() || self.is_of_funnels();
+        (feels || !scenario.robot.tolerances.are_none()) && suitable(scenario).is_ok()
+    }
+}
+
 /// Slabs of time that bounds along the reference of `joints` joints may look at: one costs the more the more joints there
 /// are, 40 ms for seven.
 fn slabs(joints: usize) -> usize {
@@ -186,7 +199,7 @@ pub fn prove_watched(
     let has_tolerances = !scenario.robot.tolerances.are_none() && !uneven;
     // W says nothing of torques on the links, and masses that are off are such.
     let has_masses = has_tolerances && !scenario.robot.tolerances.masses_are_none();
-    let needs_funnel = question.link_disturbance.is_some() || question.up_to_limits || has_masses;
+    let needs_funnel = question.is_of_funnels() || has_masses;
     if needs_funnel {
         suitable(scenario)?;
     }
@@ -215,8 +228,7 @@ pub fn prove_watched(
             (found, WITHIN)
         }
     };
-    let feels = question.disturbance.is_some() || needs_funnel || has_tolerances;
-    let (robust, begun) = match verdict.proved().filter(|_| feels && suitable(scenario).is_ok()) {
+    let (robust, begun) = match verdict.proved().filter(|_| question.looks_for_funnel(scenario)) {
         Some(_) if !is_broken_off() => (funnel(scenario, question, &between(begun, ROBUST))?, ROBUST),
         _ => (None, begun),
     };

@@ -4,6 +4,9 @@
 //! The statement: of the law in continuous time with true states, from the scenario's start until its end, the errors are in the ellipsoids
 //! of the funnel, and so within the bounds here; see [`Funnel`].
 
+pub mod check;
+mod file;
+
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -19,7 +22,8 @@ use crate::prove::along::{
 };
 use crate::prove::engine::envelope::closed_loop::TrackingLoop;
 use crate::prove::engine::envelope::deviation::Spread;
-use crate::prove::engine::envelope::funnel::{Funnel, FunnelRequest, Open, Piece};
+use crate::prove::engine::envelope::followed::Given;
+use crate::prove::engine::envelope::funnel::{Funnel, FunnelRequest, Open, extents};
 use crate::prove::engine::envelope::slab::Slab;
 use crate::prove::engine::envelope::tube::Tube;
 use crate::prove::engine::envelope::{Course, refined};
@@ -53,6 +57,12 @@ pub struct Robust {
     pub slabs: usize,
     /// The errors over time.
     pub profile: Profile,
+    /// What is left open of the robot, and what it feels.
+    #[serde(skip)]
+    pub spread: Spread,
+    /// The funnel, slab by slab.
+    #[serde(skip)]
+    pub funnel: Arc<Vec<Given>>,
 }
 
 impl Robust {
@@ -223,8 +233,10 @@ fn bounds(
         Err(open) => return Some(Err(no_funnel(&open, &request))),
     };
     let progress = |fraction: f64| progress(FUNNEL + (1.0 - FUNNEL) * fraction);
-    let course = course(system, &funnel, &all_limits(&scenario.robot), &progress)?;
-    Some(Ok(Robust::new(scenario, system.joints(), &funnel, &course)))
+    let given: Vec<_> = funnel.pieces.iter().map(Given::of).collect();
+    let course = course(system, &given, &all_limits(&scenario.robot), &progress)?;
+    let about = About { spread, rate: funnel.rate(), room: ROOM };
+    Some(Ok(Robust::new(scenario, system.joints(), given, &about, &course)))
 }
 
 fn no_funnel(open: &Open, request: &FunnelRequest) -> NoFunnel {
@@ -253,11 +265,11 @@ const CUT: [usize; 2] = [8, 32];
 /// What the robot may do in the funnel, against `limits` in the order of what is bounded.
 fn course(
     system: &dyn TrackingLoop,
-    funnel: &Funnel,
+    funnel: &[Given],
     limits: &[Interval],
     progress: Progress<'_>,
 ) -> Option<Course> {
-    let (done, count) = (AtomicUsize::new(0), funnel.pieces.len());
+    let (done, count) = (AtomicUsize::new(0), funnel.len());
     let budget = count + 2 * (count / CUT[0] + CUT[1]);
     let goes_on = || progress((done.load(Ordering::Relaxed) as f64 / budget as f64).min(1.0)).is_continue();
     let looked = |tube: Arc<dyn Tube>, time: Interval| {
@@ -265,8 +277,8 @@ fn course(
         done.fetch_add(1, Ordering::Relaxed);
         slab
     };
-    let slab = |piece: &Piece| looked(Arc::new(piece.passage.clone()), piece.time);
-    let slabs = funnel.pieces.par_iter().map(slab).collect::<Option<_>>()?;
+    let slab = |given: &Given| looked(Arc::new(given.passage.clone()), given.time());
+    let slabs = funnel.par_iter().map(slab).collect::<Option<_>>()?;
     // All of its errors, for a part of its times.
     let half = |slab: &Slab, time: Interval| looked(slab.tube.clone(), time);
     Some(refined(slabs, limits, budget, &half, &goes_on))
@@ -291,16 +303,27 @@ impl Binding {
 
 impl Profile {
     /// Of the first `count` errors.
-    fn of(funnel: &Funnel, count: usize) -> Self {
-        let parts = funnel.profile(PARTS);
+    fn of(funnel: &[Given], count: usize) -> Self {
+        let each = funnel.len().div_ceil(PARTS).max(1);
+        let part = |slabs: &[Given]| {
+            Some((slabs.last()?.time().hi(), extents(slabs.iter().map(|slab| &slab.passage))))
+        };
+        let parts: Vec<_> = funnel.chunks(each).filter_map(part).collect();
         let error = |i: usize| parts.iter().map(|(_, extents)| extents[i]).collect();
         Self { end: parts.iter().map(|(end, _)| *end).collect(), error: (0..count).map(error).collect() }
     }
 }
 
+/// What a funnel is of, and how fast errors come back into it.
+struct About<'a> {
+    spread: &'a Spread,
+    rate: f64,
+    room: f64,
+}
+
 impl Robust {
-    fn new(scenario: &Scenario, n: usize, funnel: &Funnel, course: &Course) -> Self {
-        let extents = funnel.extents();
+    fn new(scenario: &Scenario, n: usize, funnel: Vec<Given>, about: &About<'_>, course: &Course) -> Self {
+        let extents = extents(funnel.iter().map(|slab| &slab.passage));
         let (error, velocity_error) = extents.split_at(2 * n);
         let verdict = |k: usize, limit: f64| -> Verdict<f64, Exceeding> {
             let (bound, time) = course.bound(k);
@@ -317,14 +340,16 @@ impl Robust {
             binding: None,
             error: error.to_vec(),
             velocity_error: velocity_error.to_vec(),
-            room: ROOM,
-            rate: funnel.rate(),
+            room: about.room,
+            rate: about.rate,
             velocity,
             deflection,
             torque,
             limits: limits(scenario, n, &verdict),
-            slabs: funnel.pieces.len(),
-            profile: Profile::of(funnel, 2 * n),
+            slabs: funnel.len(),
+            profile: Profile::of(&funnel, 2 * n),
+            spread: about.spread.clone(),
+            funnel: Arc::new(funnel),
         }
     }
 }

@@ -26,8 +26,8 @@ pub use figures::response::response_figure;
 pub use figures::run::{FigureOptions, four_panel, run_figure};
 pub use figures::score_map::score_map;
 pub use outputs::{
-    page_names, stem, view_name, write_certificate, write_certified, write_figure, write_identified,
-    write_leaderboard, write_margins, write_ran, write_swept, write_tube, write_tuned, write_view,
+    page_names, stem, view_name, write_certificate, write_certified, write_document, write_figure,
+    write_identified, write_leaderboard, write_margins, write_ran, write_swept, write_tuned, write_view,
 };
 pub use pages::certificates::CertificateReport;
 pub use pages::certify::proof_verdict;
@@ -40,6 +40,7 @@ pub use sketch::Sketch;
 pub use tables::columns::WIDTH;
 pub use tables::design::{constraints_table, gains_table, trades_table};
 pub use tables::excitation::excitation_table;
+pub use tables::funnel::{funnel_asked, funnel_lines};
 pub use tables::identified::identified_table;
 pub use tables::leaderboard::leaderboard_table;
 pub use tables::margins::margins_table;

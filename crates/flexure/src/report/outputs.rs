@@ -277,11 +277,11 @@ pub fn write_certificate(path: &Path, certificate: &Certificate) -> Result<(), W
     write_atomic(path, |out| out.write_all(certificate.text().as_bytes()))
 }
 
-/// Writes the text of a tube's file, its folder created if missing.
+/// Writes the text of the file of a tube or a funnel, its folder created if missing.
 ///
 /// # Errors
 /// If it cannot be written.
-pub fn write_tube(path: &Path, text: &str) -> Result<(), WriteError> {
+pub fn write_document(path: &Path, text: &str) -> Result<(), WriteError> {
     create_folder(folder_of(path))?;
     write_atomic(path, |out| out.write_all(text.as_bytes()))
 }

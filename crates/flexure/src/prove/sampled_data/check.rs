@@ -1,43 +1,30 @@
 //! Following the file of a tube: is it about this loop, and does every section hold for a period of it?
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD as BASE64;
 use flexure_core::scalar::Interval;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use crate::files::Problems;
 use crate::linalg::Dense;
 use crate::progress::Progress;
+use crate::prove::documents::{self, Checked, TUBE, malformed, of_lower, refuted, triangle, unpacked};
 use crate::prove::engine::sampled_data::section::Section;
 use crate::prove::engine::sampled_data::tube::Sections;
-use crate::prove::sampled_data::file::{AskedTexts, Claims, Document, FORMAT, VERSION, about};
+use crate::prove::sampled_data::file::{AskedTexts, Claims, Document, about};
 use crate::prove::sampled_data::spoken_of::{sensors, suitable_when_sampled};
 use crate::prove::sampled_data::{Asked, NoTube, SampledTube, followed, late};
-use crate::prove::subject::{Difference, compare};
+use crate::prove::subject::Difference;
 use crate::scenario::Scenario;
-use crate::verify::{Rejected, is_decimal, strict};
-
-/// Bytes that a file may have.
-pub const LARGEST: u64 = 1 << 30;
-
-/// What came of following a file.
-#[derive(Clone, Debug)]
-pub enum Checked {
-    /// It is about this loop, and everything that it claims holds.
-    Holds(Box<SampledTube>),
-    /// It is about another loop.
-    Differs(Vec<Difference>),
-    /// It is no such file, or what it claims does not hold.
-    Rejected(Rejected),
-    /// It was broken off.
-    BrokenOff,
-}
+use crate::verify::{Rejected, is_decimal};
 
 /// Follows every section of the file whose text is `text` for a period of the loop of `scenario`.
 ///
 /// # Errors
 /// If tubes do not speak of such a loop.
-pub fn check(text: &str, scenario: &Scenario, progress: Progress<'_>) -> Result<Checked, Problems> {
+pub fn check(
+    text: &str,
+    scenario: &Scenario,
+    progress: Progress<'_>,
+) -> Result<Checked<SampledTube>, Problems> {
     suitable_when_sampled(scenario)?;
     let document = match document(text) {
         Ok(document) => document,
@@ -62,65 +49,24 @@ pub fn check(text: &str, scenario: &Scenario, progress: Progress<'_>) -> Result<
     })
 }
 
-fn malformed(place: impl Into<String>, reason: impl Into<String>) -> Rejected {
-    Rejected::Malformed { place: place.into(), reason: reason.into(), line: None, column: None }
-}
-
-fn refuted(claim: &str, reason: impl Into<String>) -> Rejected {
-    Rejected::False { claim: claim.to_owned(), reason: reason.into() }
-}
-
 /// What the file says.
 pub(super) fn document(text: &str) -> Result<Document, Rejected> {
-    let value = strict(text).map_err(|error| Rejected::Malformed {
-        place: "the file".to_owned(),
-        reason: error.to_string(),
-        line: Some(error.line()),
-        column: Some(error.column()),
-    })?;
-    // What is read into structs may not be lists.
-    if !value.is_object() || !["asked", "claims"].iter().all(|key| value[*key].is_object()) {
-        return Err(malformed("the file", "must be an object, asked and claims too"));
-    }
-    let document: Document =
-        serde_json::from_value(value).map_err(|error| malformed("the file", error.to_string()))?;
-    if document.format != FORMAT || document.version != VERSION {
-        return Err(malformed("format", format!("must be \"{FORMAT}\", version {VERSION}")));
-    }
-    Ok(document)
+    TUBE.read(text, &["asked", "claims"])
 }
 
 /// Where what the file says of its loop is not what the scenario's is.
 pub(super) fn differences(ours: &Document, theirs: &Document) -> Vec<Difference> {
-    let mut found = Vec::new();
-    for (place, ours, theirs) in [
+    let [of_ours, of_theirs] = [ours, theirs].map(|of| Value::from(of.periods));
+    documents::differences(&[
         ("robot", &ours.robot, &theirs.robot),
         ("controller", &ours.controller, &theirs.controller),
         ("gravity", &ours.gravity, &theirs.gravity),
         ("reference", &ours.reference, &theirs.reference),
         ("loop", &ours.sampled, &theirs.sampled),
         ("initial", &ours.initial, &theirs.initial),
-        ("periods", &ours.periods.into(), &theirs.periods.into()),
+        ("periods", &of_ours, &of_theirs),
         ("subject", &ours.subject, &theirs.subject),
-    ] {
-        compare(place, ours, theirs, &mut found);
-    }
-    found.retain(|difference| difference.place != "robot.name");
-    // Equal but for spelling, and keys that are missing or too many.
-    let told = |of: &Document| {
-        let mut parts =
-            json!([of.robot, of.controller, of.gravity, of.reference, of.sampled, of.initial, of.subject]);
-        parts[0]["name"] = Value::Null;
-        parts
-    };
-    if found.is_empty() && (told(ours) != told(theirs) || !ours.robot["name"].is_string()) {
-        found.push(Difference {
-            place: "loop".to_owned(),
-            certificate: "spelt otherwise, or with other keys".to_owned(),
-            scenario: "as this program writes it".to_owned(),
-        });
-    }
-    found
+    ])
 }
 
 /// What a file gives of its tube.
@@ -172,26 +118,16 @@ impl AskedTexts {
 
 /// The section of `size` numbers that `text` is, without P; or what is wrong with it.
 fn read(text: &str, size: usize) -> Result<Section, String> {
-    let bytes = BASE64.decode(text).map_err(|error| format!("is no base64: {error}"))?;
-    let (all, []) = bytes.as_chunks::<8>() else { return Err("is no list of 64-bit numbers".to_owned()) };
-    let all: Vec<_> = all.iter().map(|&bytes| f64::from_le_bytes(bytes)).collect();
-    let own = size + size * (size + 1) / 2;
+    let all = unpacked(text)?;
+    let own = size + triangle(size);
     if all.len() != own {
         return Err(format!("has {} numbers, must have {own}", all.len()));
     }
-    if !all.iter().all(|x| x.is_finite()) {
-        return Err("has numbers that are not finite".to_owned());
-    }
-    let lower = |i: usize, j: usize| if j <= i { all[size + i * (i + 1) / 2 + j] } else { 0.0 };
-    let section = Section {
+    Ok(Section {
         center: all[..size].to_vec(),
-        lower: Dense::from_fn(size, size, lower),
+        lower: of_lower(size, &all[size..])?,
         past: Dense::zeros(size, 0),
-    };
-    match (0..size).find(|&i| section.lower[(i, i)] <= 0.0) {
-        Some(i) => Err(format!("has a diagonal that is not positive, at {i}")),
-        None => Ok(section),
-    }
+    })
 }
 
 /// Whether what is claimed, in decimals, is not more than what was found.

@@ -3,6 +3,7 @@
 pub(crate) mod columns;
 pub(crate) mod design;
 pub(crate) mod excitation;
+pub(crate) mod funnel;
 pub(crate) mod grid;
 pub(crate) mod identified;
 pub(crate) mod leaderboard;

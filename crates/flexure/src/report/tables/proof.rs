@@ -8,11 +8,11 @@ use crate::files::number::{NONE, engineering, rounded_down, rounded_up, short, s
 use crate::prove::along::{Along, Limit};
 use crate::prove::engine::certificate::{LoopSide, Norm, StructureName};
 use crate::prove::engine::verdict::Verdict;
-use crate::prove::robust::Binding;
 use crate::prove::standing::outside_of_proofs;
 use crate::prove::summary::{
     BlockSummary, FunnelSummary, ProofSummary, SampledTubeSummary, WithinSummary, WitnessSummary,
 };
+use crate::report::tables::funnel::funnel_lines;
 use crate::report::tables::tube::tube_lines;
 use crate::robot::JointKind;
 use crate::units::{self, Unit};
@@ -257,37 +257,10 @@ fn tolerated(within: &WithinSummary, rad: &str) -> Vec<String> {
 
 /// What holds in the funnel.
 fn funnel(found: &FunnelSummary, summary: &ProofSummary) -> Vec<String> {
-    let found = match found {
-        FunnelSummary::Proved(found) => found,
-        FunnelSummary::Undecided(none) => return vec![format!("funnel       none was found: {}", none.at)],
-    };
-    let [rad, speed, torque] = [units::ANGLE, units::SPEED, units::TORQUE].map(|unit| summary.unit(unit));
-    let (links, motors) = found.error.split_at(found.error.len() / 2);
-    let mut lines = vec![
-        format!("funnel       in the ideal loop, all along the run from its start, {}:", under(found.times)),
-        format!("funnel       |q̃_l| ≤ {} {rad}, |q̃_m| ≤ {} {rad}", at_most(links), at_most(motors)),
-        format!(
-            "funnel       errors beyond, up to {} times as large, come back: V − 1 falls at {} 1/s or faster, V = zᵀ X⁻¹ z",
-            short(found.room, 3),
-            engineering(rounded_down(found.rate, 3))
-        ),
-        format!(
-            "funnel       |q̇_l| {}, |q_m − q_l| {}",
-            bounded(&found.velocity.bound, &speed),
-            bounded(&found.deflection.bound, &rad)
-        ),
-        format!(
-            "funnel       |u_m| {}, {} {torque} on the reference with the numbers of the file",
-            bounded(&found.torque.bound, &torque),
-            list(&found.torque.nominal)
-        ),
-    ];
-    lines.extend(of_limits(&found.limits, summary));
-    lines.extend(found.binding.as_ref().map(binding));
-    if found.binding.is_none() && found.times > 1.0 {
-        lines.push("funnel       larger torques were not tried: no limit was in the way".to_owned());
+    match found {
+        FunnelSummary::Proved(found) => funnel_lines(found, &summary.kinds),
+        FunnelSummary::Undecided(none) => vec![format!("funnel       none was found: {}", none.at)],
     }
-    lines
 }
 
 /// What holds of motions of the sampled loop.
@@ -298,28 +271,10 @@ fn sampled_tube(found: &SampledTubeSummary, summary: &ProofSummary) -> Vec<Strin
     }
 }
 
-/// Under which torques, and of which robots, a funnel is; the number is exact.
-fn under(times: f64) -> String {
-    let torques =
-        if times.total_cmp(&1.0).is_eq() { String::new() } else { format!(" up to {times} times those") };
-    format!("under every torque{torques} and for every robot asked about")
-}
-
-/// What is in the way of larger torques.
-fn binding(binding: &Binding) -> String {
-    let Binding { times, joint, key, at } = binding;
-    match (joint, key) {
-        (Some(joint), Some(key)) => {
-            format!("funnel       under {times} times those torques {key} of joint {}: {at}", joint + 1)
-        }
-        _ => format!("funnel       under {times} times those torques none was found: {at}"),
-    }
-}
-
 /// What is known of limits.
-fn of_limits(limits: &[Limit], summary: &ProofSummary) -> Vec<String> {
+pub(super) fn of_limits(limits: &[Limit], kinds: &[JointKind]) -> Vec<String> {
     let undecided = limits.iter().filter(|limit| matches!(limit.verdict, Verdict::Undecided(_)));
-    limits.iter().filter_map(|bound| limit(bound, &summary.kinds)).chain(open(undecided)).collect()
+    limits.iter().filter_map(|bound| limit(bound, kinds)).chain(open(undecided)).collect()
 }
 
 /// What is bounded along the reference.
@@ -338,7 +293,7 @@ fn bounds(along: &Along, summary: &ProofSummary) -> Vec<String> {
             list(&along.torque.nominal)
         ),
     ];
-    lines.extend(of_limits(&along.limits, summary));
+    lines.extend(of_limits(&along.limits, &summary.kinds));
     lines
 }
 
@@ -400,7 +355,7 @@ fn shortened(text: &str) -> String {
 }
 
 /// Bounds, if there are any: where one is not finite none are.
-fn bounded(bounds: &[f64], unit: &str) -> String {
+pub(super) fn bounded(bounds: &[f64], unit: &str) -> String {
     if bounds.iter().all(|bound| bound.is_finite()) {
         format!("≤ {} {unit}", at_most(bounds))
     } else {

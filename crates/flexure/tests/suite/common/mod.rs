@@ -1,5 +1,6 @@
 //! What several modules share: the workspace, numbers at random, places in texts, distances, an oracle for linear motion.
 
+pub mod packed;
 pub mod python;
 
 use std::path::{Path, PathBuf};

@@ -2,6 +2,9 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::LazyLock;
+
+use super::root;
 
 /// What comes of the program; none if there is no such program.
 pub fn run(program: &Path, arguments: &[&str]) -> Option<Output> {
@@ -10,6 +13,20 @@ pub fn run(program: &Path, arguments: &[&str]) -> Option<Output> {
 
 fn succeeds(program: &Path, arguments: &[&str]) -> bool {
     run(program, arguments).is_some_and(|output| output.status.success())
+}
+
+/// Exit code and words of the checker `script`, which python-flint is enough for, on a file with `text`, so many of whose parts are followed; none where that cannot be had.
+pub fn checked(script: &str, text: &str, sample: usize) -> Option<(i32, String)> {
+    static INTERPRETER: LazyLock<Option<PathBuf>> = LazyLock::new(|| with("flint", "python-flint==0.9.0"));
+    let interpreter = INTERPRETER.as_deref()?;
+    let place = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(&place, text).unwrap();
+    let script = root().join("tools").join(script);
+    let options = [script.to_str().unwrap(), "--sample", &sample.to_string(), place.path().to_str().unwrap()];
+    let output = run(interpreter, &options).unwrap();
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+    Some((output.status.code().unwrap(), said))
 }
 
 /// An interpreter that can import `module`, which the `package` of PyPI has; none if it cannot and `FLEXURE_OFFLINE` is set. To be called once a process: tests side by

@@ -1,6 +1,8 @@
 //! Funnels of the arm with the gains of its hardware: how wide they are, and that the check of a slab can fail.
 
+mod file;
 mod motions;
+mod python;
 pub mod random;
 
 use flexure::core::scalar::{Interval, Scalar};

@@ -2,31 +2,16 @@
 //!
 //! Set `FLEXURE_OFFLINE=1` to leave the test out where python-flint cannot be had.
 
-use std::path::PathBuf;
-use std::sync::LazyLock;
-
 use serde_json::{Value, json};
 
+use crate::common::packed::{numbers, text_of};
 use crate::common::python;
-use crate::sampled_tubes::file::{file, numbers, text_of};
+use crate::sampled_tubes::file::file;
 use crate::sampled_tubes::{scenario, with_delay};
-
-const SCRIPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tools/check_tube.py");
-
-/// An interpreter that has python-flint; none offline without it.
-static INTERPRETER: LazyLock<Option<PathBuf>> =
-    LazyLock::new(|| python::with("flint", "python-flint==0.9.0"));
 
 /// Exit code and words for a file, so many of whose periods are followed.
 fn checked(text: &str, sample: usize) -> Option<(i32, String)> {
-    let interpreter = INTERPRETER.as_deref()?;
-    let place = tempfile::NamedTempFile::new().unwrap();
-    std::fs::write(&place, text).unwrap();
-    let options = [SCRIPT, "--sample", &sample.to_string(), place.path().to_str().unwrap()];
-    let output = python::run(interpreter, &options).unwrap();
-    let said = String::from_utf8(output.stdout).unwrap();
-    assert!(output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
-    Some((output.status.code().unwrap(), said))
+    python::checked("check_tube.py", text, sample)
 }
 
 #[test]

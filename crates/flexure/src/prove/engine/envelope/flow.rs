@@ -46,6 +46,8 @@ pub struct Flow {
     pub drift: Dense<f64>,
     /// By what the errors are driven.
     pub channels: Vec<Channel>,
+    /// How many causes there are, with those that nothing goes through here.
+    pub causes: usize,
     /// Bounds of |δ_i|: what the numbers of A and of the columns leave open.
     pub rest: Vec<f64>,
 }
@@ -53,6 +55,8 @@ pub struct Flow {
 /// Σ (n_k + (t − t_c) ṅ_k) w_k, with |w| at most |w_0| + |C z|.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
+    /// Its place among all causes.
+    pub cause: usize,
     /// n_k: one for each number of w.
     pub columns: Vec<Vec<f64>>,
     /// ṅ_k; none if they do not change.
@@ -92,12 +96,22 @@ impl Flow {
             matrix: matrices[0].map(Interval::midpoint),
             drift: matrices[1].map(Interval::midpoint),
             channels: Vec::new(),
+            causes: 0,
             rest: left_of(&matrices, way.offset, &errors),
         };
         for force in seen.forces(system, spread) {
             flow.add(&force, tube, &errors, way.offset);
+            flow.causes += 1;
         }
         Some(flow)
+    }
+
+    /// The same with causes that are larger by a `part` of what they are, but for what goes with the errors.
+    pub fn with_larger_causes(&self, part: f64) -> Self {
+        let mut larger = self.clone();
+        larger.channels.iter_mut().for_each(|channel| channel.size *= 1.0 + part);
+        larger.rest.iter_mut().for_each(|rest| *rest *= 1.0 + part);
+        larger
     }
 
     /// One more channel, if anything goes through it, at times that are `late` after the middle.
@@ -127,6 +141,7 @@ impl Flow {
         let slopes = point(&force.slopes);
         let depends = slopes.iter().flatten().any(|&c| c != 0.0);
         self.channels.push(Channel {
+            cause: self.causes,
             columns: point(&force.columns),
             drifts: point(&force.drifts),
             size: size.hi(),

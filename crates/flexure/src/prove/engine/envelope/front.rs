@@ -22,8 +22,11 @@ const PARTS: usize = 4;
 /// How much wider than the last one an ellipsoid is taken to be.
 pub const ROOM: f64 = 1.01;
 
+/// Causes are taken to be so much larger, as a part, for a checker that bounds some of them less closely.
+const SPARE: f64 = 0.005;
+
 /// Slack of an ellipsoid's growth [1/s], from the least on.
-const SLACK: [f64; 4] = [1e-3, 1e-2, 1e-1, 1.0];
+const SLACK: [f64; 4] = [1e-2, 3e-2, 1e-1, 1.0];
 
 /// Slack with which an ellipsoid stays, at least and at most, over Σ α: with less it changes too quickly, with more it is too wide.
 const STILL: [f64; 2] = [0.02, 0.5];
@@ -67,16 +70,19 @@ impl Front {
         goes_on: &dyn Fn() -> bool,
     ) -> Option<Result<(Piece, Option<Still>), Open>> {
         let mut guess = self.shape.times(ROOM);
+        // No less than its decimal.
+        let room = Interval::point(request.room.next_up());
         for _ in 0..TRIED {
-            let wide = [&self.shape, &guess].map(|shape| shape.times(request.room));
-            let flow = Flow::over(system, &request.spread, &Passage(wide.into()), time, goes_on)?;
-            let Some((multipliers, _)) = Multipliers::best(&flow, &self.shape, self.multipliers.as_ref())
+            let around = guess.times(request.room);
+            let flow = Flow::over(system, &request.spread, &Passage(vec![around.clone()]), time, goes_on)?;
+            let larger = flow.with_larger_causes(SPARE);
+            let Some((multipliers, _)) = Multipliers::best(&larger, &self.shape, self.multipliers.as_ref())
             else {
                 break;
             };
-            let Some((passage, still)) = self.onwards(&flow, &multipliers, time) else { break };
-            if passage.0.iter().all(|shape| shape.lies_in(&guess)) {
-                return Some(Ok((Piece { time, passage, flow, multipliers }, still)));
+            let Some((passage, still)) = self.onwards(&larger, &multipliers, time) else { break };
+            if passage.0.iter().all(|shape| shape.widened_lies_in(room, &around)) {
+                return Some(Ok((Piece { time, passage, around, flow, multipliers }, still)));
             }
             let all = passage.0.into_iter().map(Some).reduce(|a, b| joined(&a?, &b?));
             let Some(all) = all.flatten() else { break };

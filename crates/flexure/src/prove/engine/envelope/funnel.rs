@@ -52,7 +52,9 @@ pub struct Piece {
     pub time: Interval,
     /// Ellipsoids at times that are evenly spaced, from the first, which holds the last of the piece before, to the last.
     pub passage: Passage,
-    /// How errors move there.
+    /// One that holds errors so many times as large as was asked for.
+    pub around: Shape,
+    /// How errors move in that.
     pub flow: Flow,
     /// What the inequality holds with.
     pub multipliers: Multipliers,
@@ -150,30 +152,20 @@ impl Funnel {
 
     /// Σ α from below [1/s]: V − 1 decays at this rate where errors are up to `room` times those of the funnel.
     pub fn rate(&self) -> f64 {
-        let of = |piece: &Piece| {
-            piece.multipliers.alpha.iter().fold(Interval::ZERO, |sum, &a| sum + Interval::point(a))
-        };
-        self.pieces.iter().map(|piece| of(piece).lo()).fold(f64::INFINITY, f64::min)
+        self.pieces.iter().map(|piece| piece.multipliers.rate()).fold(f64::INFINITY, f64::min)
     }
 
     /// Bounds of |z_i| over the whole run.
     pub fn extents(&self) -> Vec<f64> {
-        extents(&self.pieces)
-    }
-
-    /// The same over at most so many `parts` of it, and where each ends in s.
-    pub fn profile(&self, parts: usize) -> Vec<(f64, Vec<f64>)> {
-        let each = self.pieces.len().div_ceil(parts.max(1)).max(1);
-        let part = |pieces: &[Piece]| Some((pieces.last()?.time.hi(), extents(pieces)));
-        self.pieces.chunks(each).filter_map(part).collect()
+        extents(self.pieces.iter().map(|piece| &piece.passage))
     }
 }
 
-/// Bounds of |z_i| over `pieces`.
-fn extents(pieces: &[Piece]) -> Vec<f64> {
-    let of = |piece: &Piece| piece.passage.errors().iter().map(|e| e.magnitude()).collect::<Vec<_>>();
+/// Bounds of |z_i| over all of `passages`.
+pub fn extents<'a>(passages: impl Iterator<Item = &'a Passage>) -> Vec<f64> {
+    let of = |passage: &Passage| passage.errors().iter().map(|e| e.magnitude()).collect::<Vec<_>>();
     let larger = |a: Vec<f64>, b: Vec<f64>| a.iter().zip(b).map(|(a, b)| a.max(b)).collect();
-    pieces.iter().map(of).reduce(larger).unwrap_or_default()
+    passages.map(of).reduce(larger).unwrap_or_default()
 }
 
 /// An ellipsoid that errors stay in at the beginning of the slab `time` as long as it stays the same, and the start in it.

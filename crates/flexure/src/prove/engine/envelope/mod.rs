@@ -6,6 +6,7 @@
 pub mod closed_loop;
 pub mod deviation;
 pub mod flow;
+pub mod followed;
 mod front;
 pub mod funnel;
 pub mod inequality;

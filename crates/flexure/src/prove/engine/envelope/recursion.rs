@@ -5,7 +5,7 @@
 //! are zero at α = D √(nᵀ S n / tr(S X)) and τ = √(cᵀ X S X c / nᵀ S n). Kurzhanski & Vályi, *Ellipsoidal Calculus for Estimation and
 //! Control* (1997), chapter 3; Boyd et al., *Linear Matrix Inequalities in System and Control Theory* (1994), section 6.1.
 
-use flexure_core::scalar::Interval;
+use flexure_core::scalar::{Interval, Scalar};
 
 use crate::linalg::{Dense, Leading, Symmetric, cholesky, eigenvectors, lower_inverse, lyapunov};
 use crate::prove::engine::envelope::flow::{Channel, Flow};
@@ -107,6 +107,11 @@ impl Multipliers {
     pub fn growth(&self) -> f64 {
         self.alpha.iter().sum()
     }
+
+    /// Σ α from below [1/s]: the rate at which V − 1 falls.
+    pub fn rate(&self) -> f64 {
+        self.alpha.iter().fold(Interval::ZERO, |sum, &alpha| sum + Interval::point(alpha)).lo()
+    }
 }
 
 /// What drives the errors of `flow`: its channels, and then what it leaves open of each.
@@ -114,7 +119,14 @@ pub fn drives(flow: &Flow) -> Vec<Channel> {
     let n = flow.rest.len();
     let open = flow.rest.iter().enumerate().filter(|(_, rest)| **rest > 0.0).map(|(i, &size)| {
         let column = (0..n).map(|k| if k == i { 1.0 } else { 0.0 }).collect();
-        Channel { columns: vec![column], drifts: Vec::new(), size, slopes: Vec::new(), is_open: true }
+        Channel {
+            cause: flow.causes + i,
+            columns: vec![column],
+            drifts: Vec::new(),
+            size,
+            slopes: Vec::new(),
+            is_open: true,
+        }
     });
     flow.channels.iter().cloned().chain(open).collect()
 }
@@ -131,6 +143,7 @@ impl Scaled {
         };
         let seen = |row: &[f64]| (0..n).map(|j| (j..n).map(|k| row[k] * lower[(k, j)]).sum()).collect();
         let scaled = |drive: Channel| Channel {
+            cause: drive.cause,
             columns: drive.at(late).iter().map(|column| through(column)).collect(),
             drifts: Vec::new(),
             size: drive.size,

@@ -49,8 +49,13 @@ impl Shape {
 
     /// Whether it is known to lie in `other`.
     pub fn lies_in(&self, other: &Self) -> bool {
+        self.widened_lies_in(Interval::ONE, other)
+    }
+
+    /// Whether what is `times` as wide in every direction is known to lie in `other`.
+    pub fn widened_lies_in(&self, times: Interval, other: &Self) -> bool {
         let root = lower_inverse(&other.lower);
-        let difference = other.square().minus(&self.square(), Interval::ONE);
+        let difference = other.square().minus(&self.square(), times.square());
         congruent(&root, &difference).smallest_pivot() > 0.0
     }
 
