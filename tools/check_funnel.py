@@ -25,6 +25,7 @@ def read_funnel(data):
             "slabs": [str, ...]}
     file = read_file(data, "flexure-funnel", others)
     need(file["claims"]["room"] >= 1, "room is less than 1", ValueError)
+    known(not any(x.high > 0 for x in file["controller"]["link"]["hardening"] or []), "metrics that grow with the error")
     return file
 
 def definite(rows):  # whether a symmetric matrix is positive definite, by the pivots of elimination
@@ -184,11 +185,11 @@ class Loop:
         masses, own = [[Parts(mobility[max(i, j)][min(i, j)]) for j in range(n)] for i in range(n)], [Parts(x) for x in f]
         number, rising = (arb_mat([[middle(of(part)) for part in row] for row in masses]) for of in (lambda part: part.c, lambda part: part.rate))
         root = cholesky(number)
-        inverse, apart = root.inv(), [[part.c - middle(part.c) + UNIT * (part.rate.rad() + part.turns()) for part in row] for row in masses]
+        inverse, besides = root.inv(), [[part.c - middle(part.c) + UNIT * (part.rate.rad() + part.turns()) for part in row] for row in masses]
         def size(matrix):  # of E for L E L'
             scaled = inverse * matrix * inverse.transpose()
             return largest(scaled * scaled.transpose(), 4).sqrt().abs_upper()
-        model = size(arb_mat(apart))
+        model = size(arb_mat(besides))
         flow.accelerate(number, rising, own)
         through = [Parts(sum((f[i] * root[i, k] for i in range(k, n)), zero)) for k in range(n)]  # L' f
         def beside(columns, radius, more):

@@ -78,6 +78,21 @@ class TestErrors:
         with pytest.raises(flexure.FlexureError, match="rate does not hold"):
             flexure.verify(file, against=scenario)
 
+    def test_a_forged_funnel(self, tmp_path: Path) -> None:
+        scenario = flexure.Scenario("two-link-hardware", set={"duration": 0.2})
+        found = flexure.certify(scenario, link_disturbance=0.01, out=tmp_path / "arm.json")["funnel"]
+        file = tmp_path / "arm.funnel.json"
+        again = flexure.verify(file, against=scenario)
+        assert again["same"] and again["error"] == found["error"] and again["rate"] == found["rate"]
+        assert flexure.verify(file, against="two-link-hardware")["differences"][0]["place"] == "duration"
+        with pytest.raises(TypeError, match="a funnel is checked by following a loop"):
+            flexure.verify(file)
+        document = json.loads(file.read_text())
+        document["claims"]["error"][0] = "1e-9"
+        file.write_text(json.dumps(document))
+        with pytest.raises(flexure.FlexureError, match=r"error\[0\] does not hold"):
+            flexure.verify(file, against=scenario)
+
     def test_files_that_are_gone(self, tmp_path: Path) -> None:
         file = tmp_path / "s.toml"
         text = 'robot = "pendulum-1dof"\nduration = 1.0\ncontrol_period = 0.001\n[reference]\nkind = "sine"\namplitude = [0.5]\nfrequency = [1.0]\n[controller]\nkind = "vcbc"\n'

@@ -123,8 +123,8 @@ def verify(certificate: Path | Mapping[str, Any], *, against: Scenario | Path | 
     """Checks the claims of a certificate, without what made it, as `flexure verify`: its text, its file, or what `certify` found.
 
     With `against`, `same` tells whether it is about that scenario, and `differences` what it has differently. Of the path of a tube's
-    file, which `certify` writes beside `out`, it follows every ellipsoid for a period; that needs `against`. Raises FlexureError for a
-    claim that does not hold.
+    file, which `certify` writes beside `out`, it follows every ellipsoid for a period, of a funnel's along its slab; that needs `against`.
+    Raises FlexureError for a claim that does not hold.
     """
     if isinstance(certificate, Mapping):
         text = certificate.get("certificate")

@@ -176,6 +176,12 @@ pub(crate) fn loaded(chain: &Chain, text: &str) -> Result<Scenario, flexure::fil
 }
 
 impl Case {
+    /// The file of its funnel, if it has one.
+    pub(crate) fn file(&self) -> Option<String> {
+        let found = robust(&self.scenario, &self.spread(), Some(1000), &unwatched).unwrap().unwrap();
+        found.ok().map(|funnel| funnel.file(&self.scenario).expect("a law that funnels speak of"))
+    }
+
     fn spread(&self) -> Spread {
         let Self { chain, parts, torques: [links, motors], .. } = self;
         // Rounding of the products is more than made up for by drawing 1e-9 less.
