@@ -26,13 +26,18 @@ fn examine(numbers: Range<u64>, runs: usize) -> Vec<f64> {
         let tube = found(&scenario, 1e-6 * 100.0_f64.powf(0.5 * (1.0 + r.next()))).ok()?;
         let (first, last) = (tube.sections.first().unwrap(), tube.sections.last().unwrap());
         let left = (-tube.mean_rate * scenario.duration).exp();
-        let after = |start: &[f64]| last.distance(&end(&scenario, &start[..4 * n]));
-        let missed = after(&first.center);
+        // That two motions come closer is what is said, and that they stay: the middle is off by what ρ allows for.
+        let middle = end(&scenario, &first.center[..4 * n]);
+        assert!(last.distance(&middle) <= 1.0, "robot {number}: the middle leaves");
+        let after = |start: &[f64]| {
+            let at = end(&scenario, &start[..4 * n]);
+            assert!(last.distance(&at) <= 1.0, "robot {number}: leaves");
+            let apart = last.center.iter().zip(at.iter().zip(&middle)).map(|(c, (x, m))| c + (x - m));
+            last.distance(&apart.collect::<Vec<_>>())
+        };
         let distance = (0..runs).map(|_| after(&on_the_surface(first, n, &mut r))).fold(0.0, f64::max);
-        assert!(
-            missed < 1e-2 && distance <= left + 1e-2,
-            "robot {number}: {distance} of {left}, {missed} from the middle"
-        );
+        // The simulation's own error beside tubes of a microrad.
+        assert!(distance <= left + 1e-3, "robot {number}: {distance} of {left}");
         Some(distance / left)
     };
     let count = numbers.end - numbers.start;
