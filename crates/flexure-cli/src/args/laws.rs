@@ -27,10 +27,10 @@ pub struct Certify {
     /// Contraction rate to prove or refute, 1/s; the largest if left out.
     #[arg(long, value_name = "RATE", allow_negative_numbers = true)]
     pub rate: Option<f64>,
-    /// Largest unknown torque on each motor in N m: certifies the tube that errors settle in.
+    /// Largest unknown torque on each motor in N m: certifies the tube that errors settle in, and looks for a funnel, which is narrower and has a file of its own.
     #[arg(long, value_name = "D", value_delimiter = ',', allow_negative_numbers = true)]
     pub disturbance: Option<Vec<f64>>,
-    /// Largest unknown torque on each link in N m: bounds errors, speeds, deflections and torques by a funnel along the reference.
+    /// Largest unknown torque on each link in N m: bounds errors, speeds, deflections and torques by a funnel along the reference, whose file `verify` follows.
     #[arg(long, value_name = "D", value_delimiter = ',', allow_negative_numbers = true)]
     pub link_disturbance: Option<Vec<f64>>,
     /// Multiply the disturbances until a limit of the robot may act: the largest funnel in which none does, and which one is in the way.

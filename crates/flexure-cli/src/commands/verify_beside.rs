@@ -5,8 +5,10 @@ use std::path::Path;
 
 use flexure::files::{Problems, Reading, read_text};
 use flexure::prove::documents::{Checked, FUNNEL, Kind, LARGEST, TUBE};
+use flexure::prove::standing::outside_of_proofs;
 use flexure::prove::{robust, sampled_data};
 use flexure::report::{funnel_asked, funnel_lines, tube_lines};
+use flexure::sampled::{Sampled, not_looked_at, probe};
 use flexure::scenario::{Scenario, load_scenario_with};
 use flexure::verify::Rejected;
 use serde::Serialize;
@@ -49,7 +51,13 @@ pub fn verify_beside(
     let (kinds, followed) =
         (scenario.robot.kinds(), Followed { kind, file, name, scenario: &scenario, json });
     if kind == FUNNEL {
-        let lines = |found: &_| [vec![funnel_asked(found, &kinds)], funnel_lines(found, &kinds)].concat();
+        // What it is not about: the loop that runs.
+        let sampled = probe(&scenario)?.as_ref().map(Sampled::line).or_else(|| not_looked_at(&scenario));
+        let beyond = [outside_of_proofs(&scenario.beyond_ideal()), sampled].into_iter().flatten();
+        let beyond: Vec<_> = beyond.collect();
+        let lines = |found: &_| {
+            [vec![funnel_asked(found, &kinds)], funnel_lines(found, &kinds), beyond.clone()].concat()
+        };
         let about = "in the ideal loop: the law in continuous time on true states";
         return followed.said(&|progress| robust::check::check(&text, &scenario, progress), &lines, about);
     }

@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
+use flexure_core::scalar::Interval;
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use crate::files::{self, Problem, Problems};
@@ -85,8 +87,12 @@ impl Kind {
         if self.is_of(path) { Ok(()) } else { files::spare(path, self.name, |_| false, &[]) }
     }
 
-    /// What the file says, `format` and `version` being those of this kind, and its values at `objects` being some.
-    pub(super) fn read<D: DeserializeOwned>(&self, text: &str, objects: &[&str]) -> Result<D, Rejected> {
+    /// What the file says, its values at `objects` being some; `D` are the keys beside those of [`Told`].
+    pub(super) fn read<D: DeserializeOwned>(
+        &self,
+        text: &str,
+        objects: &[&str],
+    ) -> Result<Document<D>, Rejected> {
         let value = strict(text).map_err(|error| Rejected::Malformed {
             place: "the file".to_owned(),
             reason: error.to_string(),
@@ -94,19 +100,51 @@ impl Kind {
             column: Some(error.column()),
         })?;
         // What is read into structs may not be lists.
-        if !value.is_object() || !objects.iter().all(|key| value[*key].is_object()) {
-            return Err(malformed("the file", format!("must be an object, {} too", objects.join(" and "))));
+        let Value::Object(mut own) = value else { return Err(malformed("the file", "must be an object")) };
+        if let Some(key) = objects.iter().find(|key| !own.get(**key).is_some_and(Value::is_object)) {
+            return Err(malformed("the file", format!("'{key}' must be an object")));
         }
-        if value["format"] != self.format || value["version"] != self.version {
+        if own.get("format") != Some(&self.format.into()) || own.get("version") != Some(&self.version.into())
+        {
             let reason = format!("must be \"{}\", version {}", self.format, self.version);
             return Err(malformed("format", reason));
         }
-        serde_json::from_value(value).map_err(|error| malformed("the file", error.to_string()))
+        let told = Told::KEYS.iter().filter_map(|key| own.remove_entry(*key)).collect();
+        let broken = |error: serde_json::Error| malformed("the file", error.to_string());
+        Ok(Document {
+            told: serde_json::from_value(Value::Object(told)).map_err(broken)?,
+            own: serde_json::from_value(Value::Object(own)).map_err(broken)?,
+        })
     }
 }
 
-/// What files tell of a loop.
+/// A file: what all tell, and the keys of its kind.
+#[derive(Serialize)]
+pub(super) struct Document<D> {
+    #[serde(flatten)]
+    pub told: Told,
+    #[serde(flatten)]
+    pub own: D,
+}
+
+impl<D: Serialize> Document<D> {
+    /// Its text, with a line for each of the texts of its last list, which is empty here.
+    pub fn with_lines(&self, lines: impl Iterator<Item = String>) -> String {
+        let head = serde_json::to_string_pretty(self).expect("texts and lists");
+        let head = head.strip_suffix("]\n}").expect("a list is last");
+        let lines: Vec<_> = lines.map(|line| format!("\n    \"{line}\"")).collect();
+        format!("{head}{}\n  ]\n}}\n", lines.join(","))
+    }
+}
+
+/// What a file is, and what it tells of a loop.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Told {
+    pub format: String,
+    pub version: u32,
+    pub name: String,
+    pub made_by: String,
     pub subject: Value,
     pub robot: Value,
     pub controller: Value,
@@ -116,11 +154,24 @@ pub(super) struct Told {
 }
 
 impl Told {
-    /// Of the loop of `scenario`.
+    const KEYS: [&'static str; 10] = [
+        "format",
+        "version",
+        "name",
+        "made_by",
+        "subject",
+        "robot",
+        "controller",
+        "gravity",
+        "reference",
+        "initial",
+    ];
+
+    /// By a file of this `kind`, of the loop of `scenario`.
     ///
     /// # Errors
     /// If its law is none that proofs speak of.
-    pub fn of(scenario: &Scenario) -> Result<Self, Problems> {
+    pub fn of(kind: Kind, scenario: &Scenario) -> Result<Self, Problems> {
         let (gains, robot) = (scenario.vcbc()?, &scenario.robot);
         let numbers =
             |all: &[f64]| all.iter().map(|&x| Number::read(x, scenario.bounds(x))).collect::<Vec<_>>();
@@ -131,6 +182,10 @@ impl Told {
         let is_horizontal = matches!(robot.links, Links::PlanarTwoLink(_));
         let gravity = robot.gravity.map(|x| Number::read(x, robot.bounds(x)));
         Ok(Self {
+            format: kind.format.to_owned(),
+            version: kind.version,
+            name: scenario.name.clone(),
+            made_by: format!("flexure {}", env!("CARGO_PKG_VERSION")),
             subject: json!(subject(scenario)),
             robot: json!(decimals::robot(robot)),
             controller: json!(law),
@@ -138,6 +193,22 @@ impl Told {
             reference: json!(reference(scenario)),
             initial: json!(initial.concat()),
         })
+    }
+
+    /// Where this is not what a scenario's file would tell, `own` being places beside, what is there and what would be.
+    pub fn differences(&self, of_scenario: &Self, own: &[(&str, Value, Value)]) -> Vec<Difference> {
+        let (ours, theirs) = (self, of_scenario);
+        let parts: Vec<_> = [
+            ("robot", &ours.robot, &theirs.robot),
+            ("controller", &ours.controller, &theirs.controller),
+            ("gravity", &ours.gravity, &theirs.gravity),
+            ("reference", &ours.reference, &theirs.reference),
+        ]
+        .into_iter()
+        .chain(own.iter().map(|(place, ours, theirs)| (*place, ours, theirs)))
+        .chain([("initial", &ours.initial, &theirs.initial), ("subject", &ours.subject, &theirs.subject)])
+        .collect();
+        differences(&parts)
     }
 }
 
@@ -161,7 +232,7 @@ fn reference(scenario: &Scenario) -> Option<Value> {
 }
 
 /// Where what a file says of its loop is not what the scenario's is: `parts` are places, what is there and what would be.
-pub(super) fn differences(parts: &[(&str, &Value, &Value)]) -> Vec<Difference> {
+fn differences(parts: &[(&str, &Value, &Value)]) -> Vec<Difference> {
     let mut found = Vec::new();
     for (place, ours, theirs) in parts {
         compare(place, ours, theirs, &mut found);
@@ -191,6 +262,30 @@ pub(super) fn malformed(place: impl Into<String>, reason: impl Into<String>) -> 
 
 pub(super) fn refuted(claim: &str, reason: impl Into<String>) -> Rejected {
     Rejected::False { claim: claim.to_owned(), reason: reason.into() }
+}
+
+/// Claims of which none is left out.
+pub(super) fn every(texts: &[String]) -> Vec<Option<&String>> {
+    texts.iter().map(Some).collect()
+}
+
+/// That a `rate` that is claimed is no more than what was `found` \[1/s\].
+pub(super) fn rate_holds(rate: &str, found: f64) -> Result<(), Rejected> {
+    let holds = Interval::from_decimal(rate).is_some_and(|rate| rate.hi() <= found);
+    if holds { Ok(()) } else { Err(refuted("rate", format!("{rate} 1/s are claimed, {found} are there"))) }
+}
+
+/// That bounds of `what` that are claimed are no less than what is `there`; none is claimed where there is no text.
+pub(super) fn bounds_hold(what: &str, texts: &[Option<&String>], there: &[f64]) -> Result<(), Rejected> {
+    for (i, (text, &there)) in texts.iter().zip(there).enumerate() {
+        let holds = text.is_none_or(|text| Interval::from_decimal(text).is_some_and(|x| x.lo() >= there));
+        if !holds {
+            let claimed = text.map_or("", String::as_str);
+            let reason = format!("at most {claimed} is claimed, {there} is there");
+            return Err(refuted(&format!("{what}[{i}]"), reason));
+        }
+    }
+    Ok(())
 }
 
 /// The text of a number.
@@ -235,11 +330,4 @@ pub(super) fn of_lower(size: usize, entries: &[f64]) -> Result<Dense<f64>, Strin
         Some(i) => Err(format!("has a diagonal that is not positive, at {i}")),
         None => Ok(matrix),
     }
-}
-
-/// JSON with a line for each of the texts of its last list, which `head` has empty: pretty, but for that.
-pub(super) fn with_lines(head: &str, lines: impl Iterator<Item = String>) -> String {
-    let head = head.strip_suffix("]\n}").expect("a list is last");
-    let lines: Vec<_> = lines.map(|line| format!("\n    \"{line}\"")).collect();
-    format!("{head}{}\n  ]\n}}\n", lines.join(","))
 }

@@ -35,6 +35,10 @@ use crate::scenario::Scenario;
 pub struct Robust {
     /// The torques are so many times those that were asked about.
     pub times: f64,
+    /// The largest unknown torques on links \[N m\].
+    pub link_torque: Vec<f64>,
+    /// The largest unknown torques on motors \[N m\].
+    pub motor_torque: Vec<f64>,
     /// What is in the way of larger ones, where the largest were looked for.
     pub binding: Option<Binding>,
     /// |q̃_i| in rad, links then motors.
@@ -129,7 +133,7 @@ const LOOKED_FOR: f64 = 10.0;
 const PARTS: usize = 240;
 
 /// Part of the work that the funnel takes, about.
-const FUNNEL: f64 = 0.7;
+const SHARE: f64 = 0.7;
 
 /// The bounds for `scenario` with what `spread` leaves open, by a funnel of at most so many `slabs`, or as many as are usual. None where
 /// `progress` breaks it off.
@@ -227,15 +231,16 @@ fn bounds(
         room: ROOM,
         most: slabs.unwrap_or_else(|| usual_slabs(system.joints())),
     };
-    let found = Funnel::along(system, &request, &|fraction| progress(FUNNEL * fraction))?;
+    let found = Funnel::along(system, &request, &|fraction| progress(SHARE * fraction))?;
     let funnel = match found {
         Ok(funnel) => funnel,
         Err(open) => return Some(Err(no_funnel(&open, &request))),
     };
-    let progress = |fraction: f64| progress(FUNNEL + (1.0 - FUNNEL) * fraction);
-    let given: Vec<_> = funnel.pieces.iter().map(Given::of).collect();
+    let progress = |fraction: f64| progress(SHARE + (1.0 - SHARE) * fraction);
+    let rate = funnel.rate();
+    let given: Vec<_> = funnel.pieces.into_iter().map(Given::of).collect();
     let course = course(system, &given, &all_limits(&scenario.robot), &progress)?;
-    let about = About { spread, rate: funnel.rate(), room: ROOM };
+    let about = About { spread, rate, room: ROOM };
     Some(Ok(Robust::new(scenario, system.joints(), given, &about, &course)))
 }
 
@@ -335,8 +340,11 @@ impl Robust {
             Verdict::Undecided(Undecided { at, spent: course.spent })
         };
         let [velocity, deflection, torque] = peaks(course, n);
+        let largest = |torques: &[Interval]| torques.iter().map(|x| x.magnitude()).collect();
         Self {
             times: 1.0,
+            link_torque: largest(&about.spread.link_torque),
+            motor_torque: largest(&about.spread.motor_torque),
             binding: None,
             error: error.to_vec(),
             velocity_error: velocity_error.to_vec(),

@@ -11,14 +11,14 @@ use crate::files::number::short;
 use crate::progress::Progress;
 use crate::prove::along::{all_limits, enclosed, start_errors, suitable};
 use crate::prove::documents::{
-    Checked, FUNNEL, differences, malformed, of_lower, refuted, triangle, unpacked,
+    Checked, FUNNEL, bounds_hold, every, malformed, of_lower, rate_holds, refuted, triangle, unpacked,
 };
 use crate::prove::engine::envelope::closed_loop::TrackingLoop;
 use crate::prove::engine::envelope::deviation::Spread;
 use crate::prove::engine::envelope::followed::{Given, Lacks, count};
 use crate::prove::engine::envelope::shape::{Passage, Shape};
-use crate::prove::robust::file::{Claims, Document, about};
-use crate::prove::robust::{About, FUNNEL as PART, Robust, course};
+use crate::prove::robust::file::{Claims, Document, Own, about};
+use crate::prove::robust::{About, Robust, SHARE, course};
 use crate::prove::subject::Difference;
 use crate::prove::within::spread;
 use crate::scenario::Scenario;
@@ -39,16 +39,17 @@ pub fn check(text: &str, scenario: &Scenario, progress: Progress<'_>) -> Result<
         return Ok(Checked::Differs(differences));
     }
     let n = scenario.robot.joint_count();
-    let read = document.spread(n).and_then(|spread| {
-        let slabs = document.slabs(n, spread.has_masses())?;
-        document.claims.are_numbers(n).map(|()| (spread, slabs))
+    let own = &document.own;
+    let read = own.spread(n).and_then(|spread| {
+        let slabs = own.slabs(n, spread.has_masses())?;
+        own.claims.are_numbers(n).map(|()| (spread, slabs))
     });
     let (spread, slabs) = match read {
         Ok(read) => read,
         Err(rejected) => return Ok(Checked::Rejected(rejected)),
     };
     let system = enclosed(scenario)?;
-    let checking = Checking { scenario, system: &*system, spread: &spread, claims: &document.claims };
+    let checking = Checking { scenario, system: &*system, spread: &spread, claims: &own.claims };
     Ok(match checking.followed(slabs, progress) {
         None => Checked::BrokenOff,
         Some(Ok(robust)) => Checked::Holds(Box::new(robust)),
@@ -58,21 +59,18 @@ pub fn check(text: &str, scenario: &Scenario, progress: Progress<'_>) -> Result<
 
 /// Where what the file says of its loop is not what the scenario's is. Torques are those that the file is about.
 fn compared(ours: &Document, theirs: &Document) -> Vec<Difference> {
-    let [our_tolerances, their_tolerances] = [ours, theirs].map(|of| json!(of.tolerances));
-    differences(&[
-        ("robot", &ours.robot, &theirs.robot),
-        ("controller", &ours.controller, &theirs.controller),
-        ("gravity", &ours.gravity, &theirs.gravity),
-        ("reference", &ours.reference, &theirs.reference),
-        ("initial", &ours.initial, &theirs.initial),
-        ("duration", &ours.duration, &theirs.duration),
-        ("limits", &ours.limits, &theirs.limits),
-        ("tolerances", &our_tolerances, &their_tolerances),
-        ("subject", &ours.subject, &theirs.subject),
-    ])
+    let (of_ours, of_theirs) = (&ours.own, &theirs.own);
+    ours.told.differences(
+        &theirs.told,
+        &[
+            ("duration", of_ours.duration.clone(), of_theirs.duration.clone()),
+            ("limits", of_ours.limits.clone(), of_theirs.limits.clone()),
+            ("tolerances", json!(of_ours.tolerances), json!(of_theirs.tolerances)),
+        ],
+    )
 }
 
-impl Document {
+impl Own {
     /// What the file leaves open of a robot of `n` joints, and what that feels.
     fn spread(&self, n: usize) -> Result<Spread, Rejected> {
         let read = |place: &str, texts: &[String]| {
@@ -158,7 +156,7 @@ impl Checking<'_> {
         let done = AtomicUsize::new(0);
         let goes_on = || {
             let part = done.load(Ordering::Relaxed) as f64 / slabs.len() as f64;
-            progress(PART * part.min(1.0)).is_continue()
+            progress(SHARE * part.min(1.0)).is_continue()
         };
         let slab = |k: usize| {
             let before = k.checked_sub(1).map(|before| &slabs[before]);
@@ -175,7 +173,7 @@ impl Checking<'_> {
                 Err(lacks) => return Some(Err(refuted(&format!("slabs[{k}]"), lacks.words(&slabs[k])))),
             }
         }
-        let progress = |fraction: f64| progress(PART + (1.0 - PART) * fraction);
+        let progress = |fraction: f64| progress(SHARE + (1.0 - SHARE) * fraction);
         let course = course(system, &slabs, &all_limits(&scenario.robot), &progress)?;
         let about = About { spread: self.spread, rate, room: room.midpoint() };
         let robust = Robust::new(scenario, system.joints(), slabs, &about, &course);
@@ -204,8 +202,8 @@ impl Claims {
     /// Every bound that is claimed, with its place.
     fn bounds(&self) -> Vec<(&'static str, Vec<Option<&String>>)> {
         vec![
-            ("error", self.error.iter().map(Some).collect()),
-            ("velocity_error", self.velocity_error.iter().map(Some).collect()),
+            ("error", every(&self.error)),
+            ("velocity_error", every(&self.velocity_error)),
             ("velocity", self.velocity.iter().map(Option::as_ref).collect()),
             ("deflection", self.deflection.iter().map(Option::as_ref).collect()),
             ("torque", self.torque.iter().map(Option::as_ref).collect()),
@@ -236,12 +234,6 @@ impl Claims {
 
     /// That they are no more than what was found.
     fn hold(&self, found: &Robust) -> Result<(), Rejected> {
-        let number = |text: &str| Interval::from_decimal(text).unwrap_or(Interval::ENTIRE);
-        let holds = number(&self.rate).hi() <= found.rate;
-        if !holds {
-            let reason = format!("{} 1/s are claimed, {} are there", self.rate, found.rate);
-            return Err(refuted("rate", reason));
-        }
         let there = [
             &found.error,
             &found.velocity_error,
@@ -249,16 +241,10 @@ impl Claims {
             &found.deflection.bound,
             &found.torque.bound,
         ];
-        for ((what, texts), there) in self.bounds().into_iter().zip(there) {
-            for (i, (text, &there)) in texts.into_iter().zip(there).enumerate() {
-                let Some(text) = text else { continue };
-                let holds = number(text).lo() >= there;
-                if !holds {
-                    let reason = format!("at most {text} is claimed, {there} is there");
-                    return Err(refuted(&format!("{what}[{i}]"), reason));
-                }
-            }
-        }
-        Ok(())
+        rate_holds(&self.rate, found.rate)?;
+        self.bounds()
+            .into_iter()
+            .zip(there)
+            .try_for_each(|((what, texts), there)| bounds_hold(what, &texts, there))
     }
 }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use crate::files::Problems;
-use crate::prove::documents::{FUNNEL, ROOM, Told, lower, packed, text, with_lines};
+use crate::prove::documents::{self, FUNNEL, ROOM, Told, lower, packed, text};
 use crate::prove::engine::envelope::deviation::Spread;
 use crate::prove::engine::envelope::followed::Given;
 use crate::prove::engine::envelope::shape::Shape;
@@ -14,19 +14,12 @@ use crate::prove::robust::Robust;
 use crate::scenario::Scenario;
 
 /// All of a file.
+pub(super) type Document = documents::Document<Own>;
+
+/// What it says beside what all files tell.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Document {
-    pub format: String,
-    pub version: u32,
-    pub name: String,
-    pub made_by: String,
-    pub subject: Value,
-    pub robot: Value,
-    pub controller: Value,
-    pub gravity: Value,
-    pub reference: Value,
-    pub initial: Value,
+pub(super) struct Own {
     pub duration: Value,
     pub limits: Value,
     pub tolerances: Tolerances,
@@ -80,7 +73,7 @@ impl Robust {
         let above = |x: f64| text(Number::above(x * (1.0 + ROOM)));
         let all = |values: &[f64]| values.iter().map(|&x| above(x)).collect();
         let bounded = |values: &[f64]| values.iter().map(|&x| x.is_finite().then(|| above(x))).collect();
-        document.claims = Claims {
+        document.own.claims = Claims {
             room: text(Number::decimal(self.room)),
             rate: text(Number::below(self.rate * (1.0 - ROOM))),
             error: all(&self.error),
@@ -89,14 +82,13 @@ impl Robust {
             deflection: bounded(&self.deflection.bound),
             torque: bounded(&self.torque.bound),
         };
-        let head = serde_json::to_string_pretty(&document).expect("texts and lists");
-        Ok(with_lines(&head, self.funnel.iter().map(written)))
+        Ok(document.with_lines(self.funnel.iter().map(written)))
     }
 }
 
 /// What a file says of the loop of `scenario` and of what `spread` leaves open, without a funnel.
 pub(super) fn about(scenario: &Scenario, spread: &Spread) -> Result<Document, Problems> {
-    let (told, limits) = (Told::of(scenario)?, &scenario.robot.limits);
+    let limits = &scenario.robot.limits;
     let limited =
         |all: &[f64]| all.iter().map(|&x| x.is_finite().then(|| Number::decimal(x))).collect::<Vec<_>>();
     // The shortest of the decimals inside: that of the robot file, or of the question.
@@ -105,17 +97,7 @@ pub(super) fn about(scenario: &Scenario, spread: &Spread) -> Result<Document, Pr
         all.into_iter().min_by_key(String::len).unwrap_or_default()
     };
     let texts = |all: &[Interval]| all.iter().map(shortest).collect();
-    Ok(Document {
-        format: FUNNEL.format.to_owned(),
-        version: FUNNEL.version,
-        name: scenario.name.clone(),
-        made_by: format!("flexure {}", env!("CARGO_PKG_VERSION")),
-        subject: told.subject,
-        robot: told.robot,
-        controller: told.controller,
-        gravity: told.gravity,
-        reference: told.reference,
-        initial: told.initial,
+    let own = Own {
         duration: json!(Number::read(scenario.duration, scenario.bounds(scenario.duration))),
         limits: json!({
             "velocity": limited(&limits.velocity),
@@ -132,7 +114,8 @@ pub(super) fn about(scenario: &Scenario, spread: &Spread) -> Result<Document, Pr
         torques: Torques { links: texts(&spread.link_torque), motors: texts(&spread.motor_torque) },
         claims: Claims::default(),
         slabs: Vec::new(),
-    })
+    };
+    Ok(Document { told: Told::of(FUNNEL, scenario)?, own })
 }
 
 /// A slab as the file has it.

@@ -77,7 +77,7 @@ impl Beside {
         };
         let mut differences = differences(&document, &about(scenario)?);
         // Files that differ in where the run starts and ends have other hashes. A smooth start goes by where it starts.
-        let is_known = !document.reference.is_null();
+        let is_known = !document.told.reference.is_null();
         let may_start_elsewhere = is_known && scenario.smooth_start.is_none();
         differences.retain(|found| {
             let place = found.place.as_str();
@@ -97,7 +97,7 @@ impl Beside {
         };
         let upper = |text: &String| Interval::from_decimal(text).map_or(f64::NAN, Interval::hi);
         let is_off = !sensors(scenario).off.is_empty();
-        let error = is_off.then(|| document.claims.error.iter().map(upper).collect());
+        let error = is_off.then(|| document.own.claims.error.iter().map(upper).collect());
         Ok(Ok(Self::watching(given.sections, error, void, scenario)?))
     }
 

@@ -1,15 +1,14 @@
 //! Following the file of a tube: is it about this loop, and does every section hold for a period of it?
 
-use flexure_core::scalar::Interval;
-use serde_json::Value;
-
 use crate::files::Problems;
 use crate::linalg::Dense;
 use crate::progress::Progress;
-use crate::prove::documents::{self, Checked, TUBE, malformed, of_lower, refuted, triangle, unpacked};
+use crate::prove::documents::{
+    Checked, TUBE, bounds_hold, every, malformed, of_lower, rate_holds, refuted, triangle, unpacked,
+};
 use crate::prove::engine::sampled_data::section::Section;
 use crate::prove::engine::sampled_data::tube::Sections;
-use crate::prove::sampled_data::file::{AskedTexts, Claims, Document, about};
+use crate::prove::sampled_data::file::{AskedTexts, Claims, Document, Own, about};
 use crate::prove::sampled_data::spoken_of::{sensors, suitable_when_sampled};
 use crate::prove::sampled_data::{Asked, NoTube, SampledTube, followed, late};
 use crate::prove::subject::Difference;
@@ -38,11 +37,11 @@ pub fn check(
         Ok(given) => given,
         Err(rejected) => return Ok(Checked::Rejected(rejected)),
     };
-    let sections = Sections::Given(&given.sections, &document.kept);
+    let sections = Sections::Given(&given.sections, &document.own.kept);
     Ok(match followed(scenario, given.asked, sections, progress)? {
         None => Checked::BrokenOff,
         Some(Err(NoTube { not_shown, .. })) => Checked::Rejected(refuted("sections", not_shown)),
-        Some(Ok(tube)) => match compared(&document.claims, &tube) {
+        Some(Ok(tube)) => match compared(&document.own.claims, &tube) {
             Ok(()) => Checked::Holds(Box::new(tube)),
             Err(rejected) => Checked::Rejected(rejected),
         },
@@ -56,17 +55,14 @@ pub(super) fn document(text: &str) -> Result<Document, Rejected> {
 
 /// Where what the file says of its loop is not what the scenario's is.
 pub(super) fn differences(ours: &Document, theirs: &Document) -> Vec<Difference> {
-    let [of_ours, of_theirs] = [ours, theirs].map(|of| Value::from(of.periods));
-    documents::differences(&[
-        ("robot", &ours.robot, &theirs.robot),
-        ("controller", &ours.controller, &theirs.controller),
-        ("gravity", &ours.gravity, &theirs.gravity),
-        ("reference", &ours.reference, &theirs.reference),
-        ("loop", &ours.sampled, &theirs.sampled),
-        ("initial", &ours.initial, &theirs.initial),
-        ("periods", &of_ours, &of_theirs),
-        ("subject", &ours.subject, &theirs.subject),
-    ])
+    let (of_ours, of_theirs) = (&ours.own, &theirs.own);
+    ours.told.differences(
+        &theirs.told,
+        &[
+            ("loop", of_ours.sampled.clone(), of_theirs.sampled.clone()),
+            ("periods", of_ours.periods.into(), of_theirs.periods.into()),
+        ],
+    )
 }
 
 /// What a file gives of its tube.
@@ -77,7 +73,7 @@ pub(super) struct Given {
 
 /// What `document`, which is about `scenario`, gives of its tube, if it has as much as it must.
 pub(super) fn given(document: &Document, scenario: &Scenario) -> Result<Given, Rejected> {
-    let Document { asked, claims, kept, sections, periods, .. } = document;
+    let Own { asked, claims, kept, sections, periods, .. } = &document.own;
     let n = scenario.robot.joint_count();
     let Claims { rate, error, torque } = claims;
     if [asked.extents.len(), torque.len()] != [n; 2] || error.len() != 2 * n {
@@ -132,19 +128,7 @@ fn read(text: &str, size: usize) -> Result<Section, String> {
 
 /// Whether what is claimed, in decimals, is not more than what was found.
 fn compared(Claims { rate, error, torque }: &Claims, tube: &SampledTube) -> Result<(), Rejected> {
-    let bounds = |text: &str| Interval::from_decimal(text).unwrap_or(Interval::ENTIRE);
-    let holds = bounds(rate).hi() <= tube.rate;
-    if !holds {
-        return Err(refuted("rate", format!("{rate} 1/s are claimed, {} are there", tube.rate)));
-    }
-    for (what, claimed, found) in [("error", error, &tube.error), ("torque", torque, &tube.torque)] {
-        for (i, (text, &found)) in claimed.iter().zip(found).enumerate() {
-            let holds = bounds(text).lo() >= found;
-            if !holds {
-                let reason = format!("at most {text} is claimed, {found} is there");
-                return Err(refuted(&format!("{what}[{i}]"), reason));
-            }
-        }
-    }
-    Ok(())
+    rate_holds(rate, tube.rate)?;
+    bounds_hold("error", &every(error), &tube.error)?;
+    bounds_hold("torque", &every(torque), &tube.torque)
 }

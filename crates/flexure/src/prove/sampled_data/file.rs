@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use crate::files::Problems;
-use crate::prove::documents::{ROOM, TUBE, Told, lower, packed, text, with_lines};
+use crate::prove::documents::{self, ROOM, TUBE, Told, lower, packed, text};
 use crate::prove::engine::number::Number;
 use crate::prove::engine::sampled_data::section::Section;
 use crate::prove::engine::sampled_data::watch::Passes;
@@ -14,21 +14,14 @@ use crate::prove::sampled_data::{SampledTube, late};
 use crate::scenario::Scenario;
 
 /// All of a file.
+pub(super) type Document = documents::Document<Own>;
+
+/// What it says beside what all files tell.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Document {
-    pub format: String,
-    pub version: u32,
-    pub name: String,
-    pub made_by: String,
-    pub subject: Value,
-    pub robot: Value,
-    pub controller: Value,
-    pub gravity: Value,
-    pub reference: Value,
+pub(super) struct Own {
     #[serde(rename = "loop")]
     pub sampled: Value,
-    pub initial: Value,
     pub asked: AskedTexts,
     pub periods: usize,
     pub claims: Claims,
@@ -64,20 +57,19 @@ impl SampledTube {
     pub fn file(&self, scenario: &Scenario) -> Result<String, Problems> {
         let mut document = about(scenario)?;
         let restored = |x: f64| text(Number::decimal(x));
-        document.asked = AskedTexts {
+        document.own.asked = AskedTexts {
             extents: self.asked.extents.iter().map(|&x| restored(x)).collect(),
             rate: restored(self.asked.rate),
         };
         let above = |all: &[f64]| all.iter().map(|&x| text(Number::above(x * (1.0 + ROOM)))).collect();
-        document.claims = Claims {
+        document.own.claims = Claims {
             rate: text(Number::below(self.rate * (1.0 - ROOM))),
             error: above(&self.error),
             torque: above(&self.torque),
         };
-        document.kept = self.sections.iter().map(|section| section.past.columns()).collect();
-        let head = serde_json::to_string_pretty(&document).expect("texts and lists");
+        document.own.kept = self.sections.iter().map(|section| section.past.columns()).collect();
         let section = |section: &Section| packed(section.center.iter().copied().chain(lower(&section.lower)));
-        Ok(with_lines(&head, self.sections.iter().map(section)))
+        Ok(document.with_lines(self.sections.iter().map(section)))
     }
 }
 
@@ -92,22 +84,12 @@ fn exact(x: f64) -> Number {
 
 /// What a file says of the loop of `scenario`, without a tube.
 pub(super) fn about(scenario: &Scenario) -> Result<Document, Problems> {
-    let told = Told::of(scenario)?;
     let (sensors, late) = (sensors(scenario), late(scenario));
     let filter = sensors.filter.map(|filter| {
         let both = |of: [Interval; 2]| of.map(|x| exact(x.midpoint()));
         json!({ "feedback": both(filter.feedback), "forward": both(filter.forward) })
     });
-    Ok(Document {
-        format: TUBE.format.to_owned(),
-        version: TUBE.version,
-        name: scenario.name.clone(),
-        made_by: format!("flexure {}", env!("CARGO_PKG_VERSION")),
-        subject: told.subject,
-        robot: told.robot,
-        controller: told.controller,
-        gravity: told.gravity,
-        reference: told.reference,
+    let own = Own {
         sampled: json!({
             "control_period": Number::read(scenario.control_period, scenario.bounds(scenario.control_period)),
             "waiting": late.waiting,
@@ -117,13 +99,13 @@ pub(super) fn about(scenario: &Scenario) -> Result<Document, Problems> {
             "filter": filter,
             "limits": limits(&passes(scenario)),
         }),
-        initial: told.initial,
         asked: AskedTexts::default(),
         periods: scenario.periods() as usize,
         claims: Claims { rate: String::new(), error: Vec::new(), torque: Vec::new() },
         kept: Vec::new(),
         sections: Vec::new(),
-    })
+    };
+    Ok(Document { told: Told::of(TUBE, scenario)?, own })
 }
 
 /// What guard and drives do nothing about, null where all passes.

@@ -1,7 +1,5 @@
 //! A funnel in lines.
 
-use flexure_core::scalar::Interval;
-
 use super::proof::{at_most, bounded, list, of_limits};
 use crate::files::number::{engineering, rounded_down, short};
 use crate::prove::robust::{Binding, Robust};
@@ -42,12 +40,16 @@ pub fn funnel_lines(found: &Robust, kinds: &[JointKind]) -> Vec<String> {
 
 /// What a funnel that is read from a file is about, of a robot whose joints are of these kinds.
 pub fn funnel_asked(found: &Robust, kinds: &[JointKind]) -> String {
-    let largest = |all: &[Interval]| at_most(&all.iter().map(|x| x.magnitude()).collect::<Vec<_>>());
-    let (spread, torque) = (&found.spread, of_joints(units::TORQUE, "", kinds));
+    let torque = of_joints(units::TORQUE, "", kinds);
+    let robots = if found.spread.has_tolerances() {
+        "every robot within the tolerances of the robot file"
+    } else {
+        "the robot with the numbers of its file"
+    };
     format!(
-        "funnel       asked about: torques up to {} {torque} on links and {} {torque} on motors, robots within the tolerances of the robot file",
-        largest(&spread.link_torque),
-        largest(&spread.motor_torque)
+        "funnel       asked about: torques up to {} {torque} on links and {} {torque} on motors, {robots}",
+        at_most(&found.link_torque),
+        at_most(&found.motor_torque)
     )
 }
 

@@ -77,6 +77,11 @@ impl Spread {
         self.link_mass.iter().any(|part| part.magnitude() > 0.0)
     }
 
+    /// Whether the robot may be another than the model at all.
+    pub fn has_tolerances(&self) -> bool {
+        !self.one_by_one().is_empty()
+    }
+
     /// All torques times `factor`, the tolerances as they are.
     pub fn with_torques_times(&self, factor: f64) -> Self {
         let times = |values: &[Interval]| values.iter().map(|&x| x * Interval::point(factor)).collect();

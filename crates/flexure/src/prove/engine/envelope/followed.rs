@@ -45,7 +45,7 @@ pub fn count(joints: usize, has_masses: bool) -> usize {
 
 impl Given {
     /// What there is to give of `piece`.
-    pub fn of(piece: &Piece) -> Self {
+    pub fn of(piece: Piece) -> Self {
         let parts = piece.passage.0.len() - 1;
         let begins = [piece.time.lo()].into_iter();
         let times = begins.chain((0..parts).map(|k| part(piece.time, k, parts).hi())).collect();
@@ -55,7 +55,7 @@ impl Given {
             alpha[drive.cause] = piece.multipliers.alpha[k];
             tau[drive.cause] = piece.multipliers.tau[k];
         }
-        Self { times, passage: piece.passage.clone(), around: piece.around.clone(), alpha, tau }
+        Self { times, passage: piece.passage, around: piece.around, alpha, tau }
     }
 
     /// Times in s.
