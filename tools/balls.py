@@ -1,8 +1,8 @@
-"""What the checkers of tubes and of funnels share, with python-flint alone: functions with their first two derivatives, Taylor series in time, robots, the law, references, and the
+"""What the checkers of tubes and of funnels share, with python-flint alone: their command line, functions with their first two derivatives, Taylor series in time, robots, the law, references, and the
 parts of files that tell a loop.
 
 Numbers are balls of 128 bits that contain what they stand for; a comparison of two is true only where it holds for all reals inside."""
-import base64, json, re, struct, sys, time
+import argparse, base64, json, re, struct, sys, time
 from fractions import Fraction
 from functools import partial
 from flint import arb, arb_mat, ctx, fmpq
@@ -401,6 +401,9 @@ def read_file(data, format, others):  # what a file tells of a loop, and the key
         "initial": [number] * 4 * n} | others(n))
     known(file["reference"] is not None, "references of other forms")
     return file
+def chosen(options, count):  # of so many parts those that are followed, spread evenly
+    every = options.all or options.sample >= count
+    return range(count) if every else sorted({j * (count - 1) // max(1, options.sample - 1) for j in range(options.sample)})
 def floats(text):
     data = base64.b64decode(text, validate=True)
     need(len(data) % 8 == 0, "a text is no list of numbers of 64 bits", ValueError)
@@ -411,8 +414,15 @@ def lower(size, entries):  # rows of a lower triangle with a positive diagonal
     rows = [[arb(x) for x in entries[i * (i + 1) // 2:(i + 1) * (i + 2) // 2]] + [ZERO] * (size - 1 - i) for i in range(size)]
     need(all(row[i] > 0 for i, row in enumerate(rows)), "a diagonal is not positive", ValueError)
     return rows
-def proclaim(check, parser, what):  # the files of the command line through check(data, options): prints what came of each, and is the worst exit code
+def at_least_one(text):
+    if not re.fullmatch(r"0*[1-9]\d{0,8}", text, re.ASCII):
+        raise argparse.ArgumentTypeError(f"{text!s:.60} is no whole number from 1 on")
+    return int(text)
+def main(check, what, part):  # the files of the command line through check(data, options), which follows all or a sample of their parts: prints what came of each; the worst exit code
+    parser = argparse.ArgumentParser(description=f"Checks files of {what}s.")
     parser.add_argument("files", nargs="+")
+    parser.add_argument("--all", action="store_true", help=f"every {part}")
+    parser.add_argument("--sample", type=at_least_one, metavar="K", default=20, help=f"so many {part}s")
     options, worst = parser.parse_args(), 0
     for path in options.files:
         start = time.perf_counter()

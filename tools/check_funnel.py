@@ -9,7 +9,7 @@ Exit code: 0 all proved, 1 a claim does not hold or is not proved here, 2 not a 
 How: over a slab everything is a function of y in the unit ball, errors being z = G y, and of time tau in [-1, 1], known as its value and slopes in the middle and its second derivatives
 anywhere (Form): so are the rates of z on the model, what each cause of the errors may be, and, by derivatives along accelerations of the links (Dual), the direction in which it pushes them.
 Each is split into its part that is linear in y, or goes with tau, and what that leaves open, which is a cause of its own. The inequality is looked at in the coordinates y."""
-import argparse, sys
+import sys
 from flint import arb, arb_mat
 from balls import *
 
@@ -216,7 +216,7 @@ class Loop:
                 seen([on_motor[i]], speeds_up, off["motor_inertia"][i] / robot.M_m[i])]
         felt = [torques["links"][j].abs_upper() + bends[j].range().abs_upper() * off["stiffness"][j] + v_l[j].range().abs_upper() * off["link_damping"][j] for j in range(n)]
         if self.heavier:
-            loads = self.loads(q_d, q, v, q_l, v_l)
+            loads = [[zero + x for x in load] for load in self.loads(q_d, q, v, q_l, v_l)]
             felt = [x + sum(loads[i][j].range().abs_upper() * off["link_mass"][i] for i in range(n)) for j, x in enumerate(felt)]
             fixed = slab.fixed = slab.fixed or [[middle(x.c) for x in load] for load in loads]  # of all of the slab, which multipliers are for
             causes += [Cause([Column.sum(on_link, fixed[i])], off["link_mass"][i]) for i in range(n)]
@@ -333,7 +333,7 @@ def check(data, options):
     need(away <= 1, f"the start is not in the first ellipsoid: it is {float(away):.6g} times as far out")
     unit = arb_mat([[int(i == j) for j in range(m)] for i in range(m)])
     count, limits = len(slabs), claims["error"] + claims["velocity_error"]
-    chosen = range(count) if options.all or options.sample >= count else sorted({j * (count - 1) // max(1, options.sample - 1) for j in range(options.sample)})
+    followed = chosen(options, count)
     slowest = None
     for k, slab in enumerate(slabs):
         at = f"slab {k}, t = {float(slab.times[0]):.6g} s"
@@ -346,7 +346,7 @@ def check(data, options):
         for shape in slab.shapes:
             for i, (row, limit) in enumerate(zip(shape.tolist(), limits)):
                 need(length_of(row) <= limit, f"error {i + 1} is up to {float(length_of(row)):.10g} in {at}")
-        if k in chosen:
+        if k in followed:
             try:
                 growth = follow(loop, slab, scaled)
             except AssertionError as error:
@@ -355,15 +355,9 @@ def check(data, options):
             slowest = growth if slowest is None or growth < slowest else slowest
     acting = [key for key, limit in file["limits"].items() for x, claim in zip(limit, claims[key]) if x is not None and not (claim is not None and claim <= x)]
     limited = any(x is not None for limit in file["limits"].values() for x in limit)
-    of = f"all {count} slabs" if len(chosen) == count else f"slabs {', '.join(map(str, chosen))} of {count}"
+    of = f"all {count} slabs" if len(followed) == count else f"slabs {', '.join(map(str, followed))} of {count}"
     said = f"; {', '.join(acting)} limits may act" if acting else "; no limit of the robot is reached" if limited else ""
     return f"{of}: errors come back at {float(slowest):.6g} 1/s where {float(claims['rate']):.6g} is claimed{said}"
 
-def main():
-    parser = argparse.ArgumentParser(description="Checks files of funnels.")
-    parser.add_argument("--all", action="store_true", help="every slab")
-    parser.add_argument("--sample", type=int, choices=range(1, 10**6), metavar="K", default=20, help="so many slabs")
-    return proclaim(check, parser, "funnel")
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(check, "funnel", "slab"))

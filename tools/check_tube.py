@@ -10,7 +10,7 @@ Numbers are balls of 128 bits that contain what they stand for; a comparison of 
 How: everything is a function of y in the unit ball, known as its value and its slopes at 0 and its second derivatives anywhere (Form). The law's torques are such functions,
 c + g y + s w with |w| <= 1/2 for what is of second order; so are the coefficients and the remainder of the robot's Taylor polynomial in time. Slopes of G_k at the centre, by y and
 by w, and how far they change bound lambda; where the centre goes, rho."""
-import argparse, sys
+import sys
 from math import ceil
 from flint import arb, arb_mat
 from balls import *
@@ -152,9 +152,9 @@ class Loop:
         return growth.abs_upper(), self.sections[k + 1].reach([form.c for form in after])
 
 def check(data, options):
-    file, every, sample = read_tube(data), options.all, options.sample
+    file = read_tube(data)
     loop, claims, count = Loop(file), file["claims"], file["periods"]
-    every = every or sample >= count
+    every = options.all or options.sample >= count
     limit, worst, away = (-claims["rate"] * loop.h).exp(), ZERO, loop.sections[0].reach(loop.start())
     need(away <= 1, f"the start is not in E_0: |y| is {float(away):.6g}")
     def errors_fit(k, times):
@@ -168,25 +168,19 @@ def check(data, options):
     for k in range(count + 1):
         errors_fit(k, ONE)
     torques_fit(0, loop.sections[0].forms()[loop.m - loop.waiting * loop.n:])
-    chosen = range(count) if every else sorted({j * (count - 1) // max(1, sample - 1) for j in range(sample)})
+    followed = chosen(options, count)
     for k in range(count + 1):
         asked = loop.torques(k, loop.sections[k].forms())
         torques_fit(k, asked)
         if every:
             errors_fit(k, 1 + away)
-        if k in chosen:
+        if k in followed:
             growth, offset = loop.steps(k, loop.period(k, asked))
             need(growth + offset <= 1, f"period {k}: lambda {float(growth):.9g} and rho {float(offset):.3g} are more than 1 together")
             need(growth <= limit, f"rate: lambda is {float(growth):.10g} in period {k}, must be at most {float(limit):.10g}")
             worst, away = worst.max(growth), (growth * away + offset).abs_upper()
-    some = f"all {count} periods" if every else f"periods {', '.join(map(str, chosen))} of {count}, error without |y| of the run"
+    some = f"all {count} periods" if every else f"periods {', '.join(map(str, followed))} of {count}, error without |y| of the run"
     return f"{some}: largest lambda {float(worst):.9f} where {float(limit):.9f} is claimed"
 
-def main():
-    parser = argparse.ArgumentParser(description="Checks files of tubes.")
-    parser.add_argument("--all", action="store_true", help="every control period")
-    parser.add_argument("--sample", type=int, choices=range(1, 10**6), metavar="K", default=20, help="so many control periods")
-    return proclaim(check, parser, "tube")
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(check, "tube", "control period"))
