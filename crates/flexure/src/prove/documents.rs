@@ -101,13 +101,13 @@ impl Kind {
         })?;
         // What is read into structs may not be lists.
         let Value::Object(mut own) = value else { return Err(malformed("the file", "must be an object")) };
-        if let Some(key) = objects.iter().find(|key| !own.get(**key).is_some_and(Value::is_object)) {
-            return Err(malformed("the file", format!("'{key}' must be an object")));
-        }
         if own.get("format") != Some(&self.format.into()) || own.get("version") != Some(&self.version.into())
         {
             let reason = format!("must be \"{}\", version {}", self.format, self.version);
             return Err(malformed("format", reason));
+        }
+        if let Some(key) = objects.iter().find(|key| !own.get(**key).is_some_and(Value::is_object)) {
+            return Err(malformed("the file", format!("'{key}' must be an object")));
         }
         let told = Told::KEYS.iter().filter_map(|key| own.remove_entry(*key)).collect();
         let broken = |error: serde_json::Error| malformed("the file", error.to_string());
