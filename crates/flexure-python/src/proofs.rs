@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use flexure::files::{Problems, folder_of, prepare, read_text, spare};
 use flexure::prove::documents::{Checked, FUNNEL, Kind, LARGEST, TUBE};
-use flexure::prove::question::{Direct, Question, Region, prove_watched};
+use flexure::prove::question::{Climb, Direct, Question, Region, prove_watched};
 use flexure::prove::subject::differences;
 use flexure::prove::summary::ProofSummary;
 use flexure::prove::{robust, sampled_data};
@@ -29,10 +29,11 @@ fn list(name: &'static str, given: Option<&Bound<'_, PyAny>>) -> PyResult<Option
 }
 
 /// Proves how fast the closed loop contracts, and where, as `flexure certify`: a dict with the keys of its `--json`, and `certificate`,
-/// its text, or None if nothing was proved. Errors in rad, links then motors, torques in N m, rates in 1/s.
+/// its text, or None if nothing was proved. Errors in rad, links then motors, torques in N m, rates in 1/s. Whether a tube of the sampled loop is looked for
+/// is `strongest`, True or False; if it is left out, it is where nothing else is asked for and that takes a minute or two.
 #[pyfunction]
 #[pyo3(signature = (scenario, *, error_box = None, initial_error = None, rate = None, disturbance = None, link_disturbance = None,
-                    up_to_limits = false, slabs = None, velocity_error = None, sampled_tube = None, strongest = false,
+                    up_to_limits = false, slabs = None, velocity_error = None, sampled_tube = None, strongest = None,
                     direct = false, budget = 10_000, out = None, progress = None))]
 #[expect(clippy::too_many_arguments, reason = "keywords")]
 pub fn certify<'py>(
@@ -47,7 +48,7 @@ pub fn certify<'py>(
     slabs: Option<usize>,
     velocity_error: Option<&Bound<'py, PyAny>>,
     sampled_tube: Option<&Bound<'py, PyAny>>,
-    strongest: bool,
+    strongest: Option<bool>,
     direct: bool,
     budget: usize,
     out: Option<PathBuf>,
@@ -65,9 +66,6 @@ pub fn certify<'py>(
         // Said before minutes of proof, not after.
         spare(out, "certificate", |text| text.contains("flexure-certificate"), &[])
             .map_err(|problem| refused(py, &problem))?;
-        if sampled_tube.is_some() || strongest {
-            TUBE.spare(&TUBE.beside(out)).map_err(|problem| refused(py, &problem))?;
-        }
         prepare(folder_of(out)).map_err(unwritten)?;
     }
     let loaded = scenario.loaded.clone();
@@ -75,10 +73,15 @@ pub fn certify<'py>(
     let [disturbance, link_disturbance] =
         [list("disturbance", disturbance)?, list("link_disturbance", link_disturbance)?];
     let velocity_error = list("velocity_error", velocity_error)?;
-    if sampled_tube.is_some() && strongest {
+    if sampled_tube.is_some() && strongest == Some(true) {
         return Err(PyTypeError::new_err("sampled_tube or strongest, not both"));
     }
     let sampled_tube = list("sampled_tube", sampled_tube)?;
+    let climb = match strongest {
+        None => Climb::IfQuick,
+        Some(true) => Climb::Always,
+        Some(false) => Climb::Stay,
+    };
     let question = Question {
         region,
         rate,
@@ -88,10 +91,13 @@ pub fn certify<'py>(
         slabs,
         velocity_error,
         sampled_tube,
-        strongest,
+        climb,
         direct,
     };
     let question = question.fitting(&loaded).map_err(|problem| refused(py, &problem))?;
+    if let Some(out) = out.as_ref().filter(|_| question.sampled_tube.is_some() || question.climbs(&loaded)) {
+        TUBE.spare(&TUBE.beside(out)).map_err(|problem| refused(py, &problem))?;
+    }
     if let Some(out) = out.as_ref().filter(|_| question.looks_for_funnel(&loaded)) {
         FUNNEL.spare(&FUNNEL.beside(out)).map_err(|problem| refused(py, &problem))?;
     }

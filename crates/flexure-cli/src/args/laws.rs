@@ -47,10 +47,14 @@ pub struct Certify {
     /// with the control period, delay, encoders, velocity filter, guard and limits of the file. Begin with 1e-5 and try smaller and larger ones.
     #[arg(long, value_name = "E", value_delimiter = ',', allow_negative_numbers = true)]
     pub sampled_tube: Option<Vec<f64>>,
-    /// Prove the strongest statement that can be proved of the loop in the file: looks for the widest tube of the sampled loop by itself, from 0.1 rad down to 1e-7,
-    /// which takes minutes for two joints and a long run, and much longer for many. Where there is none, what is proved of the ideal loop stands, and it is said why.
+    /// Look for the widest tube of the sampled loop, from 0.1 rad down to 1e-7, whatever else is asked for and however long it takes: minutes for two joints and a
+    /// long run, hours for seven. Where there is none, what is proved of the ideal loop stands, and it is said why. Without options that name a statement it
+    /// is looked for where that takes a minute or two.
     #[arg(long, conflicts_with = "sampled_tube")]
     pub strongest: bool,
+    /// Look for no tube of the sampled loop.
+    #[arg(long, conflicts_with_all = ["sampled_tube", "strongest"])]
+    pub no_tube: bool,
     /// Prove the certified contraction rate once more, from the full inequality; of theorems only that the rate of the mass matrix cancels.
     #[arg(long)]
     pub direct: bool,

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use flexure::files::{Problem, Reading, Unfinished, folder_of, prepare, spare};
 use flexure::prove::documents::{FUNNEL, TUBE};
-use flexure::prove::question::{Direct, Question, Region, prove_watched};
+use flexure::prove::question::{Climb, Direct, Question, Region, prove_watched};
 use flexure::prove::standing::{Standing, outside_of_proofs};
 use flexure::prove::summary::ProofSummary;
 use flexure::report::{proof_table, proof_verdict, write_certificate, write_certified, write_document};
@@ -46,7 +46,7 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
     // Said before minutes of proof, not after.
     spare(&path, "certificate", |text| text.contains("flexure-certificate"), &[])?;
     let (tube_path, funnel_path) = (TUBE.beside(&path), FUNNEL.beside(&path));
-    let looks = options.sampled_tube.is_some() || options.strongest;
+    let looks = question.sampled_tube.is_some() || question.climbs(&scenario);
     if looks {
         TUBE.spare(&tube_path)?;
     }
@@ -62,7 +62,9 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
     };
     let sampled = probe(&scenario)?;
     let summary = ProofSummary::new(&scenario, &proof, sampled.clone());
-    let file = match proof.verdict.proved().filter(|_| !proof.broken_off) {
+    // What was looked for unasked is no part of the certificate.
+    let is_whole = !proof.broken_off || (proof.climbed && question.climb == Climb::IfQuick);
+    let file = match proof.verdict.proved().filter(|_| is_whole) {
         None => None,
         Some(certificate) => {
             write_certificate(&path, certificate)?;
@@ -142,7 +144,11 @@ fn question(options: &Certify, scenario: &Scenario) -> Result<Question, Problem>
     let velocity_error = options.velocity_error.clone();
     let up_to_limits = options.up_to_limits;
     let sampled_tube = options.sampled_tube.clone();
-    let strongest = options.strongest;
+    let climb = match (options.strongest, options.no_tube) {
+        (true, _) => Climb::Always,
+        (false, true) => Climb::Stay,
+        (false, false) => Climb::IfQuick,
+    };
     let (rate, slabs) = (options.rate, options.slabs);
     Question {
         region,
@@ -153,7 +159,7 @@ fn question(options: &Certify, scenario: &Scenario) -> Result<Question, Problem>
         slabs,
         velocity_error,
         sampled_tube,
-        strongest,
+        climb,
         direct,
     }
     .fitting(scenario)

@@ -25,14 +25,14 @@ fn the_papers_gains_are_certified() {
     assert_eq!(certificate["format"], "flexure-certificate");
 }
 
-/// Every built-in scenario gets a certificate without options; the same bytes each time.
+/// Every built-in scenario gets a certificate without naming anything; the same bytes each time.
 #[test]
 fn every_scenario_is_certified() {
     let folder = Place::new();
     let listed = folder.run(&["list", "--json"]).done().json();
     for name in listed["scenarios"].as_object().unwrap().keys() {
         let certified = |file: &str| {
-            folder.run(&["certify", name, "--out", file]).done();
+            folder.run(&["certify", name, "--no-tube", "--out", file]).done();
             std::fs::read(folder.path().join(file)).unwrap()
         };
         assert_eq!(certified("a.json"), certified("b.json"), "{name}");
@@ -43,12 +43,13 @@ fn every_scenario_is_certified() {
 #[test]
 fn proofs_of_another_loop_say_so() {
     let folder = Place::new();
-    let ideal = folder.run(&["certify", "two-link-linear-smooth", "--strict", "--json"]).done().json();
+    let ideal =
+        folder.run(&["certify", "two-link-linear-smooth", "--no-tube", "--strict", "--json"]).done().json();
     assert_eq!(ideal["verdict"], "proved");
     assert_eq!(ideal["left_out"], Value::Array(Vec::new()));
     assert_eq!(ideal["sampled"]["stable"], true);
 
-    let real = folder.run(&["certify", "two-link-hardware", "--json"]).done().json();
+    let real = folder.run(&["certify", "two-link-hardware", "--no-tube", "--json"]).done().json();
     assert_eq!(real["verdict"], "proved (ideal loop)");
     let left_out: Vec<_> =
         real["left_out"].as_array().unwrap().iter().map(|part| part.as_str().unwrap()).collect();
@@ -56,7 +57,7 @@ fn proofs_of_another_loop_say_so() {
         ["encoder", "velocity-filter", "saturation", "guard"].iter().all(|part| left_out.contains(part)),
         "{left_out:?}"
     );
-    let strict = folder.run(&["certify", "two-link-hardware", "--strict"]);
+    let strict = folder.run(&["certify", "two-link-hardware", "--no-tube", "--strict"]);
     assert_eq!(strict.code, Some(1), "{strict:?}");
     strict.said(&["outside of them stand, in this scenario: encoder"]);
     assert!(strict.stdout.contains("proved (ideal loop)"), "{}", strict.stdout);
@@ -312,7 +313,7 @@ fn certificates_are_verified() {
     let folder = Place::new();
     let listed = folder.run(&["list", "--json"]).done().json();
     let all: Vec<&str> = listed["scenarios"].as_object().unwrap().keys().map(String::as_str).collect();
-    let options: [&[&str]; 3] = [&[], &["--error-box", "0.3"], &["--initial-error", "0.1"]];
+    let options: [&[&str]; 3] = [&["--no-tube"], &["--error-box", "0.3"], &["--initial-error", "0.1"]];
     for (i, name) in all.iter().enumerate() {
         let arguments = [&["certify", name, "--out", "a.json"], options[i % 3]].concat();
         folder.run(&arguments).done();
@@ -343,7 +344,7 @@ fn certificates_are_verified() {
 fn the_region_that_is_taken_holds_the_run() {
     let folder = Place::new();
     for (scenario, level) in [("two-link-tanh", true), ("two-link-tanh-smooth", false)] {
-        let found = folder.run(&["certify", scenario, "--json"]).done().json();
+        let found = folder.run(&["certify", scenario, "--no-tube", "--json"]).done().json();
         assert_eq!(found["start"]["inside"], true, "{scenario}");
         assert_eq!(found["region"]["error"][0].as_f64().unwrap() > 1.0, level, "{scenario}");
         let noted = found["assumptions"]
@@ -386,7 +387,7 @@ fn limits_count_from_the_start() {
 fn what_is_beyond_the_model_is_listed() {
     let folder = Place::new();
     let noted = |scenario: &str, what: &str| {
-        let found = folder.run(&["certify", scenario, "--json"]).done().json();
+        let found = folder.run(&["certify", scenario, "--no-tube", "--json"]).done().json();
         found["assumptions"].as_array().unwrap().iter().any(|note| note.as_str().unwrap().contains(what))
     };
     assert!(noted("two-link-tanh", "held for 0.001 s"));
@@ -414,8 +415,8 @@ fn other_files_are_spared() {
     let outcome = folder.run(&["certify", "s.toml", "--out", "s.toml"]);
     outcome.refused(&["is no certificate"]);
     assert!(folder.read("s.toml").contains("[controller]"));
-    folder.run(&["certify", "s.toml", "--out", "c.json"]).done();
-    folder.run(&["certify", "s.toml", "--out", "c.json"]).done();
+    folder.run(&["certify", "s.toml", "--no-tube", "--out", "c.json"]).done();
+    folder.run(&["certify", "s.toml", "--no-tube", "--out", "c.json"]).done();
 }
 
 /// A place where no certificate can ever be written is told before the proof, not after minutes of it: this one would be refuted.

@@ -138,7 +138,7 @@ fn an_identified_arm_is_certified_with_its_error_bars() {
     place.run(&["check", "found.toml"]).done();
 
     place.write("arm-sine.toml", SCENARIO);
-    let certified = place.run(&["certify", "arm-sine.toml", "--json"]).done().json();
+    let certified = place.run(&["certify", "arm-sine.toml", "--no-tube", "--json"]).done().json();
     let within = &certified["within"];
     let number = |key: &str| within[key].as_f64().unwrap();
     let nominal = certified["convergence_rate"].as_f64().unwrap();
@@ -159,7 +159,7 @@ fn an_identified_arm_is_certified_with_its_error_bars() {
             && assumptions.contains("link_damping of shoulder is taken as it stands"),
         "{assumptions}"
     );
-    let shown = place.run(&["certify", "arm-sine.toml"]).done().stdout;
+    let shown = place.run(&["certify", "arm-sine.toml", "--no-tube"]).done().stdout;
     assert!(shown.contains("tolerances   every robot within them") && shown.contains("not to 0"), "{shown}");
 
     // The certificate is about the numbers, and says so; one that was made to look wider is not of this robot.
@@ -226,7 +226,7 @@ fn too_wide_tolerances_are_not_decided() {
     let place = Place::new();
     place.write("found.toml", format!("{ARM}[tolerances]\nstiffness = [4000.0, 2000.0]\n"));
     place.write("arm-sine.toml", SCENARIO);
-    let open = place.run(&["certify", "arm-sine.toml", "--json"]);
+    let open = place.run(&["certify", "arm-sine.toml", "--no-tube", "--json"]);
     assert_eq!(open.code, Some(3), "{open:?}");
     open.said(&["found.toml:", "the robots within its tolerances are not decided"]);
     let found = open.json();

@@ -132,6 +132,17 @@ fn a_proof_has_its_rates_and_no_certificate() {
     assert_eq!(place.names("out"), [""; 0]);
 }
 
+/// A tube that was looked for unasked, and not waited for, takes nothing from the certificate.
+#[test]
+fn a_proof_whose_tube_was_not_waited_for_has_its_certificate() {
+    let place = Place::new();
+    let args = ["certify", "two-link-tanh-smooth", "--set", "duration=30"];
+    let json = partial(&place, &args, |json| json["contraction_rate"].is_f64());
+    assert_eq!((&json["step"], &json["sampled_tube"]), (&"ideal".into(), &Value::Null));
+    assert_eq!(json["file"], "out/two-link-tanh-smooth.certificate.json");
+    assert_eq!(place.names("out"), ["two-link-tanh-smooth.certificate.json"]);
+}
+
 /// A search for gains that is broken off has the best so far, and writes it if it keeps what was looked at.
 #[test]
 fn a_search_for_gains_keeps_the_best_so_far() {

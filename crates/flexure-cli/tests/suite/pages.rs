@@ -38,7 +38,7 @@ fn a_proof_is_good_only_if_it_is_about_the_loop_in_the_file() {
         let (outcome, page) = paged(&place, &args, &format!("{scenario}.certify"));
         (outcome.code, mark(&page), page)
     };
-    let (code, good, page) = certify("two-link-tanh", &[]);
+    let (code, good, page) = certify("two-link-tanh", &["--no-tube"]);
     assert_eq!((code, good), (Some(0), "✓ good"));
     assert!(page.contains("Proved in continuous time") && page.contains("href=\"c.json\""), "{page}");
     assert!(page.contains("invariant") && page.contains("joint2"), "{page}");
@@ -46,15 +46,25 @@ fn a_proof_is_good_only_if_it_is_about_the_loop_in_the_file() {
     let elsewhere = place.path().join("elsewhere");
     let folder = elsewhere.to_str().unwrap();
     let certificate = elsewhere.join("c.json");
-    place.run(&["certify", "two-link-tanh", "--page", folder, "--out", certificate.to_str().unwrap()]).done();
+    place
+        .run(&[
+            "certify",
+            "two-link-tanh",
+            "--page",
+            folder,
+            "--out",
+            certificate.to_str().unwrap(),
+            "--no-tube",
+        ])
+        .done();
     assert_eq!(place.read("elsewhere/two-link-tanh.certify.html"), page);
-    let (code, open, page) = certify("two-link-hardware", &[]);
+    let (code, open, page) = certify("two-link-hardware", &["--no-tube"]);
     assert_eq!((code, open), (Some(0), "– no verdict"));
     assert!(
         page.contains("of the ideal loop only") && page.contains("velocity-filter, saturation"),
         "{page}"
     );
-    assert_eq!(certify("two-link-hardware", &["--strict"]).1, "✕ bad");
+    assert_eq!(certify("two-link-hardware", &["--no-tube", "--strict"]).1, "✕ bad");
     let (code, bad, page) = certify("two-link-tanh", &["--rate", "99"]);
     assert_eq!((code, bad), (Some(1), "✕ bad"));
     assert!(page.contains("Refuted: ") && !page.contains("id=\"rates\""), "{page}");

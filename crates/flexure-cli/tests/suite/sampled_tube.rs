@@ -83,15 +83,28 @@ fn the_strongest_statement_is_looked_for() {
     let folder = Place::new();
     let loop_of = ["two-link-tanh-smooth", "--set", "duration=0.02"];
     let certify = |options: &[&str]| folder.run(&[&["certify"], &loop_of[..], options].concat());
-    let plain = certify(&[]).done().stdout;
-    assert!(plain.contains("highest step proved: ideal") && plain.contains("--strongest looks"), "{plain}");
-    let found = certify(&["--strongest", "--json"]).done().json();
+    let below = certify(&["--no-tube"]).done().stdout;
+    assert!(below.contains("highest step proved: ideal") && below.contains("--strongest looks"), "{below}");
+    // What names something is answered, and nothing else is looked for; what would take long neither.
+    for (options, duration) in [(&["--error-box", "0.5"][..], "0.02"), (&[], "1000")] {
+        let duration = format!("duration={duration}");
+        let named = certify(&[options, &["--set", &duration]].concat()).done().stdout;
+        assert!(named.contains("ideal") && named.contains("--strongest looks"), "{named}");
+    }
+    assert!(!folder.path().join("out/two-link-tanh-smooth.tube.json").exists());
+    let found = certify(&["--json"]).done().json();
     assert_eq!((&found["step"], &found["sampled_tube"]["verdict"]), (&"sampled".into(), &"proved".into()));
-    let said = certify(&["--strongest"]).done().stdout;
+    let said = certify(&["--strongest", "--error-box", "0.5"]).done().stdout;
     assert!(said.contains("highest step proved: sampled") && said.contains("region = ["), "{said}");
-    assert_eq!(certify(&["--strongest", "--sampled-tube", "1e-5"]).code, Some(2));
+    for [one, other] in [
+        ["--strongest", "--sampled-tube=1e-5"],
+        ["--no-tube", "--sampled-tube=1e-5"],
+        ["--no-tube", "--strongest"],
+    ] {
+        assert_eq!(certify(&[one, other]).code, Some(2), "{one} {other}");
+    }
     // Where there is none, the ideal loop's proof stands, and it is said why.
-    let none = folder.run(&["certify", "two-link-everything", "--strongest"]).done().stdout;
+    let none = folder.run(&["certify", "two-link-everything"]).done().stdout;
     assert!(
         none.contains("highest step proved: ideal") && none.contains("no tube was found: this loop"),
         "{none}"

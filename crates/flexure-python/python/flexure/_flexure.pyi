@@ -276,7 +276,7 @@ def certify(
     slabs: int | None = None,
     velocity_error: _Numbers | None = None,
     sampled_tube: _Numbers | None = None,
-    strongest: bool = False,
+    strongest: bool | None = None,
     direct: bool = False,
     budget: int = 10_000,
     out: _Path | None = None,

@@ -81,7 +81,7 @@ def certify(
     slabs: int | None = None,
     velocity_error: Numbers | None = None,
     sampled_tube: Numbers | None = None,
-    strongest: bool = False,
+    strongest: bool | None = None,
     direct: bool = False,
     budget: int = 10_000,
     out: Path | None = None,
@@ -93,7 +93,8 @@ def certify(
     the text that `verify` checks, None if nothing was proved. Errors in rad, links then motors; rate in 1/s; disturbance in N m, on
     the motors, link_disturbance on the links, with up_to_limits multiplied until a limit may act; a funnel may have so many slabs of
     time; velocity errors in rad/s, links then motors. A sampled_tube says how far links reach in a tube around the run of the sampled loop, in rad;
-    strongest looks for the widest by itself. `step` is the highest step of the ladder of docs/proofs.md that is proved. Certificates go into `out`, the files of funnel and tube beside it.
+    strongest = True looks for the widest by itself, however long that takes, False does not; None does where nothing else is asked for and it takes a minute or
+    two at most. `step` is the highest step of the ladder of docs/proofs.md that is proved. Certificates go into `out`, the files of funnel and tube beside it.
     """
     scenario = _scenario(scenario)
     return _watched(

@@ -130,7 +130,7 @@ impl Proof {
 
     /// What to say where a tube of the sampled loop was asked for and none was found.
     fn no_sampled_tube(&self, scenario: &Scenario) -> Option<(Problem, bool)> {
-        let open = self.sampled_tube.as_ref().filter(|_| !self.strongest)?.as_ref().err()?;
+        let open = self.sampled_tube.as_ref().filter(|_| !self.climbed)?.as_ref().err()?;
         let message = format!("{}: nothing is decided of the sampled loop: {}", scenario.name, open.at);
         let help = "the rates hold in continuous time; --strongest looks for the widest that there is; `flexure margins` measures what the sampled loop bears";
         Some((scenario.places.problem("controller", "undecided", message, help), false))

@@ -16,7 +16,9 @@ use crate::prove::engine::witness::RateWitness;
 use crate::prove::paper::paper_rate;
 use crate::prove::proposition::proposition;
 use crate::prove::robust::{NoFunnel, Robust, robust, up_to_limits};
-use crate::prove::sampled_data::{NoTube, SampledTube, sampled_tube, strongest_tube, suitable_when_sampled};
+use crate::prove::sampled_data::{
+    NoTube, SampledTube, is_quick, sampled_tube, strongest_tube, suitable_when_sampled,
+};
 use crate::prove::sampling::{Sampled, sample};
 use crate::prove::verified::certify;
 use crate::prove::within::{Open, Within, spread, within};
@@ -54,9 +56,21 @@ pub struct Question {
     /// How far link positions reach in a tube of the sampled loop in rad, one number a link, if one is asked for.
     pub sampled_tube: Option<Vec<f64>>,
     /// Whether the widest tube of the sampled loop is looked for where none is named: what is proved then is the strongest that can be.
-    pub strongest: bool,
+    pub climb: Climb,
     /// Whether the direct engine shall prove the rate once more, and how hard it may try.
     pub direct: Option<Direct>,
+}
+
+/// Whether the widest tube of the sampled loop is looked for unasked.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Climb {
+    /// It is not.
+    #[default]
+    Stay,
+    /// Where nothing else is asked for, and it takes a minute or two of two cores at most.
+    IfQuick,
+    /// However long it takes.
+    Always,
 }
 
 /// How hard the direct engine may try.
@@ -85,6 +99,21 @@ impl Question {
     /// Whether it asks for what only a funnel can say, whatever the robot.
     fn is_of_funnels(&self) -> bool {
         self.link_disturbance.is_some() || self.up_to_limits
+    }
+
+    /// Whether a statement, a region or a rate is named.
+    fn names_something(&self) -> bool {
+        let plain = Self { climb: self.climb, ..Self::default() };
+        *self != plain
+    }
+
+    /// Whether the widest tube of the sampled loop of `scenario` is looked for.
+    pub fn climbs(&self, scenario: &Scenario) -> bool {
+        match self.climb {
+            Climb::Stay => false,
+            Climb::IfQuick => !self.names_something() && is_quick(scenario),
+            Climb::Always => self.sampled_tube.is_none(),
+        }
     }
 
     /// Whether a funnel is looked for: under disturbances, and of robots with tolerances.
@@ -124,8 +153,8 @@ pub struct Proof {
     pub robust: Option<Result<Robust, NoFunnel>>,
     /// How fast motions of the sampled loop come closer near its run, if that was asked for; or why nothing was shown.
     pub sampled_tube: Option<Result<SampledTube, NoTube>>,
-    /// Whether the strongest statement that can be proved was asked for: that there is no tube then leaves the others.
-    pub strongest: bool,
+    /// Whether a tube of the sampled loop was looked for unasked: that there is none then leaves the others.
+    pub climbed: bool,
     /// Bounds along the reference inside the tube of W, if a disturbance of the motors or tolerances were named and there is no funnel.
     pub along: Option<Along>,
     /// Options that were not given, and numbers that no source vouches for.
@@ -184,7 +213,8 @@ pub fn prove_watched(
     progress: Progress<'_>,
 ) -> Result<Proof, Problems> {
     let broken_off = AtomicBool::new(false);
-    let share = if question.sampled_tube.is_some() || question.strongest { BEFORE_TUBE } else { 1.0 };
+    let climbs = question.climbs(scenario);
+    let share = if question.sampled_tube.is_some() || climbs { BEFORE_TUBE } else { 1.0 };
     let told = |fraction: f64| {
         let flow = progress(fraction);
         broken_off.fetch_or(flow.is_break(), Ordering::Relaxed);
@@ -258,13 +288,13 @@ pub fn prove_watched(
     let last = |fraction: f64| told(share + (1.0 - share) * fraction);
     let sampled_tube = match &question.sampled_tube {
         Some(error) if !is_broken_off() => sampled_tube(scenario, error, &last)?,
-        None if question.strongest && !is_broken_off() => strongest_tube(scenario, &last)?,
+        None if climbs && !is_broken_off() => strongest_tube(scenario, &last)?,
         _ => None,
     };
     Ok(Proof {
         confirmation,
         sampled_tube,
-        strongest: question.strongest,
+        climbed: climbs,
         start,
         within,
         needs_funnel,

@@ -299,7 +299,7 @@ impl ProofSummary {
             verdict: Standing::of(scenario, proof, sampled.as_ref()).words(),
             step: Step::of(scenario, proof).filter(|_| sampled.as_ref().is_none_or(|sampled| sampled.stable)),
             may_be_higher: proof.sampled_tube.is_none()
-                && !proof.strongest
+                && !proof.climbed
                 && suitable_when_sampled(scenario).is_ok(),
             left_out: scenario.beyond_ideal(),
             contraction_rate: certificate.and_then(|c| Some(c.contraction_rate.as_ref()?.approximate())),

@@ -86,7 +86,12 @@ impl Batch {
                 register.step(going);
             }
         };
-        self.registers.par_iter_mut().for_each(on);
+        // On one thread a pool only hands over, which takes as long as a hundred periods.
+        if self.registers.len() == 1 || rayon::current_num_threads() == 1 {
+            self.registers.iter_mut().for_each(on);
+        } else {
+            self.registers.par_iter_mut().for_each(on);
+        }
     }
 
     /// The loop of a scenario, by its place, to be read.

@@ -29,8 +29,8 @@ use crate::sampled;
 use crate::scenario::Scenario;
 
 pub(crate) use spoken_of::{reads_exactly, suitable_when_sampled};
-pub(crate) use widest::strongest_tube;
 pub use widest::widest_tube;
+pub(crate) use widest::{is_quick, strongest_tube};
 
 /// A tube around the run, in which motions come closer. Where readings are off, the run is the one on exact readings.
 #[derive(Clone, Debug, Serialize)]

@@ -7,7 +7,7 @@ use crate::files::number::{engineering, short};
 use crate::progress::Progress;
 use crate::prove::engine::sampled_data::tube::Sections;
 use crate::prove::sampled_data::{
-    Asked, NoTube, SampledTube, Way, followed, rate_to_look_for, suitable_when_sampled,
+    Asked, NoTube, SampledTube, Way, followed, late, rate_to_look_for, sensors, suitable_when_sampled,
 };
 use crate::scenario::Scenario;
 
@@ -61,6 +61,20 @@ pub fn widest_tube(
         }
     }
     Ok(farthest.map(|(width, none)| Err(none.farthest(tried, width))))
+}
+
+/// Control periods times the third power of how many numbers a section is of, up to which a tube is quick to find: 20 s of two joints at 1 kHz are half
+/// of it, one or two minutes of two cores are all of it.
+const QUICK: f64 = 2e7;
+
+/// Whether it is known within a minute or two what widths have a tube.
+pub(crate) fn is_quick(scenario: &Scenario) -> bool {
+    if suitable_when_sampled(scenario).is_err() {
+        return true;
+    }
+    let filtered = if sensors(scenario).filter.is_some() { 2 } else { 0 };
+    let numbers = scenario.robot.joint_count() * (4 + filtered + late(scenario).waiting);
+    scenario.periods() as f64 * (numbers as f64).powi(3) <= QUICK
 }
 
 /// The widest tube at any rate; for a loop that tubes do not speak of, that.

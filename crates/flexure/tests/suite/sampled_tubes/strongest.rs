@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use flexure::progress::unwatched;
-use flexure::prove::question::{Question, prove};
+use flexure::prove::question::{Climb, Question, prove};
 use flexure::prove::sampled_data::beside::Beside;
 use flexure::prove::sampled_data::{SampledTube, widest_tube};
 use flexure::prove::standing::Step;
@@ -53,7 +53,7 @@ fn the_widest_of_those_that_are_tried() {
 /// The strongest statement is of the sampled loop where there is one, and of the ideal loop where there is none, which is no failure.
 #[test]
 fn the_strongest_is_what_can_be_proved() {
-    let strongest = Question { strongest: true, ..Question::default() };
+    let strongest = Question { climb: Climb::Always, ..Question::default() };
     for (scenario, step, why) in [
         (scenario("two-link-tanh-smooth", &LOOP), Step::Sampled, None),
         (scenario("two-link-everything", &[]), Step::Ideal, Some("has an estimator")),
@@ -77,7 +77,7 @@ fn the_strongest_is_what_can_be_proved() {
 #[test]
 fn a_rate_that_is_refuted_leaves_the_tube() {
     let scenario = scenario("two-link-tanh-smooth", &["duration = 0.01"]);
-    let question = Question { strongest: true, rate: Some(100.0), ..Question::default() };
+    let question = Question { climb: Climb::Always, rate: Some(100.0), ..Question::default() };
     let proof = prove(&scenario, &question).unwrap_or_else(|problems| panic!("{problems}"));
     assert!(proof.complaint(&scenario).is_some_and(|(_, wrong)| wrong));
     assert_eq!(Step::of(&scenario, &proof), Some(Step::Sampled));
