@@ -375,7 +375,7 @@ def read_body(k, raw):
     return read(raw if slides else {"travel": None} | raw, {
         "parent": (range(k),), "kind": {"revolute", "prismatic"}, "axis": vector, "rotation": [vector] * 3, "translation": vector,
         "mass": not_negative, "com": vector, "inertia": [number] * 6, "travel": [number] * 2 if slides else type(None)})
-def read_file(data, format, others):  # what a file tells of a loop, and the keys that others(n) specifies for n joints
+def read_file(data, format, version, others):  # what a file tells of a loop, and the keys that others(n) specifies for n joints
     need(len(data) <= 1 << 30, "larger than 1 GiB", ValueError)
     def once(pairs):
         need(len(dict(pairs)) == len(pairs), "a key is there twice", ValueError)
@@ -391,7 +391,7 @@ def read_file(data, format, others):  # what a file tells of a loop, and the key
     numbers, from_zero, above = [number] * n, [not_negative] * n, [positive] * n
     gains = {"metric": above, "shaping": above, "damping": above, "kappa": type(None), "hardening": type(None)}
     file = read(raw, {
-        "format": str, "version": range(1, 2), "name": str, "made_by": str, "subject": ({"robot": digest, "scenario": digest},),
+        "format": str, "version": range(version, version + 1), "name": str, "made_by": str, "subject": ({"robot": digest, "scenario": digest},),
         "robot": {"name": str, "joints": int, "stiffness": above, "motor_inertia": above, "link_damping": from_zero, "motor_damping": from_zero,
                   "links": {"kind": str} | links[kind]},
         "controller": {"phi": str, "link": gains | {"hardening": (from_zero,)}, "motor": gains},

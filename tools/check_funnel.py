@@ -2,7 +2,7 @@
 """Checks files of funnels as docs/funnel.md states them, with Python and python-flint alone: check_funnel.py FILE... [--all] [--sample K]
 
 Checked of every slab are how it joins the one before, the ellipsoid around, `error` and `velocity_error`; and for K slabs spread evenly (20 unless told) or, with --all, for every one
-that errors stay and come back, `rate`, `velocity`, `deflection` and `torque`. The line of a file says which slabs these were.
+that errors stay and come back, `rate`, `velocity`, `deflection`, `torque` and `torque_rate`. The line of a file says which slabs these were.
 
 Exit code: 0 all proved, 1 a claim does not hold or is not proved here, 2 not a file of a funnel, or one of a loop that this program does not know; the worst of all files.
 
@@ -17,13 +17,13 @@ def read_funnel(data):
     def others(n):
         from_zero, some = [not_negative] * n, [(number,)] * n
         return {
-            "duration": positive, "limits": {"velocity": some, "deflection": some, "torque": some},
+            "duration": positive, "limits": {"velocity": some, "deflection": some, "torque": some, "torque_rate": some},
             "tolerances": {key: from_zero for key in ("stiffness", "motor_inertia", "link_damping", "motor_damping", "link_mass")},
             "torques": {"links": from_zero, "motors": from_zero},
             "claims": {"room": positive, "rate": number, "error": [number] * 2 * n, "velocity_error": [number] * 2 * n,
-                       "velocity": some, "deflection": some, "torque": some},
+                       "velocity": some, "deflection": some, "torque": some, "torque_rate": some},
             "slabs": [str, ...]}
-    file = read_file(data, "flexure-funnel", others)
+    file = read_file(data, "flexure-funnel", 2, others)
     need(file["claims"]["room"] >= 1, "room is less than 1", ValueError)
     known(not any(x.high > 0 for x in file["controller"]["link"]["hardening"] or []), "metrics that grow with the error")
     return file
@@ -260,7 +260,7 @@ def follow(loop, slab, scaled):  # the rate at which errors are shown to come ba
         begin, end, cuts = open.pop()
         flow, causes, seen = loop.motions(slab, (begin, end))
         growth = stays(loop, slab, square, (begin, end), flow, causes)
-        lacks = f"errors are not shown to stay at t = {float(begin):.6g} s" if growth is None else exceeds(loop, scaled, seen)
+        lacks = f"errors are not shown to stay at t = {float(begin):.6g} s" if growth is None else exceeds(loop, slab, scaled, (begin, end), flow, causes, seen)
         if lacks:
             need(cuts < HALVED, lacks)
             middle = (begin + end) / 2
@@ -269,18 +269,50 @@ def follow(loop, slab, scaled):  # the rate at which errors are shown to come ba
             slowest = growth if slowest is None or growth < slowest else slowest
     return slowest
 
-def exceeds(loop, scaled, seen):  # what is not shown to be as small as is claimed, if anything
-    for what, forms in seen.items():
+def exceeds(loop, slab, scaled, span, flow, causes, seen):  # what is not shown to be as small as is claimed, if anything
+    def largest_of(form):
+        part = Parts(form)
+        return part.c.abs_upper() + part.rate.abs_upper() + farthest(part.y, scaled) + length_of(part.mixed) + part.open
+    moves = Moves(loop, slab, scaled, span, flow, causes)
+    bounds = {what: (forms, largest_of) for what, forms in seen.items()} | {"torque_rate": (seen["torque"], moves.fastest)}
+    for what, (forms, bound) in bounds.items():
         for i, (form, claim) in enumerate(zip(forms, loop.file["claims"][what])):
-            part = Parts(form)
-            reach = max((length_of((arb_mat([part.y]) * shape).entries()) for shape in scaled), key=float)
-            most = (part.c.abs_upper() + part.rate.abs_upper() + reach + length_of(part.mixed) + part.open).abs_upper()
-            if claim is not None and not most <= claim:
-                return f"{what} of joint {i + 1} is up to {float(most):.10g}"
+            if claim is not None:
+                most = bound(form).abs_upper()
+                if not most <= claim:
+                    return f"{what} of joint {i + 1} is up to {float(most):.10g}"
+def farthest(row, scaled):  # the most that row . y is in the ellipsoids
+    return max((length_of((arb_mat([row]) * shape).entries()) for shape in scaled), key=float)
+
+class Moves:  # how fast the errors move in the ellipsoids, in the coordinates y
+    def __init__(self, loop, slab, scaled, span, flow, causes):
+        self.m, self.scaled, self.half, self.inverse = loop.m, scaled, exact((span[1] - span[0]) / 2), slab.around.inv()
+        self.straight, self.turning = self.inverse * stacked(flow.straight), self.inverse * stacked(flow.turning)
+        self.left, self.drives = list(flow.left), []
+        for cause in causes:
+            most = cause.size + length_of(farthest(slope, scaled) for slope in cause.slopes)
+            for each in cause.columns:
+                self.left = [left + open * most for left, open in zip(self.left, each.open)]
+            self.drives.append((most, [(self.inverse * each.c, self.inverse * each.rate) for each in cause.columns]))
+        def norm(matrix):
+            return largest(matrix.transpose() * matrix, 4).sqrt().abs_upper()
+        rows = [sum((abs(x).abs_upper() * left for x, left in zip(row, self.left)), ZERO) for row in self.inverse.tolist()]
+        self.speed = norm(self.straight) + norm(self.turning) + length_of(rows) + sum(
+            (most * length_of(length_of(c.entries()) + length_of(d.entries()) for c, d in pairs) for most, pairs in self.drives), ZERO)
+    def fastest(self, form):  # the most that a function changes by [1/s]
+        m, h, g = self.m, form.h.tolist(), form.g.entries()
+        turned, mixed = arb_mat([row[:m] for row in h[:m]]), [(h[i][m] + h[m][i]) / 2 for i in range(m)]
+        by_time = (g[m].abs_upper() + length_of(mixed) + h[m][m].abs_upper()) / self.half
+        bent = largest(turned.transpose() * turned, 4).sqrt().abs_upper() + length_of(mixed)
+        along = arb_mat([g[:m]])
+        moved = farthest((along * self.straight).entries(), self.scaled) + farthest((along * self.turning).entries(), self.scaled)
+        driven = sum((most * length_of(abs((along * c)[0, 0]) + abs((along * d)[0, 0]) for c, d in pairs) for most, pairs in self.drives), ZERO)
+        open = sum((abs(x).abs_upper() * left for x, left in zip((along * self.inverse).entries(), self.left)), ZERO)
+        return by_time + moved + driven + open + bent * self.speed
 
 def stays(loop, slab, square, span, flow, causes):  # the rate over a span of its times; none where it is not shown
     m = loop.m
-    inverse, left, drives = slab.around.inv(), flow.left, []
+    inverse, left, drives = slab.around.inv(), list(flow.left), []
     for cause, alpha, tau in zip(causes, slab.alpha, slab.tau):
         most, pairs = cause.size + length_of(length_of(slope) for slope in cause.slopes), []
         usable = (alpha > 0 or cause.size == 0) and (tau > 0 or not cause.slopes)

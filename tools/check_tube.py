@@ -81,7 +81,7 @@ def read_tube(data):
                                                                                  "jump": some, "travel": positive},)}},
             "asked": {"extents": above, "rate": positive}, "periods": int,
             "claims": {"rate": number, "error": [number] * 2 * n, "torque": [number] * n}, "kept": [int, ...], "sections": [str, ...]}
-    file = read_file(data, "flexure-sampled-tube", others)
+    file = read_file(data, "flexure-sampled-tube", 1, others)
     count, n, off, kept = file["periods"], file["robot"]["joints"], file["loop"]["off"], file["kept"]
     need(count >= 1 and len(file["sections"]) == count + 1 == len(kept), "periods, sections and kept do not fit", ValueError)
     need(len(off) in (0, 2 * n), "loop: off has another length", ValueError)

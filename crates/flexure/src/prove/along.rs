@@ -59,7 +59,7 @@ pub struct Peaks {
 pub struct Limit {
     /// Index of the joint, from 0.
     pub joint: usize,
-    /// Its key in robot files: `velocity_limit`, `deflection_limit` or `torque_limit`.
+    /// Its key in robot files: `velocity_limit`, `deflection_limit`, `torque_limit`, or of a funnel `torque_rate_limit`.
     pub key: &'static str,
     /// The limit from the robot file, in the unit of the quantity.
     pub limit: f64,

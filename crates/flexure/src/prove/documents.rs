@@ -43,7 +43,7 @@ pub struct Kind {
 pub const TUBE: Kind = Kind { name: "tube", format: "flexure-sampled-tube", version: 1 };
 
 /// Funnels: `docs/funnel.md`.
-pub const FUNNEL: Kind = Kind { name: "funnel", format: "flexure-funnel", version: 1 };
+pub const FUNNEL: Kind = Kind { name: "funnel", format: "flexure-funnel", version: 2 };
 
 /// What came of checking a file, with what it is of.
 #[derive(Clone, Debug)]

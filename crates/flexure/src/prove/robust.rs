@@ -22,6 +22,7 @@ use crate::prove::along::{
 };
 use crate::prove::engine::envelope::closed_loop::TrackingLoop;
 use crate::prove::engine::envelope::deviation::Spread;
+use crate::prove::engine::envelope::flow::Flow;
 use crate::prove::engine::envelope::followed::Given;
 use crate::prove::engine::envelope::funnel::{Funnel, FunnelRequest, Open, extents};
 use crate::prove::engine::envelope::slab::Slab;
@@ -55,6 +56,8 @@ pub struct Robust {
     pub deflection: Peaks,
     /// Motor torques |u_m| \[N m\].
     pub torque: Peaks,
+    /// How fast they change, |u̇_m| \[N m/s\].
+    pub torque_rate: Peaks,
     /// Verdicts on the limits in the robot's file, joint by joint: proved that they are not reached, or undecided.
     pub limits: Vec<Limit>,
     /// Slabs of time that the funnel has.
@@ -132,8 +135,9 @@ const LOOKED_FOR: f64 = 10.0;
 /// Parts of the run that errors are told of at most.
 const PARTS: usize = 240;
 
-/// Part of the work that the funnel takes, about.
+/// Part of the work that the funnel takes, about, and where bounds of speeds, deflections and torques end: those of how fast torques change take the rest.
 const SHARE: f64 = 0.7;
+const BOUNDED: f64 = 0.9;
 
 /// The bounds for `scenario` with what `spread` leaves open, by a funnel of at most so many `slabs`, or as many as are usual. None where
 /// `progress` breaks it off.
@@ -152,7 +156,7 @@ pub fn robust(
 
 /// The bounds under the largest torques under which no limit of the robot acts: torques of `spread` times a number, tolerances as they are.
 /// A limiter at exactly those limits then never acts: what is bounded is the motion of the loop with it, too. One with smaller limits of its
-/// own, or of the rate of torques, is not looked at.
+/// own is not looked at.
 /// None where `progress` breaks it off.
 ///
 /// # Errors
@@ -236,12 +240,11 @@ fn bounds(
         Ok(funnel) => funnel,
         Err(open) => return Some(Err(no_funnel(&open, &request))),
     };
-    let progress = |fraction: f64| progress(SHARE + (1.0 - SHARE) * fraction);
     let rate = funnel.rate();
     let given: Vec<_> = funnel.pieces.into_iter().map(Given::of).collect();
-    let course = course(system, &given, &all_limits(&scenario.robot), &progress)?;
+    let seen = Inside::of(scenario, system, spread, &given, progress)?;
     let about = About { spread, rate, room: ROOM };
-    Some(Ok(Robust::new(scenario, system.joints(), given, &about, &course)))
+    Some(Ok(Robust::new(scenario, system.joints(), given, &about, &seen)))
 }
 
 fn no_funnel(open: &Open, request: &FunnelRequest) -> NoFunnel {
@@ -289,6 +292,59 @@ fn course(
     Some(refined(slabs, limits, budget, &half, &goes_on))
 }
 
+/// What the robot may do in a funnel.
+struct Inside {
+    course: Course,
+    torque_rate: Peaks,
+}
+
+impl Inside {
+    /// None where `progress`, the funnel itself being done, breaks it off.
+    fn of(
+        scenario: &Scenario,
+        system: &dyn TrackingLoop,
+        spread: &Spread,
+        funnel: &[Given],
+        progress: Progress<'_>,
+    ) -> Option<Self> {
+        let between = |from: f64, to: f64| move |fraction: f64| progress(from + (to - from) * fraction);
+        let course = course(system, funnel, &all_limits(&scenario.robot), &between(SHARE, BOUNDED))?;
+        let torque_rate = torque_rates(system, spread, &course, &between(BOUNDED, 1.0))?;
+        Some(Self { course, torque_rate })
+    }
+}
+
+/// How fast motor torques change in the slabs of `course`.
+fn torque_rates(
+    system: &dyn TrackingLoop,
+    spread: &Spread,
+    course: &Course,
+    progress: Progress<'_>,
+) -> Option<Peaks> {
+    let (done, count, n) = (AtomicUsize::new(0), course.slabs.len(), system.joints());
+    let goes_on = || progress((done.load(Ordering::Relaxed) as f64 / count as f64).min(1.0)).is_continue();
+    let torque = |i: usize| 2 * n + i;
+    let fastest = |slab: &Slab| {
+        let flow = Flow::over(system, spread, &*slab.tube, slab.time, &goes_on)?;
+        done.fetch_add(1, Ordering::Relaxed);
+        Some((0..n).map(|i| slab.fastest(torque(i), &flow)).collect::<Vec<_>>())
+    };
+    let all: Vec<_> = course.slabs.par_iter().map(fastest).collect::<Option<_>>()?;
+    let peak = |value: &dyn Fn(usize) -> f64| {
+        (0..count).map(|k| (value(k), course.slabs[k].time.midpoint())).fold((0.0, 0.0), |best, next| {
+            // What is not a number is no bound.
+            if next.0 <= best.0 { best } else { next }
+        })
+    };
+    let bounds: Vec<_> = (0..n).map(|i| peak(&|k| all[k][i])).collect();
+    let nominal = |i: usize| peak(&|k| course.slabs[k].nominal_drifts[torque(i)].midpoint().abs()).0;
+    Some(Peaks {
+        bound: bounds.iter().map(|(bound, _)| *bound).collect(),
+        time: bounds.iter().map(|(_, time)| *time).collect(),
+        nominal: (0..n).map(nominal).collect(),
+    })
+}
+
 impl Binding {
     /// What `found` lacks, under so many times the torques.
     fn of(times: f64, found: &Result<Robust, NoFunnel>) -> Self {
@@ -327,18 +383,26 @@ struct About<'a> {
 }
 
 impl Robust {
-    fn new(scenario: &Scenario, n: usize, funnel: Vec<Given>, about: &About<'_>, course: &Course) -> Self {
+    fn new(scenario: &Scenario, n: usize, funnel: Vec<Given>, about: &About<'_>, seen: &Inside) -> Self {
+        let Inside { course, torque_rate } = seen;
         let extents = extents(funnel.iter().map(|slab| &slab.passage));
         let (error, velocity_error) = extents.split_at(2 * n);
-        let verdict = |k: usize, limit: f64| -> Verdict<f64, Exceeding> {
-            let (bound, time) = course.bound(k);
+        let kept = |(bound, time): (f64, f64), limit: f64, seen: f64| -> Verdict<f64, Exceeding> {
             let exact: Interval = scenario.robot.bounds(limit);
             if bound <= exact.lo() {
                 return Verdict::Proved(bound);
             }
-            let at = beyond(bound, time, limit, course.seen(k).0);
-            Verdict::Undecided(Undecided { at, spent: course.spent })
+            Verdict::Undecided(Undecided { at: beyond(bound, time, limit, seen), spent: course.spent })
         };
+        let verdict = |k: usize, limit: f64| kept(course.bound(k), limit, course.seen(k).0);
+        let rate_limit = |(joint, &limit): (usize, &f64)| {
+            let found = (torque_rate.bound[joint], torque_rate.time[joint]);
+            let verdict = || kept(found, limit, torque_rate.nominal[joint]);
+            limit.is_finite().then(|| Limit { joint, key: "torque_rate_limit", limit, verdict: verdict() })
+        };
+        let mut limits = limits(scenario, n, &verdict);
+        limits.extend(scenario.robot.limits.torque_rate.iter().enumerate().filter_map(rate_limit));
+        limits.sort_by_key(|limit| limit.joint);
         let [velocity, deflection, torque] = peaks(course, n);
         let largest = |torques: &[Interval]| torques.iter().map(|x| x.magnitude()).collect();
         Self {
@@ -353,7 +417,8 @@ impl Robust {
             velocity,
             deflection,
             torque,
-            limits: limits(scenario, n, &verdict),
+            torque_rate: torque_rate.clone(),
+            limits,
             slabs: funnel.len(),
             profile: Profile::of(&funnel, 2 * n),
             spread: about.spread.clone(),

@@ -9,7 +9,7 @@ use serde_json::json;
 use crate::files::Problems;
 use crate::files::number::short;
 use crate::progress::Progress;
-use crate::prove::along::{all_limits, enclosed, start_errors, suitable};
+use crate::prove::along::{enclosed, start_errors, suitable};
 use crate::prove::documents::{
     Checked, FUNNEL, bounds_hold, every, malformed, of_lower, rate_holds, refuted, triangle, unpacked,
 };
@@ -18,7 +18,7 @@ use crate::prove::engine::envelope::deviation::Spread;
 use crate::prove::engine::envelope::followed::{Given, Lacks, count};
 use crate::prove::engine::envelope::shape::{Passage, Shape};
 use crate::prove::robust::file::{Claims, Document, Own, about};
-use crate::prove::robust::{About, Robust, SHARE, course};
+use crate::prove::robust::{About, Inside, Robust, SHARE};
 use crate::prove::subject::Difference;
 use crate::prove::within::spread;
 use crate::scenario::Scenario;
@@ -173,10 +173,9 @@ impl Checking<'_> {
                 Err(lacks) => return Some(Err(refuted(&format!("slabs[{k}]"), lacks.words(&slabs[k])))),
             }
         }
-        let progress = |fraction: f64| progress(SHARE + (1.0 - SHARE) * fraction);
-        let course = course(system, &slabs, &all_limits(&scenario.robot), &progress)?;
+        let seen = Inside::of(scenario, system, self.spread, &slabs, progress)?;
         let about = About { spread: self.spread, rate, room: room.midpoint() };
-        let robust = Robust::new(scenario, system.joints(), slabs, &about, &course);
+        let robust = Robust::new(scenario, system.joints(), slabs, &about, &seen);
         Some(self.claims.hold(&robust).map(|()| robust))
     }
 }
@@ -207,6 +206,7 @@ impl Claims {
             ("velocity", self.velocity.iter().map(Option::as_ref).collect()),
             ("deflection", self.deflection.iter().map(Option::as_ref).collect()),
             ("torque", self.torque.iter().map(Option::as_ref).collect()),
+            ("torque_rate", self.torque_rate.iter().map(Option::as_ref).collect()),
         ]
     }
 
@@ -240,6 +240,7 @@ impl Claims {
             &found.velocity.bound,
             &found.deflection.bound,
             &found.torque.bound,
+            &found.torque_rate.bound,
         ];
         rate_holds(&self.rate, found.rate)?;
         self.bounds()

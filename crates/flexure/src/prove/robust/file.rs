@@ -58,6 +58,7 @@ pub(super) struct Claims {
     pub velocity: Vec<Option<String>>,
     pub deflection: Vec<Option<String>>,
     pub torque: Vec<Option<String>>,
+    pub torque_rate: Vec<Option<String>>,
 }
 
 impl Robust {
@@ -81,6 +82,7 @@ impl Robust {
             velocity: bounded(&self.velocity.bound),
             deflection: bounded(&self.deflection.bound),
             torque: bounded(&self.torque.bound),
+            torque_rate: bounded(&self.torque_rate.bound),
         };
         Ok(document.with_lines(self.funnel.iter().map(written)))
     }
@@ -103,6 +105,7 @@ pub(super) fn about(scenario: &Scenario, spread: &Spread) -> Result<Document, Pr
             "velocity": limited(&limits.velocity),
             "deflection": limited(&limits.deflection),
             "torque": limited(&limits.torque),
+            "torque_rate": limited(&limits.torque_rate),
         }),
         tolerances: Tolerances {
             stiffness: texts(&spread.stiffness),

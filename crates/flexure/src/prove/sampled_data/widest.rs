@@ -74,7 +74,7 @@ pub(crate) fn is_quick(scenario: &Scenario) -> bool {
     }
     let filtered = if sensors(scenario).filter.is_some() { 2 } else { 0 };
     let numbers = scenario.robot.joint_count() * (4 + filtered + late(scenario).waiting);
-    scenario.periods() as f64 * (numbers as f64).powi(3) <= QUICK
+    f64::from(scenario.periods()) * (numbers as f64).powi(3) <= QUICK
 }
 
 /// The widest tube at any rate; for a loop that tubes do not speak of, that.

@@ -10,6 +10,7 @@ use crate::units::{self, of_joints};
 pub fn funnel_lines(found: &Robust, kinds: &[JointKind]) -> Vec<String> {
     let [rad, speed, torque] =
         [units::ANGLE, units::SPEED, units::TORQUE].map(|unit| of_joints(unit, "", kinds));
+    let torque_rate = of_joints(units::TORQUE_RATE, "", kinds);
     let (links, motors) = found.error.split_at(found.error.len() / 2);
     let mut lines = vec![
         format!("funnel       in the ideal loop, all along the run from its start, {}:", under(found.times)),
@@ -28,6 +29,11 @@ pub fn funnel_lines(found: &Robust, kinds: &[JointKind]) -> Vec<String> {
             "funnel       |u_m| {}, {} {torque} on the reference with the numbers of the file",
             bounded(&found.torque.bound, &torque),
             list(&found.torque.nominal)
+        ),
+        format!(
+            "funnel       |du_m/dt| {}, {} {torque_rate} on the reference",
+            bounded(&found.torque_rate.bound, &torque_rate),
+            list(&found.torque_rate.nominal)
         ),
     ];
     lines.extend(of_limits(&found.limits, kinds));

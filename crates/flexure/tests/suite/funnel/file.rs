@@ -82,6 +82,7 @@ fn what_is_written_is_accepted() {
         // The same code on the same numbers.
         assert_eq!((again.rate, &again.error, &again.slabs), (funnel.rate, &funnel.error, &funnel.slabs));
         assert_eq!(again.torque.bound, funnel.torque.bound, "{}", case.scenario);
+        assert_eq!(again.torque_rate.bound, funnel.torque_rate.bound, "{}", case.scenario);
         let mut other = scenario.clone();
         other.duration *= 2.0;
         let Checked::Differs(differences) = checked(&text, &other) else { panic!("another run") };
@@ -112,6 +113,7 @@ fn nothing_that_says_more_is_accepted() {
         ("/claims/velocity/0", 0.99),
         ("/claims/deflection/1", 0.99),
         ("/claims/torque/1", 0.99),
+        ("/claims/torque_rate/0", 0.99),
         ("/claims/room", 1.02),
         ("/torques/links/0", 1.02),
         ("/torques/motors/1", 1.02),
@@ -169,10 +171,10 @@ fn what_is_no_funnel_is_told_so() {
     let cases = [
         (String::new(), "the file"),
         (text[..text.len() / 2].to_owned(), "the file"),
-        (text.replacen("\"version\": 1", "\"version\": 1, \"version\": 1", 1), "the file"),
+        (text.replacen("\"version\": 2", "\"version\": 2, \"version\": 2", 1), "the file"),
         (more.to_string(), "the file"),
         (with("/claims", json!([])), "the file"),
-        (with("/version", json!(2)), "format"),
+        (with("/version", json!(1)), "format"),
         (with("/format", json!("flexure-certificate")), "format"),
         (with("/slabs", json!([])), "slabs"),
         (with("/slabs/3", json!("###")), "slabs[3]"),

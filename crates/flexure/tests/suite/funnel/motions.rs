@@ -1,5 +1,7 @@
 //! Funnels against motions of robots within the tolerances, under torques that jump and torques that push outwards most.
 
+use std::sync::Arc;
+
 use flexure::core::linalg::Vector;
 use flexure::core::model::Motion;
 use flexure::core::robots::PlanarTwoLink;
@@ -8,6 +10,7 @@ use flexure::linalg::Dense;
 use flexure::progress::unwatched;
 use flexure::prove::engine::envelope::flow::Channel;
 use flexure::prove::engine::envelope::funnel::{Funnel, FunnelRequest, Piece};
+use flexure::prove::engine::envelope::slab::Slab;
 use flexure::robot::{Links, Tolerances};
 use flexure::scenario::{Scenario, load_scenario};
 
@@ -227,6 +230,59 @@ fn errors_move_as_the_flow_says() {
     for case in [&SOFT, &STIFF, &HEAVY] {
         let (_, fullest) = flows(case, 4000);
         assert!(fullest.iter().all(|&part| part > 0.5), "{fullest:?}");
+    }
+}
+
+/// How fast motor torques change, by differences along motions of robots that are off from ellipsoids of the funnel at random times, half of them where that is
+/// most: the largest part of what is said to be the most.
+fn fastest(case: &'static Case, samples: usize) -> f64 {
+    let Funnelled { tolerances, scenario, arm, pieces, .. } = funnelled(case);
+    let system = enclosed(&scenario);
+    let (mut r, mut fullest) = (Random(7), 0.0_f64);
+    for sample in 0..samples {
+        let piece = &pieces[r.below(pieces.len())];
+        let slab =
+            Slab::of(&system, Arc::new(piece.passage.clone()), piece.time, &|| true).expect("it goes on");
+        let t = piece.time.lo() + 0.5 * (1.0 + r.next()) * (piece.time.hi() - piece.time.lo());
+        let lower = &piece.passage.0[r.below(piece.passage.0.len())].lower;
+        let mut off = drawn(&tolerances, case.on_motors, &mut r);
+        off[5] = Vector(case.on_links.map(|most| most.copysign(r.next())));
+        let (links, _) = other_links(&scenario, case.masses, &mut r);
+        for i in 0..2 {
+            let rate = |z: &[f64; 8], off: &Numbers| {
+                let x = motion(&arm, t, z);
+                let rates = rates_with(&links, &arm, off, t, &x);
+                let h = 1e-6;
+                let [before, after] = [-h, h].map(|h| arm.command(t + h, &along(&x, &rates, h)).u_m[i]);
+                (after - before) / (2.0 * h)
+            };
+            let mut z = surface(lower, &mut r);
+            if sample % 2 == 0 {
+                // Along X g, g how the rate depends on the errors: about linear in so small ones.
+                let unit = |j: usize, x: f64| std::array::from_fn(|k| if k == j { x } else { 0.0 });
+                let step = |j: usize| (0..8).map(|k| lower[(j, k)].abs()).sum::<f64>();
+                let g: [f64; 8] = std::array::from_fn(|j| {
+                    (rate(&unit(j, step(j)), &off) - rate(&unit(j, -step(j)), &off)) / (2.0 * step(j))
+                });
+                let pulled: [f64; 8] = std::array::from_fn(|k| (k..8).map(|j| lower[(j, k)] * g[j]).sum());
+                let length = pulled.iter().map(|x| x * x).sum::<f64>().sqrt().copysign(rate(&[0.0; 8], &off));
+                z = std::array::from_fn(|j| (0..=j).map(|k| lower[(j, k)] * pulled[k] / length).sum());
+            }
+            let bound = slab.fastest(4 + i, &piece.flow);
+            // Rounding of torques over a step of 2 µs.
+            let part = (rate(&z.map(|z| z * (1.0 - 1e-9)), &off).abs() - 1e-6) / bound;
+            assert!(part <= 1.0, "joint {i} at {t} s: {part} of {bound}");
+            fullest = fullest.max(part);
+        }
+    }
+    println!("{fullest:.3} of how fast torques are said to change at most");
+    fullest
+}
+
+#[test]
+fn torques_change_as_fast_as_is_said() {
+    for (case, most) in [(&SOFT, 0.9), (&STIFF, 0.9), (&HEAVY, 0.8)] {
+        assert!(fastest(case, 400) > most);
     }
 }
 

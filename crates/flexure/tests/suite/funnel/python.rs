@@ -83,7 +83,7 @@ fn the_second_checker_is_not_fooled() {
         let Some((code, said)) = checked(&text, sample) else { return };
         assert!(code == 1 && said.contains(what), "{what}: {said}");
     }
-    let twice = text.replacen("\"version\": 1", "\"version\": 1, \"version\": 1", 1);
+    let twice = text.replacen("\"version\": 2", "\"version\": 2, \"version\": 2", 1);
     let unknown = [
         (String::new(), "not a file of a funnel"),
         (text[..text.len() / 2].to_owned(), "not a file of a funnel"),

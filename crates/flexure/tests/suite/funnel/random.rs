@@ -231,8 +231,8 @@ impl Run<'_> {
     }
 }
 
-/// Largest parts of the bounds of link errors, link speeds, deflections and motor torques that runs reach under torques `times` as large.
-fn fullest(case: &Case, bounds: &Robust, runs: usize, times: f64, noise: &mut Random) -> [f64; 4] {
+/// Largest parts of the bounds of link errors, link speeds, deflections, motor torques and how fast these change that runs reach under torques `times` as large.
+fn fullest(case: &Case, bounds: &Robust, runs: usize, times: f64, noise: &mut Random) -> [f64; 5] {
     let Case { chain, scenario, text, parts, torques } = case;
     let n = chain.masses.len();
     let held = scenario.open().unwrap();
@@ -241,11 +241,12 @@ fn fullest(case: &Case, bounds: &Robust, runs: usize, times: f64, noise: &mut Ra
     let fastest = scenario.vcbc().unwrap().motor.metric.iter().zip(&chain.motor_inertia);
     let fastest = fastest.map(|(metric, inertia)| (metric / inertia).sqrt()).fold(100.0, f64::max);
     let h = 0.3 / fastest;
-    let mut most = [0.0_f64; 4];
+    let mut most = [0.0_f64; 5];
     for _ in 0..runs {
         let arm = loaded(&chain.off(parts, noise), text).unwrap().robot.arm().unwrap();
         let mut run = Run { arm, held: &*held, torques: [vec![0.0; n], vec![0.0; n]] };
         let (mut x, mut u_m, mut reference) = (begin.clone(), vec![0.0; n], vec![[0.0; 5]; n]);
+        held.torque(0.0, &x, &mut u_m).unwrap();
         for step in (0..).take_while(|&step| h * f64::from(step + 1) <= scenario.duration) {
             if step % 20 == 0 {
                 for (now, most) in run.torques.iter_mut().zip(torques) {
@@ -256,6 +257,7 @@ fn fullest(case: &Case, bounds: &Robust, runs: usize, times: f64, noise: &mut Ra
             x = run.step(h * f64::from(step), &x, h);
             let t = h * f64::from(step + 1);
             held.reference(t, &mut reference).unwrap();
+            let before = u_m.clone();
             held.torque(t, &x, &mut u_m).unwrap();
             for i in 0..n {
                 let seen = [
@@ -263,6 +265,8 @@ fn fullest(case: &Case, bounds: &Robust, runs: usize, times: f64, noise: &mut Ra
                     x[2 * n + i] / bounds.velocity.bound[i],
                     (x[n + i] - x[i]) / bounds.deflection.bound[i],
                     u_m[i] / bounds.torque.bound[i],
+                    // The mean over a step is the rate somewhere in it.
+                    (u_m[i] - before[i]) / h / bounds.torque_rate.bound[i],
                 ];
                 most.iter_mut().zip(seen).for_each(|(most, seen)| *most = most.max(seen.abs()));
             }
@@ -278,7 +282,7 @@ struct Found {
     /// Those that leave it under torques four times as large.
     leave: usize,
     /// The largest parts of their bounds that were reached.
-    fullest: Vec<[f64; 4]>,
+    fullest: Vec<[f64; 5]>,
 }
 
 fn examine(numbers: std::ops::Range<u64>, runs: usize) -> Found {
@@ -302,12 +306,13 @@ fn examine(numbers: std::ops::Range<u64>, runs: usize) -> Found {
     };
     println!(
         "{} of {count} robots have a funnel, {leave} leave it under four times the torques; of their bounds is reached (median, most): \
-         link errors {:.3?}, speeds {:.3?}, deflections {:.3?}, torques {:.3?}",
+         link errors {:.3?}, speeds {:.3?}, deflections {:.3?}, torques {:.3?}, their rates {:.3?}",
         fullest.len(),
         of(0),
         of(1),
         of(2),
-        of(3)
+        of(3),
+        of(4)
     );
     Found { with: fullest.len(), leave, fullest }
 }

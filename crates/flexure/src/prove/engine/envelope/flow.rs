@@ -79,6 +79,32 @@ impl Flow {
         })
     }
 
+    /// What `gradient`ᵀ ż may be at the times `time` in s and all errors of `tube`, both of the slab and tube that it is of, or within them.
+    pub fn along(&self, gradient: &[Interval], tube: &dyn Tube, time: Interval) -> Interval {
+        let dot = |column: &[Interval]| {
+            gradient.iter().zip(column).fold(Interval::ZERO, |sum, (&g, &x)| sum + g * x)
+        };
+        let matrix = self.at(time);
+        let pulled: Vec<_> = (0..matrix.columns())
+            .map(|j| dot(&(0..self.rest.len()).map(|i| matrix[(i, j)]).collect::<Vec<_>>()))
+            .collect();
+        let late = time - Interval::point(self.time);
+        let driven = self.channels.iter().fold(Interval::ZERO, |sum, channel| {
+            let slope = |row: &Vec<f64>| {
+                let row: Vec<_> = row.iter().map(|&c| Interval::point(c)).collect();
+                Interval::point(tube.reach(&row).magnitude())
+            };
+            let size = Interval::point(channel.size) + norm(channel.slopes.iter().map(slope));
+            sum + norm(channel.at(late).iter().map(|column| dot(column))) * size
+        });
+        let open = gradient
+            .iter()
+            .zip(&self.rest)
+            .fold(driven, |sum, (g, &rest)| sum + Interval::point(g.magnitude()) * Interval::point(rest));
+        let most = open.hi();
+        tube.reach(&pulled) + Interval::new(-most, most).unwrap_or(Interval::ENTIRE)
+    }
+
     /// Over `tube` and the times `time` in s, with what `spread` leaves open; none if it no longer `goes_on`.
     pub fn over(
         system: &dyn TrackingLoop,

@@ -3,7 +3,7 @@
 //! On the reference, what is asked for at a time t of the slab follows from value and slope at its middle and from the second
 //! derivative over all of it. From there to any error x̃ in the tube it changes by g·x̃, with derivatives g taken somewhere
 //! on the way. Positions and velocities of the motors, which the law's derivatives depend on, are enclosed in the same manner
-//! first.
+//! first. How fast the torque changes in the tube is by its derivatives by time and by the errors, which move as a [`Flow`] says.
 
 use std::sync::Arc;
 
@@ -11,6 +11,7 @@ use flexure_core::scalar::{Interval, Jet, Scalar};
 
 use crate::linalg::Dense;
 use crate::prove::engine::envelope::closed_loop::{Answer, Place, Slope, TrackingLoop};
+use crate::prove::engine::envelope::flow::Flow;
 use crate::prove::engine::envelope::tube::{ErrorTube, Tube};
 
 /// Quantities per joint that are bounded, in the order of a slab's ranges: those of all joints, one quantity after the other.
@@ -41,6 +42,10 @@ pub struct Slab {
     pub gradients: Dense<Interval>,
     /// Ranges of the quantities over slab and tube.
     pub ranges: Vec<Interval>,
+    /// Their derivatives by time [1/s] on the reference at the middle.
+    pub nominal_drifts: Vec<Interval>,
+    /// The same at errors that stay as they are, over slab and tube; anything where they may jump.
+    pub drifts: Vec<Interval>,
 }
 
 impl Slab {
@@ -70,7 +75,7 @@ impl Slab {
         time: Interval,
         goes_on: &dyn Fn() -> bool,
     ) -> Option<Self> {
-        let way = Way::new(system, &*tube, &system.reference(time), time, goes_on);
+        let way = Way { drifts: true, ..Way::new(system, &*tube, &system.reference(time), time, goes_on) };
         let (q_m, v_m) = way.motors(system)?;
         let all = way.along(&|seed| {
             let (q_m, v_m) = (q_m.at(seed), v_m.at(seed));
@@ -78,7 +83,23 @@ impl Slab {
             [v_l, differences(&q_m, &q_l), seed.answer(system, &q_m, &v_m).u_m].concat()
         })?;
         let nominal = all.middle.iter().map(|x| x.coefficient(0)).collect();
-        Some(Self { time, nominal, gradients: all.gradients, ranges: all.ranges, tube })
+        let nominal_drifts = all.middle.iter().map(|x| x.coefficient(1)).collect();
+        let drift = |x: &Slope| if way.smooth == Smooth::Not { Interval::ENTIRE } else { x.coefficient(1) };
+        let drifts = all.drifting.iter().map(drift).collect();
+        Some(Self {
+            time,
+            nominal,
+            gradients: all.gradients,
+            ranges: all.ranges,
+            nominal_drifts,
+            drifts,
+            tube,
+        })
+    }
+
+    /// Upper bound of how fast quantity `k` changes [1/s] where errors move as `flow`, over this slab and tube, says.
+    pub fn fastest(&self, k: usize, flow: &Flow) -> f64 {
+        (self.drifts[k] + flow.along(self.gradients.row(k), &*self.tube, self.time)).magnitude()
     }
 
     /// Upper bound of the absolute value of quantity `k`.
@@ -143,6 +164,8 @@ pub(super) enum View {
     Tube(usize),
     /// Over slab and tube, by nothing.
     Everywhere,
+    /// Over slab and tube, by time.
+    Drift,
 }
 
 /// Reference and errors in a view.
@@ -185,6 +208,8 @@ pub(super) struct Way<'a> {
     /// The box around the tube.
     errors: Vec<Interval>,
     tube: &'a dyn Tube,
+    /// Whether derivatives by time are looked at over the tube, too.
+    drifts: bool,
     /// Whether somebody waits for it.
     goes_on: &'a dyn Fn() -> bool,
 }
@@ -199,6 +224,8 @@ pub(super) struct Views {
     pub(super) beside: Vec<Interval>,
     /// Their derivatives by the errors: a row per number.
     pub(super) gradients: Dense<Interval>,
+    /// Over slab and tube, by time; none where nobody looks at that.
+    drifting: Vec<Slope>,
 }
 
 impl<'a> Way<'a> {
@@ -223,6 +250,7 @@ impl<'a> Way<'a> {
             offset,
             errors: tube.errors(),
             tube,
+            drifts: false,
             goes_on,
         }
     }
@@ -261,7 +289,7 @@ impl<'a> Way<'a> {
         };
         let error = |(i, &error): (usize, &Interval)| match view {
             View::Tube(direction) if i == direction => Slope::variable(error),
-            View::Tube(_) | View::Everywhere => Slope::value(error),
+            View::Tube(_) | View::Everywhere | View::Drift => Slope::value(error),
             _ => Slope::ZERO,
         };
         Seeded {
@@ -292,7 +320,10 @@ impl<'a> Way<'a> {
             bent.intersection(ranges[k] - at - rate * self.offset).unwrap_or(bent)
         };
         let beside = gradients.rows().enumerate().map(beside).collect();
-        Some(Views { middle, track, ranges, beside, gradients })
+        let drifting = if self.drifts { f(&self.seeded(View::Drift)) } else { Vec::new() };
+        let known = |(x, &range): (Slope, &Interval)| Jet::new([range, x.coefficient(1), x.coefficient(2)]);
+        let drifting = drifting.into_iter().zip(&ranges).map(known).collect();
+        Some(Views { middle, track, ranges, beside, gradients, drifting })
     }
 
     /// How far a number on the reference over the slab is from its line in time.
@@ -347,6 +378,7 @@ impl Views {
             View::Middle => self.middle.clone(),
             View::Track => self.track.clone(),
             View::Everywhere => self.ranges.iter().map(|&x| Slope::value(x)).collect(),
+            View::Drift => self.drifting.clone(),
             View::Tube(i) => {
                 let slopes = self.gradients.rows().map(|gradient| gradient[i]);
                 self.ranges
