@@ -56,6 +56,13 @@ pub fn symmetric_eigenvalues<S: Float, const N: usize>(a: &Matrix<S, N, N>) -> V
     Vector::from_fn(|i| a[(i, i)])
 }
 
+/// √(a² + b²) of numbers that are not both 0, whose squares may be too large or too small.
+#[inline]
+fn length<S: Float>(a: S, b: S) -> S {
+    let size = a.abs().max(b.abs());
+    size * ((a / size).square() + (b / size).square()).sqrt()
+}
+
 /// Turns the plane of the axes `p` and `q` so that entry (p, q) vanishes.
 #[inline]
 fn rotate<S: Float, const N: usize>(a: &mut Matrix<S, N, N>, p: usize, q: usize) {
@@ -64,7 +71,7 @@ fn rotate<S: Float, const N: usize>(a: &mut Matrix<S, N, N>, p: usize, q: usize)
         return;
     }
     // tan of the smaller of the two angles.
-    let root = (difference.square() + twice.square()).sqrt();
+    let root = length(difference, twice);
     let tan = twice / difference.select(difference + root, difference - root);
     let cos = (S::ONE + tan.square()).sqrt().recip();
     let sin = tan * cos;

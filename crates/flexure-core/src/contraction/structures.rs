@@ -1,5 +1,6 @@
 //! Which structures a shaping function and a metric keep, and why not.
 
+use core::cmp::Ordering;
 use core::error::Error;
 use core::fmt;
 
@@ -78,7 +79,7 @@ pub fn symmetric_positive<S: Float, const N: usize>(
     }
     let pivots = *a.ldl().pivots();
     // Also refuses what is not a number.
-    match (0..N).find(|i| pivots[*i].partial_cmp(&S::ZERO) != Some(core::cmp::Ordering::Greater)) {
+    match (0..N).find(|i| pivots[*i].partial_cmp(&S::ZERO) != Some(Ordering::Greater)) {
         Some(index) => Err(Refusal::NotPositiveDefinite { matrix, index, pivot: pivots[index] }),
         None => Ok(()),
     }
@@ -100,11 +101,11 @@ pub fn keeps_variational_structure<C: Scalar, S: Float + Over<C>, const N: usize
 ) -> Result<(), Refusal<S>> {
     let slope = shaping.slope(error);
     let difference = largest(&(slope - slope.transpose()));
-    if difference > tolerance {
+    if !is_within(difference, tolerance) {
         return Err(Refusal::SlopeNotSymmetric { difference });
     }
     let difference = largest(&(*metric * slope - slope * *metric));
-    if difference > tolerance * largest(metric) {
+    if !is_within(difference, tolerance * largest(metric)) {
         return Err(Refusal::DoesNotCommute { difference });
     }
     Ok(())
@@ -122,7 +123,7 @@ pub fn keeps_hamiltonian_structure<C: Scalar, S: Float + Over<C>, const N: usize
     tolerance: S,
 ) -> Result<(), Refusal<S>> {
     let difference = largest(&(shaping.slope(error) - *metric));
-    if difference > tolerance {
+    if !is_within(difference, tolerance) {
         return Err(Refusal::SlopeIsNotTheMetric { difference });
     }
     Ok(())
@@ -131,6 +132,11 @@ pub fn keeps_hamiltonian_structure<C: Scalar, S: Float + Over<C>, const N: usize
 /// The largest size of an entry.
 fn largest<S: Piecewise, const R: usize, const K: usize>(a: &Matrix<S, R, K>) -> S {
     a.0.as_flattened().iter().fold(S::ZERO, |most, x| most.max(x.abs()))
+}
+
+/// Whether `difference` is at most `tolerance`: not where one is not a number.
+fn is_within<S: Float>(difference: S, tolerance: S) -> bool {
+    matches!(difference.partial_cmp(&tolerance), Some(Ordering::Less | Ordering::Equal))
 }
 
 /// (z_2 − z_1)ᵀ [χ(z_2) − χ(z_1)] − β (z_2 − z_1)ᵀ Π (z_2 − z_1) of the map χ = Π φ: not negative for all pairs if and only if the inequality of

@@ -18,6 +18,7 @@ use crate::files::{Problem, Problems};
 use crate::progress::{PartProgress, Parts, Progress};
 use crate::sampled::probe;
 use crate::scenario::Scenario;
+use crate::scenario::document::against_hold;
 use crate::simulate::{Criteria, measure_together};
 use crate::tune::{has_random_points, tune_each};
 
@@ -98,6 +99,9 @@ pub fn compare(
 fn score(task: &Task, entrant: Entrant, search: Search, progress: Progress<'_>) -> Result<Score, Problems> {
     let mut scenario = task.scenario.clone();
     scenario.controller = entrant.controller(&scenario.robot)?;
+    if let Some((message, help)) = against_hold(&scenario.controller, scenario.hold) {
+        return Err(scenario.places.problem("hold", "contradiction", message, help).into());
+    }
     let is_random = task.is_random();
     // Where neither the run nor the search draws a number, every seed gives the same.
     let seeds = if is_random || has_random_points(search.budget) { search.seeds.max(1) } else { 1 };

@@ -20,6 +20,8 @@ pub(crate) struct Loop<'a> {
     pub plant: &'a Plant,
     pub estimator: Option<&'a Estimator>,
     pub guard: Option<&'a GuardSettings>,
+    /// Whether the law, a guard or an observer goes by velocities.
+    pub reads_velocities: bool,
 }
 
 /// Notes an error for all that contradicts itself, and warnings for what is hardly meant.
@@ -104,7 +106,7 @@ impl<'a> Loop<'a> {
             (_, estimator) => estimator.as_ref(),
         };
         let Some(source) = source else {
-            for (found, Encoder { .. }) in self.all() {
+            for (found, Encoder { .. }) in self.all().filter(|_| self.reads_velocities) {
                 found.field.warn(
                     "exact-velocity",
                     "encoder, but velocities stay exact",

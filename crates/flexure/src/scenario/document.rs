@@ -16,7 +16,7 @@ use crate::files::table::Table;
 use crate::files::{Assumption, Outside, Places, Problem, Problems, provenance, quantity};
 use crate::imperfections::document::Context;
 use crate::imperfections::{Imperfection, Kind as _, Saturation, document as imperfection};
-use crate::laws::{Controller, VcbcGains, document as controller};
+use crate::laws::{self, Controller, VcbcGains, document as controller};
 use crate::references::document::Timed;
 use crate::references::{Reference, SmoothStart, TimeScaling, document as reference};
 use crate::robot::{self, Robot, links};
@@ -268,21 +268,14 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base, of_robot: &[Change])
     let timed = reference_field.as_ref().and_then(|field| reference::read(field, &joints, base, end));
     let controller = root.required("controller", "a table with the kind");
     let controller = controller.and_then(|field| controller::read(&field, &joints, robot.as_ref()));
-    if let (Some(controller), Some(Hold::Continuous), Some(field)) = (&controller, hold, root.get("hold"))
-        && !controller.memory().is_empty()
+    if let (Some(controller), Some(hold), Some(field)) = (&controller, hold, root.get("hold"))
+        && let Some((message, help)) = against_hold(controller, hold)
     {
-        let kind = controller.kind();
-        let message =
-            format!("hold is \"continuous\", but the memory of '{kind}' moves from instant to instant");
-        field.error(
-            "contradiction",
-            message,
-            "remove hold: the torque is then held between control instants",
-        );
+        field.error("contradiction", message, help);
     }
     let plant = plant::read(root, &joints, robot.as_ref());
     let context = Context { joints: &joints, robot: robot.as_ref(), times, base };
-    let real = real_loop(root, &context, hold, plant.as_ref());
+    let real = real_loop(root, &context, hold, plant.as_ref(), controller.as_ref());
     let imperfections = real.as_ref().map(|real| &*real.imperfections);
     let rest = Rest::of(robot.as_ref(), plant.as_ref(), imperfections, timed.as_ref());
     let initial = initial::read(root, &joints, places, rest.as_ref(), &mut assumed);
@@ -401,11 +394,22 @@ struct RealLoop {
 }
 
 /// Reads imperfections and what the controller does about them.
+/// Why `controller` cannot act with this hold, if it cannot, and what to do.
+pub(crate) fn against_hold(controller: &Controller, hold: Hold) -> Option<(String, &'static str)> {
+    (hold == Hold::Continuous && !controller.memory().is_empty()).then(|| {
+        let kind = controller.kind();
+        let message =
+            format!("hold is \"continuous\", but the memory of '{kind}' moves from instant to instant");
+        (message, "remove hold: the torque is then held between control instants")
+    })
+}
+
 fn real_loop(
     root: &Table<'_>,
     context: &Context<'_>,
     hold: Option<Hold>,
     plant: Option<&Plant>,
+    controller: Option<&Controller>,
 ) -> Option<RealLoop> {
     let found = imperfection::read(root, context);
     let estimator = estimator::read(root, context.joints);
@@ -415,7 +419,10 @@ fn real_loop(
     let most = i64::MAX.unsigned_abs();
     let seed = root.optional("seed", |field| field.whole("seed of all random numbers", 0, most));
     let (found, estimator, disturbance_observer, guard) = (found?, estimator?, disturbance_observer?, guard?);
+    let law_reads = controller.and_then(|controller| laws::about(controller.kind())).map(|about| about.reads);
+    let reads_velocities = law_reads.is_none_or(|reads| reads.v_l || reads.v_m);
     agreement::agree(&agreement::Loop {
+        reads_velocities: reads_velocities || disturbance_observer.is_some() || guard.is_some(),
         root,
         context,
         found: &found,

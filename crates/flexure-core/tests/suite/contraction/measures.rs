@@ -115,6 +115,17 @@ fn rotations_find_eigenvalues() {
     }
     let diagonal = Vector([3.0, -1.0, 3.0]);
     assert_eq!(symmetric_eigenvalues(&Matrix::diagonal(&diagonal)), diagonal);
+    // Of whatever size entries are: squares of these are infinite, or 0.
+    for size in [1e155, 1e-200] {
+        let a = Matrix([[-size, 3.0 * size], [3.0 * size, -2.0 * size]]);
+        let expected = 0.5 * size * (37.0_f64.sqrt() - 3.0);
+        assert!((measure_2(&a) / expected - 1.0).abs() < 1e-14, "{size}");
+    }
+    for size in [1e20_f32, 1e-24] {
+        let a = Matrix([[-size, 3.0 * size], [3.0 * size, -2.0 * size]]);
+        assert!((measure_2(&a) / (1.541_381_3 * size) - 1.0).abs() < 1e-5, "{size}");
+    }
+    assert!(measure_2(&Matrix([[f64::NAN, 1.0], [1.0, -2.0]])).is_nan());
 }
 
 /// J̄ is the rate of z = Θ δx: along a solution that the error loop itself makes, with a weight that depends on the error, on the motion of the

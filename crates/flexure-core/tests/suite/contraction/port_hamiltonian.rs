@@ -272,6 +272,11 @@ fn structures_are_refused_with_the_reason() {
     assert!(matches!(refused, Err(Refusal::SlopeNotSymmetric { difference }) if difference > 0.1));
     let refused = keeps_hamiltonian_structure(&tanh, &diagonal, &error, 1e-12);
     assert!(matches!(refused, Err(Refusal::SlopeIsNotTheMetric { difference }) if difference > 1.0));
+    // What is not a number keeps nothing.
+    let (linear, nothing) = (Linear { gain }, Matrix::diagonal(&Vector([f64::NAN, 30.0])));
+    assert!(keeps_variational_structure(&linear, &nothing, &error, 1e-12).is_err());
+    assert!(keeps_hamiltonian_structure(&linear, &nothing, &error, 1e-12).is_err());
+    assert!(keeps_hamiltonian_structure(&tanh, &diagonal, &error, f64::NAN).is_err());
     // Where the slope commutes, Υ is symmetric; where it does not, it is not.
     let skew = |shaping: &Tanh<f64, 2>, metric: &Matrix<f64, 2, 2>| {
         let inverse = Matrix([[1.0, 0.0], [0.0, 1.0]].map(|e| metric.ldl().solve(&Vector(e)).0));

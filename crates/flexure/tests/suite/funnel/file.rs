@@ -1,12 +1,14 @@
 //! Files of funnels: what is written is accepted for its loop alone, and nothing that says more.
 
+use std::path::Path;
+
 use flexure::files::{Change, Reading};
 use flexure::progress::unwatched;
 use flexure::prove::documents::Checked;
 use flexure::prove::question::Question;
 use flexure::prove::robust::Robust;
 use flexure::prove::robust::check::check;
-use flexure::scenario::{Scenario, load_scenario_with};
+use flexure::scenario::{Scenario, load_scenario_with, scenario_from_text};
 use flexure::verify::Rejected;
 use serde_json::{Value, json};
 
@@ -93,6 +95,35 @@ fn what_is_written_is_accepted() {
         assert_eq!(differences[0].place, "tolerances.stiffness[0]");
     }
 }
+
+/// A limit of how fast torques change is one like the others: kept where the bound is below it, named where it is above, and of another robot's file where it differs.
+#[test]
+fn rates_of_torques_have_limits() {
+    let mut scenario = SOFT.scenario();
+    let bound = SOFT.funnel(&scenario).torque_rate.bound;
+    scenario.robot.limits.torque_rate = vec![1.001 * bound[0], 0.999 * bound[1]];
+    let funnel = SOFT.funnel(&scenario);
+    let of_rates: Vec<_> = funnel.limits.iter().filter(|limit| limit.key == "torque_rate_limit").collect();
+    assert_eq!(of_rates.iter().map(|limit| limit.joint).collect::<Vec<_>>(), [0, 1]);
+    assert!(of_rates[0].verdict.proved() == Some(&bound[0]) && of_rates[1].verdict.proved().is_none());
+    assert!(!funnel.keeps_limits());
+    let text = funnel.file(&scenario).expect("a law that funnels speak of");
+    let Checked::Differs(differences) = checked(&text, &SOFT.scenario()) else { panic!("other limits") };
+    assert_eq!(differences[0].place, "limits.torque_rate[0]");
+    // Where the fourth derivative of the reference jumps, so do torques.
+    let mut jumps = scenario_from_text("jumps.toml", JUMPS, Path::new("."))
+        .unwrap_or_else(|problems| panic!("{problems}"));
+    jumps.controller = SOFT.scenario().controller;
+    let found = Case { torques: [1e-3, 1e-3], ..SOFT }.funnel(&jumps);
+    assert!(found.torque_rate.bound.iter().all(|bound| bound.is_infinite()), "{:?}", found.torque_rate);
+    let Checked::Holds(_) = checked(&found.file(&jumps).expect("a law"), &jumps) else {
+        panic!("no bound is no claim")
+    };
+}
+
+const JUMPS: &str = "robot = 'two-link-plausible'\nduration = 0.6\ncontrol_period = 0.002\ninitial = 'at rest'\n\
+                     [reference]\nkind = 'septic'\nfrom = [0.0, 0.0]\nto = [0.05, 0.05]\nstart = 0.2\nduration = 1.0\n\
+                     [controller]\nkind = 'vcbc'\n";
 
 /// Claims by 1 % to the side that claims more, larger torques, and each kind of number of a slab by 1 %.
 #[test]
