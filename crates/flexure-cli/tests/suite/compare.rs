@@ -50,6 +50,20 @@ fn a_comparison_leaves_a_table_a_page_and_figures() {
     assert_eq!(place.read("out/compare.csv"), place.read("other/compare.csv"), "to the last digit");
 }
 
+/// What `run` refuses of a law takes no part, and it is said why: a memory moves from instant to instant.
+#[test]
+fn laws_with_memory_have_instants() {
+    let place = Place::new();
+    place.write("short.toml", short());
+    let compare = |laws: &str| {
+        let with = ["--controllers", laws, "--budget", "1", "--set", "hold=continuous"];
+        place.run(&[&["compare", "short.toml"], &with[..]].concat())
+    };
+    let said = compare("vcbc,pid").done().stdout;
+    assert!(said.contains("pid could not run on short: ") && said.contains("the memory of 'pid'"), "{said}");
+    compare("adaptive-vcbc,pid").refused(&["contradiction", "moves from instant to instant"]);
+}
+
 #[test]
 fn bad_questions_are_refused() {
     let place = Place::new();

@@ -44,6 +44,13 @@ pub fn leaderboard_table(board: &Leaderboard, width: usize) -> String {
             let _ = write!(text, "\n  {}: {}", score.law, why.map_or("", String::as_str));
         }
     }
+    for task in board.tasks.iter().filter(|task| task.scores.iter().any(|score| score.failure.is_none())) {
+        for score in &task.scores {
+            if let Some(why) = &score.failure {
+                let _ = write!(text, "\n{} could not run on {}: {why}", score.law, task.task);
+            }
+        }
+    }
     text
 }
 

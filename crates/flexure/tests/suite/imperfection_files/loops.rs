@@ -210,6 +210,16 @@ fn doubts_are_said() {
             scenario.warnings.iter().find(said).unwrap_or_else(|| panic!("{more}: {:?}", scenario.warnings));
         assert!(found.is_warning() && found.line_column().is_some_and(|(line, _)| line > 17), "{found}");
     }
+    // Nobody wants velocities of a law that reads none.
+    let encoder = with("[[imperfection]]\nkind = \"encoder\"\nresolution = 1e-3");
+    let at = encoder.find("[controller]").expect("a law");
+    let rest = encoder.find("[[imperfection]]").expect("an encoder");
+    for (kind, doubts) in [("link-position-feedback", 0), ("pd", 1)] {
+        let text = format!("{}[controller]\nkind = \"{kind}\"\n{}", &encoder[..at], &encoder[rest..]);
+        let scenario = good(&text);
+        let said = |problem: &&Problem| problem.to_string().contains("velocities stay exact");
+        assert_eq!(scenario.warnings.iter().filter(said).count(), doubts, "{kind}");
+    }
 }
 
 /// Cuts and stray tokens in everything that is new: accepted or refused at a place, never a panic.
