@@ -79,6 +79,9 @@ class Cause:  # sum of n_k w_k with |w| <= size + |slopes y|, n_k being columns
     def __init__(self, columns, size, slopes=()):
         self.columns, self.size, self.slopes = columns, arb(size).abs_upper(), [slope for slope in slopes if length_of(slope) > 0]
 
+def norm(matrix):  # from above
+    return largest(matrix.transpose() * matrix, 4).sqrt().abs_upper()
+
 class Parts:  # of a Form: value, slope by tau, slopes by y and their slopes by tau; and what all that leaves open
     def __init__(self, form):
         m = form.on.ball
@@ -86,8 +89,8 @@ class Parts:  # of a Form: value, slope by tau, slopes by y and their slopes by 
         turned, mixed = [row[:m] for row in h[:m]], [(h[i][m] + h[m][i]) / 2 for i in range(m)]
         self.c, self.rate, self.y = form.c, form.g[0, m], form.g.entries()[:m]
         self.mixed = [middle(x) for x in mixed]
-        turned = arb_mat(turned)
-        self.bent = HALF * (largest(turned.transpose() * turned, 4).sqrt() + h[m][m].abs_upper())
+        self.turned, self.crossed, self.curved = norm(arb_mat(turned)), length_of(mixed), h[m][m].abs_upper()  # of the second derivatives
+        self.bent = HALF * (self.turned + self.curved)
         self.open = (self.bent + length_of(x - y for x, y in zip(mixed, self.mixed))).abs_upper()  # beside c + rate tau + (y + tau mixed) . y
     def turns(self):  # the most that it is beside c + rate tau
         return (length_of(self.y) + length_of(self.mixed) + self.open).abs_upper()
@@ -188,7 +191,7 @@ class Loop:
         inverse, besides = root.inv(), [[part.c - middle(part.c) + UNIT * (part.rate.rad() + part.turns()) for part in row] for row in masses]
         def size(matrix):  # of E for L E L'
             scaled = inverse * matrix * inverse.transpose()
-            return largest(scaled * scaled.transpose(), 4).sqrt().abs_upper()
+            return norm(scaled)
         model = size(arb_mat(besides))
         flow.accelerate(number, rising, own)
         through = [Parts(sum((f[i] * root[i, k] for i in range(k, n)), zero)) for k in range(n)]  # L' f
@@ -273,7 +276,7 @@ def exceeds(loop, slab, scaled, span, flow, causes, seen):  # what is not shown 
     def largest_of(form):
         part = Parts(form)
         return part.c.abs_upper() + part.rate.abs_upper() + farthest(part.y, scaled) + length_of(part.mixed) + part.open
-    moves = Moves(loop, slab, scaled, span, flow, causes)
+    moves = Moves(slab, scaled, span, flow, causes)
     bounds = {what: (forms, largest_of) for what, forms in seen.items()} | {"torque_rate": (seen["torque"], moves.fastest)}
     for what, (forms, bound) in bounds.items():
         for i, (form, claim) in enumerate(zip(forms, loop.file["claims"][what])):
@@ -285,8 +288,8 @@ def farthest(row, scaled):  # the most that row . y is in the ellipsoids
     return max((length_of((arb_mat([row]) * shape).entries()) for shape in scaled), key=float)
 
 class Moves:  # how fast the errors move in the ellipsoids, in the coordinates y
-    def __init__(self, loop, slab, scaled, span, flow, causes):
-        self.m, self.scaled, self.half, self.inverse = loop.m, scaled, exact((span[1] - span[0]) / 2), slab.around.inv()
+    def __init__(self, slab, scaled, span, flow, causes):
+        self.scaled, self.half, self.inverse = scaled, exact((span[1] - span[0]) / 2), slab.around.inv()
         self.straight, self.turning = self.inverse * stacked(flow.straight), self.inverse * stacked(flow.turning)
         self.left, self.drives = list(flow.left), []
         for cause in causes:
@@ -294,21 +297,16 @@ class Moves:  # how fast the errors move in the ellipsoids, in the coordinates y
             for each in cause.columns:
                 self.left = [left + open * most for left, open in zip(self.left, each.open)]
             self.drives.append((most, [(self.inverse * each.c, self.inverse * each.rate) for each in cause.columns]))
-        def norm(matrix):
-            return largest(matrix.transpose() * matrix, 4).sqrt().abs_upper()
         rows = [sum((abs(x).abs_upper() * left for x, left in zip(row, self.left)), ZERO) for row in self.inverse.tolist()]
         self.speed = norm(self.straight) + norm(self.turning) + length_of(rows) + sum(
             (most * length_of(length_of(c.entries()) + length_of(d.entries()) for c, d in pairs) for most, pairs in self.drives), ZERO)
     def fastest(self, form):  # the most that a function changes by [1/s]
-        m, h, g = self.m, form.h.tolist(), form.g.entries()
-        turned, mixed = arb_mat([row[:m] for row in h[:m]]), [(h[i][m] + h[m][i]) / 2 for i in range(m)]
-        by_time = (g[m].abs_upper() + length_of(mixed) + h[m][m].abs_upper()) / self.half
-        bent = largest(turned.transpose() * turned, 4).sqrt().abs_upper() + length_of(mixed)
-        along = arb_mat([g[:m]])
-        moved = farthest((along * self.straight).entries(), self.scaled) + farthest((along * self.turning).entries(), self.scaled)
+        part = Parts(form)
+        by_time, along = (part.rate.abs_upper() + part.crossed + part.curved) / self.half, arb_mat([part.y])
+        moved = sum(farthest((along * matrix).entries(), self.scaled) for matrix in (self.straight, self.turning))
         driven = sum((most * length_of(abs((along * c)[0, 0]) + abs((along * d)[0, 0]) for c, d in pairs) for most, pairs in self.drives), ZERO)
         open = sum((abs(x).abs_upper() * left for x, left in zip((along * self.inverse).entries(), self.left)), ZERO)
-        return by_time + moved + driven + open + bent * self.speed
+        return by_time + moved + driven + open + (part.turned + part.crossed) * self.speed
 
 def stays(loop, slab, square, span, flow, causes):  # the rate over a span of its times; none where it is not shown
     m = loop.m

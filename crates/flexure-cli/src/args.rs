@@ -189,7 +189,7 @@ pub struct Traced {
     /// Write a page with the robot in motion, too: one file for any browser, which needs no network.
     #[arg(long)]
     pub view: bool,
-    /// File of a tube of this loop, as `certify --strongest` writes it: columns `tube`, how far out the run is, and `certificate`, whether what the file claims can hold;
+    /// File of a tube of this loop, as `certify` writes it: columns `tube`, how far out the run is, and `certificate`, whether what the file claims can hold;
     /// exit code 1 where the run is not inside at every control instant. The file is taken at its word: `verify` follows it.
     #[arg(long, value_name = "FILE")]
     pub tube: Option<PathBuf>,

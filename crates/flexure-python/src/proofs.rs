@@ -95,7 +95,7 @@ pub fn certify<'py>(
         direct,
     };
     let question = question.fitting(&loaded).map_err(|problem| refused(py, &problem))?;
-    if let Some(out) = out.as_ref().filter(|_| question.sampled_tube.is_some() || question.climbs(&loaded)) {
+    if let Some(out) = out.as_ref().filter(|_| question.looks_for_tube(&loaded)) {
         TUBE.spare(&TUBE.beside(out)).map_err(|problem| refused(py, &problem))?;
     }
     if let Some(out) = out.as_ref().filter(|_| question.looks_for_funnel(&loaded)) {

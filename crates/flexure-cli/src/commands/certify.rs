@@ -46,7 +46,7 @@ pub fn certify(options: &Certify, reading: Reading<'_>, json: bool) -> Result<()
     // Said before minutes of proof, not after.
     spare(&path, "certificate", |text| text.contains("flexure-certificate"), &[])?;
     let (tube_path, funnel_path) = (TUBE.beside(&path), FUNNEL.beside(&path));
-    let looks = question.sampled_tube.is_some() || question.climbs(&scenario);
+    let looks = question.looks_for_tube(&scenario);
     if looks {
         TUBE.spare(&tube_path)?;
     }

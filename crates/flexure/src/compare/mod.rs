@@ -18,7 +18,7 @@ use crate::files::{Problem, Problems};
 use crate::progress::{PartProgress, Parts, Progress};
 use crate::sampled::probe;
 use crate::scenario::Scenario;
-use crate::scenario::document::against_hold;
+use crate::scenario::agreement::against_hold;
 use crate::simulate::{Criteria, measure_together};
 use crate::tune::{has_random_points, tune_each};
 

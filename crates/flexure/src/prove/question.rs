@@ -116,6 +116,11 @@ impl Question {
         }
     }
 
+    /// Whether a tube of the sampled loop of `scenario` is looked for, named or not.
+    pub fn looks_for_tube(&self, scenario: &Scenario) -> bool {
+        self.sampled_tube.is_some() || self.climbs(scenario)
+    }
+
     /// Whether a funnel is looked for: under disturbances, and of robots with tolerances.
     pub fn looks_for_funnel(&self, scenario: &Scenario) -> bool {
         let feels = self.disturbance.is_some() || self.is_of_funnels();
@@ -214,7 +219,7 @@ pub fn prove_watched(
 ) -> Result<Proof, Problems> {
     let broken_off = AtomicBool::new(false);
     let climbs = question.climbs(scenario);
-    let share = if question.sampled_tube.is_some() || climbs { BEFORE_TUBE } else { 1.0 };
+    let share = if question.looks_for_tube(scenario) { BEFORE_TUBE } else { 1.0 };
     let told = |fraction: f64| {
         let flow = progress(fraction);
         broken_off.fetch_or(flow.is_break(), Ordering::Relaxed);

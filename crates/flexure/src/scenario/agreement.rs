@@ -7,9 +7,23 @@ use crate::imperfections::{
     Dropout, Encoder, Kind, Noise, Outage, Overlap, Sampling, Saturation, Side, Spring, TorqueRate,
     VelocityFilter,
 };
+use crate::laws::Controller;
 use crate::scenario::document::Hold;
 use crate::scenario::guard::GuardSettings;
 use crate::scenario::plant::Plant;
+
+/// What to do where hold is "continuous" and must not be.
+const HELD: &str = "remove hold: the torque is then held between control instants";
+
+/// Why `controller` cannot act with this hold, if it cannot, and what to do.
+pub(crate) fn against_hold(controller: &Controller, hold: Hold) -> Option<(String, &'static str)> {
+    (hold == Hold::Continuous && !controller.memory().is_empty()).then(|| {
+        let kind = controller.kind();
+        let message =
+            format!("hold is \"continuous\", but the memory of '{kind}' moves from instant to instant");
+        (message, HELD)
+    })
+}
 
 /// The parts of a scenario that a real loop is made of.
 pub(crate) struct Loop<'a> {
@@ -84,11 +98,7 @@ impl<'a> Loop<'a> {
                 "{what}, but hold is \"continuous\" in line {}: the law runs at every instant",
                 hold.line()
             );
-            field.error(
-                "contradiction",
-                message,
-                "remove hold: the torque is then held between control instants",
-            );
+            field.error("contradiction", message, HELD);
         }
     }
 

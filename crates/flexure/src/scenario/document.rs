@@ -269,7 +269,7 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base, of_robot: &[Change])
     let controller = root.required("controller", "a table with the kind");
     let controller = controller.and_then(|field| controller::read(&field, &joints, robot.as_ref()));
     if let (Some(controller), Some(hold), Some(field)) = (&controller, hold, root.get("hold"))
-        && let Some((message, help)) = against_hold(controller, hold)
+        && let Some((message, help)) = agreement::against_hold(controller, hold)
     {
         field.error("contradiction", message, help);
     }
@@ -394,16 +394,6 @@ struct RealLoop {
 }
 
 /// Reads imperfections and what the controller does about them.
-/// Why `controller` cannot act with this hold, if it cannot, and what to do.
-pub(crate) fn against_hold(controller: &Controller, hold: Hold) -> Option<(String, &'static str)> {
-    (hold == Hold::Continuous && !controller.memory().is_empty()).then(|| {
-        let kind = controller.kind();
-        let message =
-            format!("hold is \"continuous\", but the memory of '{kind}' moves from instant to instant");
-        (message, "remove hold: the torque is then held between control instants")
-    })
-}
-
 fn real_loop(
     root: &Table<'_>,
     context: &Context<'_>,

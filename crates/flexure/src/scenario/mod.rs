@@ -13,7 +13,7 @@
 //! ```
 
 mod accept;
-mod agreement;
+pub(crate) mod agreement;
 mod any;
 pub(crate) mod document;
 mod draft;

@@ -18,7 +18,8 @@ use crate::prove::engine::envelope::deviation::Spread;
 use crate::prove::engine::envelope::followed::{Given, Lacks, count};
 use crate::prove::engine::envelope::shape::{Passage, Shape};
 use crate::prove::robust::file::{Claims, Document, Own, about};
-use crate::prove::robust::{About, Inside, Robust, SHARE};
+use crate::prove::robust::inside::Inside;
+use crate::prove::robust::{About, Robust, SHARE};
 use crate::prove::subject::Difference;
 use crate::prove::within::spread;
 use crate::scenario::Scenario;
@@ -173,7 +174,8 @@ impl Checking<'_> {
                 Err(lacks) => return Some(Err(refuted(&format!("slabs[{k}]"), lacks.words(&slabs[k])))),
             }
         }
-        let seen = Inside::of(scenario, system, self.spread, &slabs, progress)?;
+        let rest = |fraction: f64| progress(SHARE + (1.0 - SHARE) * fraction);
+        let seen = Inside::of(scenario, system, self.spread, &slabs, &rest)?;
         let about = About { spread: self.spread, rate, room: room.midpoint() };
         let robust = Robust::new(scenario, system.joints(), slabs, &about, &seen);
         Some(self.claims.hold(&robust).map(|()| robust))

@@ -84,8 +84,7 @@ impl Slab {
         })?;
         let nominal = all.middle.iter().map(|x| x.coefficient(0)).collect();
         let nominal_drifts = all.middle.iter().map(|x| x.coefficient(1)).collect();
-        let drift = |x: &Slope| if way.smooth == Smooth::Not { Interval::ENTIRE } else { x.coefficient(1) };
-        let drifts = all.drifting.iter().map(drift).collect();
+        let drifts = (0..all.ranges.len()).map(|k| way.drift(&all, k)).collect();
         Some(Self {
             time,
             nominal,
@@ -166,6 +165,8 @@ pub(super) enum View {
     Everywhere,
     /// Over slab and tube, by time.
     Drift,
+    /// Over slab and tube, by time and this error together.
+    DriftAnd(usize),
 }
 
 /// Reference and errors in a view.
@@ -224,8 +225,18 @@ pub(super) struct Views {
     pub(super) beside: Vec<Interval>,
     /// Their derivatives by the errors: a row per number.
     pub(super) gradients: Dense<Interval>,
-    /// Over slab and tube, by time; none where nobody looks at that.
-    drifting: Vec<Slope>,
+    /// How they drift; none where nobody looks at that.
+    drifting: Option<Drifting>,
+}
+
+/// Numbers over slab and tube as series.
+struct Drifting {
+    /// By time.
+    by_time: Vec<Slope>,
+    /// By each error.
+    by_error: Vec<Vec<Slope>>,
+    /// By time and each error together.
+    by_both: Vec<Vec<Slope>>,
 }
 
 impl<'a> Way<'a> {
@@ -288,8 +299,8 @@ impl<'a> Way<'a> {
             ]),
         };
         let error = |(i, &error): (usize, &Interval)| match view {
-            View::Tube(direction) if i == direction => Slope::variable(error),
-            View::Tube(_) | View::Everywhere | View::Drift => Slope::value(error),
+            View::Tube(direction) | View::DriftAnd(direction) if i == direction => Slope::variable(error),
+            View::Tube(_) | View::Everywhere | View::Drift | View::DriftAnd(_) => Slope::value(error),
             _ => Slope::ZERO,
         };
         Seeded {
@@ -320,10 +331,46 @@ impl<'a> Way<'a> {
             bent.intersection(ranges[k] - at - rate * self.offset).unwrap_or(bent)
         };
         let beside = gradients.rows().enumerate().map(beside).collect();
-        let drifting = if self.drifts { f(&self.seeded(View::Drift)) } else { Vec::new() };
-        let known = |(x, &range): (Slope, &Interval)| Jet::new([range, x.coefficient(1), x.coefficient(2)]);
-        let drifting = drifting.into_iter().zip(&ranges).map(known).collect();
+        let drifting = if self.drifts { Some(self.drifting(f, passes, &ranges)?) } else { None };
         Some(Views { middle, track, ranges, beside, gradients, drifting })
+    }
+
+    /// The numbers that `f` makes, of these `ranges`, as series by time and by the errors; `passes` are what it makes by each error.
+    fn drifting(
+        &self,
+        f: &dyn Fn(&Seeded) -> Vec<Slope>,
+        passes: Vec<Vec<Slope>>,
+        ranges: &[Interval],
+    ) -> Option<Drifting> {
+        let known = |all: Vec<Slope>| -> Vec<Slope> {
+            let known =
+                |(x, &range): (Slope, &Interval)| Jet::new([range, x.coefficient(1), x.coefficient(2)]);
+            all.into_iter().zip(ranges).map(known).collect()
+        };
+        let both = |i| (self.goes_on)().then(|| known(f(&self.seeded(View::DriftAnd(i)))));
+        Some(Drifting {
+            by_time: known(f(&self.seeded(View::Drift))),
+            by_both: (0..passes.len()).map(both).collect::<Option<_>>()?,
+            by_error: passes.into_iter().map(known).collect(),
+        })
+    }
+
+    /// The derivative by time of number `k` of `views` at errors that stay as they are, over slab and tube: what it is on the reference, and how that changes
+    /// with the errors. That is the mixed derivative: half the second one in two directions together, less half of that in each.
+    fn drift(&self, views: &Views, k: usize) -> Interval {
+        let Some(Drifting { by_time, by_error, by_both }) = &views.drifting else { return Interval::ENTIRE };
+        if self.smooth == Smooth::Not {
+            return Interval::ENTIRE;
+        }
+        let half = |all: &[Slope]| all[k].coefficient(2);
+        let mixed: Vec<_> = by_both
+            .iter()
+            .zip(by_error)
+            .map(|(both, error)| half(both) - half(by_time) - half(error))
+            .collect();
+        let mean = views.track[k].coefficient(1) + self.tube.reach(&mixed);
+        // Both enclose it.
+        mean.intersection(by_time[k].coefficient(1)).unwrap_or(mean)
     }
 
     /// How far a number on the reference over the slab is from its line in time.
@@ -378,7 +425,9 @@ impl Views {
             View::Middle => self.middle.clone(),
             View::Track => self.track.clone(),
             View::Everywhere => self.ranges.iter().map(|&x| Slope::value(x)).collect(),
-            View::Drift => self.drifting.clone(),
+            View::Drift => self.drifting.as_ref().map_or_else(Vec::new, |all| all.by_time.clone()),
+            View::DriftAnd(i) => self.drifting.as_ref().map_or_else(Vec::new, |all| all.by_both[i].clone()),
+            View::Tube(i) if let Some(all) = &self.drifting => all.by_error[i].clone(),
             View::Tube(i) => {
                 let slopes = self.gradients.rows().map(|gradient| gradient[i]);
                 self.ranges
