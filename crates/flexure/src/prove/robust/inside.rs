@@ -14,11 +14,16 @@ use crate::prove::engine::envelope::flow::Flow;
 use crate::prove::engine::envelope::followed::Given;
 use crate::prove::engine::envelope::slab::Slab;
 use crate::prove::engine::envelope::tube::Tube;
-use crate::prove::engine::envelope::{Course, refined};
+use crate::prove::engine::envelope::{Bounded, Course, largest, refined};
 use crate::scenario::Scenario;
 
 /// Slabs of the funnel that are cut, to see what the robot may do: a part of all, and some.
 const CUT: [usize; 2] = [8, 32];
+
+/// How many slabs are looked at of a funnel of `count`.
+fn cuts(count: usize) -> usize {
+    count + 2 * (count / CUT[0] + CUT[1])
+}
 
 /// Part of the work that ranges take, about; how fast torques change takes the rest.
 const RANGES: f64 = 0.7;
@@ -31,7 +36,7 @@ fn course(
     progress: Progress<'_>,
 ) -> Option<Course> {
     let (done, count) = (AtomicUsize::new(0), funnel.len());
-    let budget = count + 2 * (count / CUT[0] + CUT[1]);
+    let budget = cuts(count);
     let goes_on = || progress((done.load(Ordering::Relaxed) as f64 / budget as f64).min(1.0)).is_continue();
     let looked = |tube: Arc<dyn Tube>, time: Interval| {
         let slab = Slab::of(system, tube, time, &goes_on);
@@ -42,7 +47,8 @@ fn course(
     let slabs = funnel.par_iter().map(slab).collect::<Option<_>>()?;
     // All of its errors, for a part of its times.
     let half = |slab: &Slab, time: Interval| looked(slab.tube.clone(), time);
-    Some(refined(slabs, limits, budget, &half, &goes_on))
+    let (slabs, spent) = refined(slabs, limits, budget, &half, &goes_on);
+    Some(Course { slabs, spent })
 }
 
 /// What the robot may do in a funnel.
@@ -64,38 +70,86 @@ impl Inside {
     ) -> Option<Self> {
         let between = |from: f64, to: f64| move |fraction: f64| progress(from + (to - from) * fraction);
         let course = course(system, funnel, &all_limits(&scenario.robot), &between(0.0, RANGES))?;
-        let torque_rate = torque_rates(system, spread, &course, &between(RANGES, 1.0))?;
+        let limits: Vec<_> =
+            scenario.robot.limits.torque_rate.iter().map(|&limit| scenario.robot.bounds(limit)).collect();
+        let torque_rate = torque_rates(system, spread, &course, &limits, &between(RANGES, 1.0))?;
         Some(Self { course, torque_rate })
     }
 }
 
-/// How fast motor torques change in the slabs of `course`.
+/// How fast torques change over a slab.
+struct Rated {
+    slab: Slab,
+    /// Of each motor [N m/s].
+    bounds: Vec<f64>,
+    /// About how fast they do.
+    seen: Vec<f64>,
+}
+
+impl Rated {
+    /// None if it no longer `goes_on`.
+    fn of(
+        slab: Slab,
+        system: &dyn TrackingLoop,
+        spread: &Spread,
+        goes_on: &dyn Fn() -> bool,
+    ) -> Option<Self> {
+        let n = system.joints();
+        let flow = Flow::over(system, spread, &*slab.tube, slab.time, goes_on)?;
+        let (mut bounds, mut seen) = (Vec::new(), Vec::new());
+        for torque in 2 * n..3 * n {
+            let [drift, moved] = slab.rates(torque, &flow);
+            bounds.push((drift + moved).magnitude());
+            seen.push(slab.nominal_drifts[torque].midpoint().abs() + moved.magnitude());
+        }
+        Some(Self { slab, bounds, seen })
+    }
+}
+
+impl Bounded for Rated {
+    fn time(&self) -> Interval {
+        self.slab.time
+    }
+
+    fn quantities(&self) -> usize {
+        self.bounds.len()
+    }
+
+    fn bound(&self, k: usize) -> f64 {
+        self.bounds[k]
+    }
+
+    fn seen(&self, k: usize) -> f64 {
+        self.seen[k]
+    }
+}
+
+/// How fast motor torques change in the slabs of `course`, against `limits`.
 fn torque_rates(
     system: &dyn TrackingLoop,
     spread: &Spread,
     course: &Course,
+    limits: &[Interval],
     progress: Progress<'_>,
 ) -> Option<Peaks> {
-    let (done, count, n) = (AtomicUsize::new(0), course.slabs.len(), system.joints());
-    let goes_on = || progress((done.load(Ordering::Relaxed) as f64 / count as f64).min(1.0)).is_continue();
-    let torque = |i: usize| 2 * n + i;
-    let fastest = |slab: &Slab| {
-        let flow = Flow::over(system, spread, &*slab.tube, slab.time, &goes_on)?;
+    let (count, n) = (course.slabs.len(), system.joints());
+    let (done, budget) = (AtomicUsize::new(0), cuts(count));
+    let goes_on = || progress((done.load(Ordering::Relaxed) as f64 / budget as f64).min(1.0)).is_continue();
+    let rated = |slab: Slab| {
+        let rated = Rated::of(slab, system, spread, &goes_on);
         done.fetch_add(1, Ordering::Relaxed);
-        Some((0..n).map(|i| slab.fastest(torque(i), &flow)).collect::<Vec<_>>())
+        rated
     };
-    let all: Vec<_> = course.slabs.par_iter().map(fastest).collect::<Option<_>>()?;
-    let peak = |value: &dyn Fn(usize) -> f64| {
-        (0..count).map(|k| (value(k), course.slabs[k].time.midpoint())).fold((0.0, 0.0), |best, next| {
-            // What is not a number is no bound.
-            if next.0 <= best.0 { best } else { next }
-        })
-    };
-    let bounds: Vec<_> = (0..n).map(|i| peak(&|k| all[k][i])).collect();
-    let nominal = |i: usize| peak(&|k| course.slabs[k].nominal_drifts[torque(i)].midpoint().abs()).0;
+    let all = course.slabs.par_iter().cloned().map(rated).collect::<Option<_>>()?;
+    let half =
+        |whole: &Rated, time: Interval| rated(Slab::of(system, whole.slab.tube.clone(), time, &goes_on)?);
+    let (all, _) = refined(all, limits, budget, &half, &goes_on);
+    let peak = |i: usize| largest(&all, |rated| rated.bound(i));
     Some(Peaks {
-        bound: bounds.iter().map(|(bound, _)| *bound).collect(),
-        time: bounds.iter().map(|(_, time)| *time).collect(),
-        nominal: (0..n).map(nominal).collect(),
+        bound: (0..n).map(|i| peak(i).0).collect(),
+        time: (0..n).map(|i| peak(i).1).collect(),
+        nominal: (0..n)
+            .map(|i| largest(&all, |rated| rated.slab.nominal_drifts[2 * n + i].midpoint().abs()).0)
+            .collect(),
     })
 }

@@ -268,7 +268,8 @@ fn fastest(case: &'static Case, samples: usize) -> f64 {
                 let length = pulled.iter().map(|x| x * x).sum::<f64>().sqrt().copysign(rate(&[0.0; 8], &off));
                 z = std::array::from_fn(|j| (0..=j).map(|k| lower[(j, k)] * pulled[k] / length).sum());
             }
-            let bound = slab.fastest(4 + i, &piece.flow);
+            let [drift, moved] = slab.rates(4 + i, &piece.flow);
+            let bound = (drift + moved).magnitude();
             // Rounding of torques over a step of 2 µs.
             let part = (rate(&z.map(|z| z * (1.0 - 1e-9)), &off).abs() - 1e-6) / bound;
             assert!(part <= 1.0, "joint {i} at {t} s: {part} of {bound}");

@@ -43,6 +43,18 @@ pub struct AlongRequest {
     pub budget: usize,
 }
 
+/// Something over a slab of time that has bounds, which may come down where the slab is cut.
+pub trait Bounded: Send {
+    /// Times in s.
+    fn time(&self) -> Interval;
+    /// Number of quantities.
+    fn quantities(&self) -> usize;
+    /// Upper bound of the absolute value of quantity `k`.
+    fn bound(&self, k: usize) -> f64;
+    /// About the largest absolute value of quantity `k`, which no cut brings the bound below.
+    fn seen(&self, k: usize) -> f64;
+}
+
 /// Slabs from 0 to the end, and how many were looked at.
 #[derive(Clone, Debug)]
 pub struct Course {
@@ -83,31 +95,32 @@ pub fn course(system: &dyn TrackingLoop, request: &AlongRequest, progress: Progr
     let begin: Vec<_> = (0..first).map(|i| (cut(i), cut(i + 1))).collect();
     let begun = begin.into_par_iter().map(slab).collect::<Option<_>>()?;
     let half = |_: &Slab, half: Interval| slab((half.lo(), half.hi()));
-    Some(refined(begun, &request.limits, request.budget, &half, &goes_on))
+    let (slabs, spent) = refined(begun, &request.limits, request.budget, &half, &goes_on);
+    Some(Course { slabs, spent })
 }
 
 /// Cuts those of `slabs` that decide a bound, until they are tight or so many were looked at, or while it `goes_on`; `half` makes a
-/// slab of a part of one's time.
-pub fn refined(
-    slabs: Vec<Slab>,
+/// slab of a part of one's time. Returns the slabs, and how many were looked at.
+pub fn refined<B: Bounded>(
+    slabs: Vec<B>,
     limits: &[Interval],
     budget: usize,
-    half: &(dyn Fn(&Slab, Interval) -> Option<Slab> + Sync),
+    half: &(dyn Fn(&B, Interval) -> Option<B> + Sync),
     goes_on: &dyn Fn() -> bool,
-) -> Course {
+) -> (Vec<B>, usize) {
     let mut spent = slabs.len();
-    let mut pieces: Vec<Piece> = slabs.into_iter().map(|slab| Piece::new(slab, None)).collect();
+    let mut pieces: Vec<Piece<B>> = slabs.into_iter().map(|slab| Piece::new(slab, None)).collect();
     loop {
         let marked = marked(&pieces, limits, (budget - spent.min(budget)) / 2);
         if marked.is_empty() || !goes_on() {
             break;
         }
         spent += 2 * marked.len();
-        let halves = |(i, piece): (usize, Piece)| {
+        let halves = |(i, piece): (usize, Piece<B>)| {
             if !marked.contains(&i) {
                 return vec![piece];
             }
-            let (left, right) = piece.slab.time.split();
+            let (left, right) = piece.slab.time().split();
             let half = |time: Interval| half(&piece.slab, time);
             match half(left).zip(half(right)) {
                 Some((left, right)) => [left, right].map(|half| Piece::new(half, Some(&piece))).into(),
@@ -116,11 +129,11 @@ pub fn refined(
         };
         pieces = pieces.into_par_iter().enumerate().flat_map_iter(halves).collect();
     }
-    Course { slabs: pieces.into_iter().map(|piece| piece.slab).collect(), spent }
+    (pieces.into_iter().map(|piece| piece.slab).collect(), spent)
 }
 
 /// Which pieces to cut next: those that are farthest above their goals, at most `most`.
-fn marked(pieces: &[Piece], limits: &[Interval], most: usize) -> BTreeSet<usize> {
+fn marked<B: Bounded>(pieces: &[Piece<B>], limits: &[Interval], most: usize) -> BTreeSet<usize> {
     let goals = goals(pieces, limits);
     let excess = pieces.iter().map(|piece| piece.excess(&goals)).enumerate();
     let mut marked: Vec<(usize, f64)> = excess.filter(|(_, excess)| *excess > 1.0).collect();
@@ -145,8 +158,9 @@ impl Course {
     }
 }
 
-fn largest(slabs: &[Slab], value: impl Fn(&Slab) -> f64) -> (f64, f64) {
-    slabs.iter().map(|slab| (value(slab), slab.time.midpoint())).fold(
+/// The largest of the values of `slabs`, and the middle of the slab that it comes from in s.
+pub fn largest<B: Bounded>(slabs: &[B], value: impl Fn(&B) -> f64) -> (f64, f64) {
+    slabs.iter().map(|slab| (value(slab), slab.time().midpoint())).fold(
         (f64::NEG_INFINITY, 0.0),
         |best, next| {
             if next.0 > best.0 { next } else { best }
@@ -155,16 +169,16 @@ fn largest(slabs: &[Slab], value: impl Fn(&Slab) -> f64) -> (f64, f64) {
 }
 
 /// A slab with its bounds, and those of the one it was cut from.
-struct Piece {
-    slab: Slab,
+struct Piece<B> {
+    slab: B,
     bounds: Vec<f64>,
     seen: Vec<f64>,
     before: Vec<f64>,
 }
 
-impl Piece {
-    fn new(slab: Slab, parent: Option<&Self>) -> Self {
-        let all = 0..slab.ranges.len();
+impl<B: Bounded> Piece<B> {
+    fn new(slab: B, parent: Option<&Self>) -> Self {
+        let all = 0..slab.quantities();
         let bounds: Vec<f64> = all.clone().map(|k| slab.bound(k)).collect();
         let before = parent.map_or_else(|| vec![f64::INFINITY; bounds.len()], |parent| parent.bounds.clone());
         Self { bounds, before, seen: all.map(|k| slab.seen(k)).collect(), slab }
@@ -181,7 +195,7 @@ impl Piece {
 }
 
 /// What each bound is to come down to: nearly the largest value seen, or the limit where that lies in between.
-fn goals(pieces: &[Piece], limits: &[Interval]) -> Vec<f64> {
+fn goals<B: Bounded>(pieces: &[Piece<B>], limits: &[Interval]) -> Vec<f64> {
     let goal = |(k, limit): (usize, &Interval)| {
         let finite = pieces.iter().map(|piece| piece.seen[k]).filter(|seen| seen.is_finite());
         let seen = finite.fold(0.0, f64::max);

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use flexure_core::scalar::{Interval, Jet, Scalar};
 
 use crate::linalg::Dense;
+use crate::prove::engine::envelope::Bounded;
 use crate::prove::engine::envelope::closed_loop::{Answer, Place, Slope, TrackingLoop};
 use crate::prove::engine::envelope::flow::Flow;
 use crate::prove::engine::envelope::tube::{ErrorTube, Tube};
@@ -96,23 +97,36 @@ impl Slab {
         })
     }
 
-    /// Upper bound of how fast quantity `k` changes [1/s] where errors move as `flow`, over this slab and tube, says.
-    pub fn fastest(&self, k: usize, flow: &Flow) -> f64 {
-        (self.drifts[k] + flow.along(self.gradients.row(k), &*self.tube, self.time)).magnitude()
+    /// How fast quantity `k` may change [1/s] where errors move as `flow`, over this slab and tube, says: by time alone, and with the errors.
+    pub fn rates(&self, k: usize, flow: &Flow) -> [Interval; 2] {
+        [self.drifts[k], flow.along(self.gradients.row(k), &*self.tube, self.time)]
+    }
+}
+
+impl Bounded for Slab {
+    fn time(&self) -> Interval {
+        self.time
     }
 
-    /// Upper bound of the absolute value of quantity `k`.
-    pub fn bound(&self, k: usize) -> f64 {
+    fn quantities(&self) -> usize {
+        self.ranges.len()
+    }
+
+    fn bound(&self, k: usize) -> f64 {
         self.ranges[k].magnitude()
     }
 
-    /// About the largest absolute value that quantity `k` takes at the slab's middle, as far as its derivatives are known.
-    pub fn seen(&self, k: usize) -> f64 {
+    /// At the slab's middle, as far as its derivatives are known.
+    fn seen(&self, k: usize) -> f64 {
         let near_zero = |g: &Interval| Interval::point(g.lo().max(0.0) + g.hi().min(0.0));
         let gradient: Vec<_> = self.gradients.row(k).iter().map(near_zero).collect();
         self.nominal[k].midpoint().abs() + self.tube.reach(&gradient).hi()
     }
 }
+
+/// Errors that are looked at together with time move so fast [per s]: what intervals leave open of second derivatives by time and by errors then counts
+/// about the same.
+const TOGETHER: f64 = 10.0;
 
 /// How smooth the reference is over a slab.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -232,11 +246,11 @@ pub(super) struct Views {
 /// Numbers over slab and tube as series.
 struct Drifting {
     /// By time.
-    by_time: Vec<Slope>,
+    time: Vec<Slope>,
     /// By each error.
-    by_error: Vec<Vec<Slope>>,
+    errors: Vec<Vec<Slope>>,
     /// By time and each error together.
-    by_both: Vec<Vec<Slope>>,
+    both: Vec<Vec<Slope>>,
 }
 
 impl<'a> Way<'a> {
@@ -299,7 +313,10 @@ impl<'a> Way<'a> {
             ]),
         };
         let error = |(i, &error): (usize, &Interval)| match view {
-            View::Tube(direction) | View::DriftAnd(direction) if i == direction => Slope::variable(error),
+            View::Tube(direction) if i == direction => Slope::variable(error),
+            View::DriftAnd(direction) if i == direction => {
+                Jet::new([error, Interval::point(TOGETHER), Interval::ZERO])
+            }
             View::Tube(_) | View::Everywhere | View::Drift | View::DriftAnd(_) => Slope::value(error),
             _ => Slope::ZERO,
         };
@@ -349,28 +366,29 @@ impl<'a> Way<'a> {
         };
         let both = |i| (self.goes_on)().then(|| known(f(&self.seeded(View::DriftAnd(i)))));
         Some(Drifting {
-            by_time: known(f(&self.seeded(View::Drift))),
-            by_both: (0..passes.len()).map(both).collect::<Option<_>>()?,
-            by_error: passes.into_iter().map(known).collect(),
+            time: known(f(&self.seeded(View::Drift))),
+            both: (0..passes.len()).map(both).collect::<Option<_>>()?,
+            errors: passes.into_iter().map(known).collect(),
         })
     }
 
     /// The derivative by time of number `k` of `views` at errors that stay as they are, over slab and tube: what it is on the reference, and how that changes
-    /// with the errors. That is the mixed derivative: half the second one in two directions together, less half of that in each.
+    /// with the errors. That is the mixed derivative: half the second one in both directions together, less half of that in each.
     fn drift(&self, views: &Views, k: usize) -> Interval {
-        let Some(Drifting { by_time, by_error, by_both }) = &views.drifting else { return Interval::ENTIRE };
+        let Some(Drifting { time, errors, both }) = &views.drifting else { return Interval::ENTIRE };
         if self.smooth == Smooth::Not {
             return Interval::ENTIRE;
         }
         let half = |all: &[Slope]| all[k].coefficient(2);
-        let mixed: Vec<_> = by_both
+        let rate = Interval::point(TOGETHER);
+        let mixed: Vec<_> = both
             .iter()
-            .zip(by_error)
-            .map(|(both, error)| half(both) - half(by_time) - half(error))
+            .zip(errors)
+            .map(|(both, error)| (half(both) - half(time) - half(error) * rate.square()) / rate)
             .collect();
         let mean = views.track[k].coefficient(1) + self.tube.reach(&mixed);
         // Both enclose it.
-        mean.intersection(by_time[k].coefficient(1)).unwrap_or(mean)
+        mean.intersection(time[k].coefficient(1)).unwrap_or(mean)
     }
 
     /// How far a number on the reference over the slab is from its line in time.
@@ -425,9 +443,9 @@ impl Views {
             View::Middle => self.middle.clone(),
             View::Track => self.track.clone(),
             View::Everywhere => self.ranges.iter().map(|&x| Slope::value(x)).collect(),
-            View::Drift => self.drifting.as_ref().map_or_else(Vec::new, |all| all.by_time.clone()),
-            View::DriftAnd(i) => self.drifting.as_ref().map_or_else(Vec::new, |all| all.by_both[i].clone()),
-            View::Tube(i) if let Some(all) = &self.drifting => all.by_error[i].clone(),
+            View::Drift => self.drifting.as_ref().map_or_else(Vec::new, |all| all.time.clone()),
+            View::DriftAnd(i) => self.drifting.as_ref().map_or_else(Vec::new, |all| all.both[i].clone()),
+            View::Tube(i) if let Some(all) = &self.drifting => all.errors[i].clone(),
             View::Tube(i) => {
                 let slopes = self.gradients.rows().map(|gradient| gradient[i]);
                 self.ranges

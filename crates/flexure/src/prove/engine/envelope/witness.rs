@@ -2,6 +2,7 @@
 
 use flexure_core::scalar::Interval;
 
+use crate::prove::engine::envelope::Bounded;
 use crate::prove::engine::envelope::Course;
 use crate::prove::engine::envelope::closed_loop::TrackingLoop;
 use crate::prove::engine::envelope::slab::Slab;
