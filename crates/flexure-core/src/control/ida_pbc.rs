@@ -6,8 +6,8 @@ use crate::linalg::Vector;
 use crate::model::{Fjr, Links, Motion};
 use crate::scalar::{Jet, Over, Scalar};
 
-/// Interconnection and damping assignment after Zhang, Cheah, Collins and others' use of it for flexible joints; the matching is exact, the choice of the desired
-/// energy is this project's: motors of inertia B_θ at springs K_P to θ_0, and damping D_θ and R, the latter between motors and links.
+/// A reconstruction of interconnection and damping assignment as Zhang, Cheah, Collins and others use it for flexible joints; the matching is exact, the choice of
+/// the desired energy is this project's: motors of inertia B_θ at springs K_P to θ_0, and damping D_θ and R, the latter between motors and links.
 ///
 /// u = K ζ + D_m θ̇ − k (K ζ + K_P e_m − g(q_0)) − 2 R q̇ − k D_θ θ̇, k = B B_θ⁻¹, e_m = θ − θ_0, θ_0 = q_0 + K⁻¹ g(q_0), makes
 /// H_d = ½ q̇ᵀMq̇ + ½ θ̇ᵀB_θθ̇ + ½ ζᵀKζ + P(q) + ½ e_mᵀK_Pe_m − θᵀg(q_0) fall as Ḣ_d = −q̇ᵀD_lq̇ − 2 q̇ᵀR k⁻¹θ̇ − θ̇ᵀD_θθ̇.

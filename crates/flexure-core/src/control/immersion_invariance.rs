@@ -7,8 +7,8 @@ use crate::linalg::Vector;
 use crate::model::{Fjr, Links, Motion};
 use crate::scalar::{Jet, Over, Scalar};
 
-/// The design of Astolfi and Ortega, *Immersion and invariance: a new tool for stabilization and adaptive control of nonlinear systems*, IEEE Trans. Automatic
-/// Control 48, 2003, for their flexible-joint example, with a choice of target that is this project's: the links under rigid computed torque
+/// A reconstruction of the design of Astolfi and Ortega, *Immersion and invariance: a new tool for stabilization and adaptive control of nonlinear systems*, IEEE
+/// Trans. Automatic Control 48, 2003, for their flexible-joint example, with a choice of target that is this project's: the links under rigid computed torque
 /// w = M q̈_d + C(q, q̇) q̇_d + D_l q̇_d + g − K_Pl e − K_Dl ė.
 ///
 /// Off the manifold θ = π, π = q + K⁻¹ w, motors obey z̈ + k_v ż + k_p z = 0, z = θ − π, whatever the links do; on it V = ½ ėᵀMė + ½ eᵀK_Pl e has

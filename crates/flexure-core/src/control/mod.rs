@@ -34,9 +34,9 @@ pub use cascade::Cascade;
 pub use composite_ph::CompositePh;
 pub use dynamic::{
     Adaptation, AdaptiveCommandFilteredBackstepping, AdaptiveVcbc, Applied, CommandFilteredBackstepping,
-    ControlByInterconnection, DisturbanceRejecting, DynamicFeedbackLinearization, DynamicLaw,
-    LinkPositionFeedback, LoadedLaw, LoriaOrtega, MotorObserverPd, MotorPositionPd, MotorPositionPdCapped,
-    Pid, Planned, PositionFeedback, Running, SeaCascade, Seen, observer_gains,
+    ControlByInterconnection, DisturbanceRejecting, DisturbanceRejectingVcbc, DynamicFeedbackLinearization,
+    DynamicLaw, LinkPositionFeedback, LoadedLaw, LoriaOrtega, MotorObserverPd, MotorPositionPd,
+    MotorPositionPdCapped, Pid, Planned, PositionFeedback, Running, SeaCascade, Seen, observer_gains,
 };
 pub use esp::Esp;
 pub use feedback_linearization::FeedbackLinearization;
@@ -50,7 +50,7 @@ pub use integral_manifold::IntegralManifold;
 pub use law::ControlLaw;
 pub use link_impedance::{LinkImpedance, in_series};
 pub use motor_pd::MotorPd;
-pub use optimal::{LinearModel, Lqr, Mpc, NoRegulator, QuadraticCost, Regulator};
+pub use optimal::{HInfinity, LinearModel, Lqr, Mpc, NoRegulator, QuadraticCost, Regulator};
 pub use passivity::Passivity;
 pub use pd::Pd;
 pub use pd_online_gravity::PdOnlineGravity;

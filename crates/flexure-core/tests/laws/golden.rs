@@ -144,7 +144,7 @@ impl Case {
         let Gain::List(state) = &self.gains["Q"] else { panic!("a list") };
         let state = std::array::from_fn(|k| Vector([state[2 * k], state[2 * k + 1]]));
         let cost = QuadraticCost { state, torque: self.gain("R") };
-        Lqr::design(&self.arm(), &self.gain("design_posture"), &cost, f64::INFINITY)
+        Lqr::design(&self.arm(), &self.gain("design_posture"), &cost, &Vector([f64::INFINITY; _]))
             .expect("a stabilisable arm")
     }
 

@@ -180,7 +180,8 @@ fn limits_that_are_known_cost_less() {
         paid
     };
     let posture = Vector::ZERO;
-    let lqr = Lqr::design(&robot, &posture, &cost, f64::INFINITY).expect("an arm that can be held");
+    let lqr =
+        Lqr::design(&robot, &posture, &cost, &Vector([f64::INFINITY; _])).expect("an arm that can be held");
     let short = Mpc::<f64, 2, 20>::design(&robot, &posture, &cost, PERIOD, &limit).expect("as well");
     let long = Mpc::<f64, 2, 20>::design(&robot, &posture, &cost, 10.0 * PERIOD, &limit).expect("as well");
     let saturated = paid(&|x| lqr.torque(&robot, x, &goal));

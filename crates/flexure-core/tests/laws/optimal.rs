@@ -136,16 +136,16 @@ fn solves_its_equations<L: Links<f64, N>, const N: usize>(robot: &Fjr<f64, L, N>
     let (model, cost) = (LinearModel::at_rest(robot, &r.vector(1.0)), cost(r));
     let (A, B, G) = (model.state, model.input, model.disturbance);
     let Q = BlockMatrix::diagonal(&cost.state);
-    for gamma in [f64::INFINITY, 20.0] {
+    for gamma in [Vector([f64::INFINITY; N]), r.between(20.0, 30.0)] {
         let Regulator { gain: F, cost_to_go: P } =
-            Regulator::continuous(&model, &cost, gamma).expect("a robot that can be held");
+            Regulator::continuous(&model, &cost, &gamma).expect("a robot that can be held");
         assert_eq!(P, P.transpose());
         let weighted = F.map(|f| Matrix::diagonal(&cost.torque) * f);
         let mut closed = A;
         closed -= &BlockMatrix::outer(&B, &F);
         let PG = &P * &G;
-        let mut felt = BlockMatrix::outer(&PG, &transposed(&PG));
-        felt.scale(gamma.powi(-2));
+        let by_gamma = Matrix::diagonal(&gamma.map(|gamma| gamma.powi(-2)));
+        let felt = BlockMatrix::outer(&PG.map(|block| block * by_gamma), &transposed(&PG));
         let flow = &P * &closed;
         let paid = BlockMatrix::outer(&transposed(&F), &weighted);
         let residual = total(&[&flow, &flow.transpose(), &Q, &paid, &felt]);
@@ -251,7 +251,9 @@ fn held_gains_tend_to_continuous_ones() {
     let r = &mut Numbers(5);
     let robot = flexible(serial::<7>(), r);
     let (model, cost) = (LinearModel::at_rest(&robot, &r.vector(1.0)), cost(r));
-    let F = Regulator::continuous(&model, &cost, f64::INFINITY).expect("a robot that can be held").gain;
+    let F = Regulator::continuous(&model, &cost, &Vector([f64::INFINITY; _]))
+        .expect("a robot that can be held")
+        .gain;
     let [whole, half] = [1e-4, 0.5e-4].map(|period| {
         let held = Regulator::discrete(&model.held(period), &cost.over(period)).expect("as well").gain;
         let differences = held.iter().zip(F).flat_map(|(a, b)| (*a - b).0.into_iter().flatten());
@@ -264,7 +266,8 @@ fn held_gains_tend_to_continuous_ones() {
 fn the_law_is_linear_feedback_around_the_reference() {
     let r = &mut Numbers(6);
     let robot = flexible(branched::<5>(2), r);
-    let law = Lqr::design(&robot, &Vector::ZERO, &cost(r), f64::INFINITY).expect("a robot that can be held");
+    let law = Lqr::design(&robot, &Vector::ZERO, &cost(r), &Vector([f64::INFINITY; _]))
+        .expect("a robot that can be held");
     let q_ld = r.series(1.0);
     let (on_it, u_d) = nominal(&robot, &q_ld);
     close(&law.torque(&robot, &on_it, &q_ld), &u_d, 1e-15);
@@ -318,13 +321,17 @@ fn torques_on_links_cost_no_more_than_asked_for() {
     };
     let model = LinearModel::at_rest(&robot, &of(0.7));
     let cost = QuadraticCost { state: [of(400.0), of(40.0), of(1.0), of(1.0)], torque: of(0.05) };
-    let regulator = |gamma| Regulator::continuous(&model, &cost, gamma);
+    let regulator = |gamma| Regulator::continuous(&model, &cost, &of(gamma));
     let F = |gamma| regulator(gamma).expect("it is large enough").gain;
 
     let (mut refused, mut kept) = (1e-3, 1e3);
     for _ in 0..60 {
         let middle = f64::sqrt(refused * kept);
         if regulator(middle).is_ok() { kept = middle } else { refused = middle }
+    }
+    for weight in [1.0, 1e-3, 1e5] {
+        let least = Regulator::least_attenuation(&model, &cost, &of(weight)).expect("it can be held");
+        assert!(least * weight >= kept && least * weight <= 1.011 * kept, "{least} {kept}");
     }
     assert!(matches!(regulator(0.5 * refused), Err(NoRegulator::Indefinite | NoRegulator::Unstable)));
     let quadratic = amplification(&model, &cost, &F(f64::INFINITY));
@@ -345,6 +352,6 @@ fn torques_on_links_cost_no_more_than_asked_for() {
 fn what_is_not_seen_is_refused() {
     let robot = flexible(planar(), &mut Numbers(7));
     let cost = QuadraticCost { state: [Vector::ZERO; 4], torque: Vector([1.0; 2]) };
-    let found = Lqr::design(&robot, &Vector::ZERO, &cost, f64::INFINITY);
+    let found = Lqr::design(&robot, &Vector::ZERO, &cost, &Vector([f64::INFINITY; _]));
     assert_eq!(found, Err(NoRegulator::Unstable));
 }

@@ -159,7 +159,7 @@ fn optimal_laws() {
     let cost = QuadraticCost { state: [one; 4], torque: one };
     let (x, q_ld) = (r.motion(1.0), r.series(1.0));
     let count = allocations(|| {
-        let lqr = Lqr::design(&robot, &one, &cost, f64::INFINITY).ok()?;
+        let lqr = Lqr::design(&robot, &one, &cost, &Vector([f64::INFINITY; _])).ok()?;
         let mpc = Mpc::<f64, 5, 10>::design(&robot, &one, &cost, 1e-3, &one).ok()?;
         Some((lqr.torque(&robot, &x, &q_ld), mpc.torque(&robot, &x, &q_ld)))
     });

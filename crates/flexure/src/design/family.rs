@@ -85,7 +85,7 @@ impl Family {
         let member = gains.iter().zip(&self.powers).enumerate().map(|(gain, ((path, base), power))| {
             let factor = self.own.iter().position(|own| *own == gain).map_or(0.0, |i| x[1 + i]);
             let factor = f64::from(*power) * speed + factor;
-            let balance = if path == EXCHANGE { x[1 + self.own.len()] } else { 0.0 };
+            let balance = if self.is_vcbc() && path == EXCHANGE { x[1 + self.own.len()] } else { 0.0 };
             let balanced = |(value, root): (&f64, &f64)| value * (factor + balance * root).exp();
             base.iter().zip(&self.balance).map(balanced).collect()
         });

@@ -96,7 +96,7 @@ pub fn design(
     progress: Progress<'_>,
 ) -> Result<Design, Problems> {
     let scenario = &specified.scenarios[0];
-    let start = scenario.under(&base(scenario)?);
+    let start = scenario.under(&scenario.controller.restart(&scenario.robot)?);
     let spec = &file.spec;
     file.refuse_rates(&start, &specified.scenarios)?;
     let least = if spec.rate.is_some() { Least::of(&start)? } else { None };
@@ -201,17 +201,6 @@ fn unless_interrupted<T>(found: Result<T, Problems>) -> Result<Option<T>, Proble
         Err(problems) if problems.is_interrupted() => Ok(None),
         found => found.map(Some),
     }
-}
-
-/// The law of `scenario` with its starting gains.
-fn base(scenario: &Scenario) -> Result<Controller, Problems> {
-    let own = &scenario.controller;
-    Ok(match (Controller::default_for(own.kind(), &scenario.robot)?, own) {
-        (Controller::Vcbc(start), Controller::Vcbc(gains)) => {
-            Controller::Vcbc(Box::new(start.as_ref().clone().shaped_by(gains.phi)))
-        }
-        (start, _) => start,
-    })
 }
 
 impl SpecFile {

@@ -44,7 +44,7 @@ impl Quantity {
     const fn nonzero(what: &'static str, unit: Unit) -> Self {
         Self { sign: Sign::NonZero, ..Self::any(what, unit) }
     }
-    const fn at_least_one(what: &'static str, unit: Unit) -> Self {
+    pub const fn at_least_one(what: &'static str, unit: Unit) -> Self {
         Self { sign: Sign::AtLeastOne, ..Self::any(what, unit) }
     }
     const fn probability(what: &'static str) -> Self {

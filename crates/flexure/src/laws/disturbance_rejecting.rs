@@ -10,6 +10,15 @@ use crate::laws::registry::{Claim, LawKind};
 use crate::robot::Robot;
 use crate::units;
 
+/// ω of the residuals.
+pub(super) const BANDWIDTH: Gain =
+    Gain::new("bandwidth", Quantity::positive("bandwidth ω of the residuals", units::RATE), |drive| {
+        2.0 * drive.bandwidth()
+    });
+
+/// Residuals come from these.
+pub(super) const MEMORY: [(&str, &str); 2] = [("sigma_l", "kg m²/s"), ("sigma_m", "kg m²/s")];
+
 /// The kind `disturbance-rejecting`: [`control::DisturbanceRejecting`].
 pub struct DisturbanceRejecting;
 
@@ -17,18 +26,10 @@ impl LawKind for DisturbanceRejecting {
     const NAME: &'static str = "disturbance-rejecting";
     const SUMMARY: &'static str = "immersion-invariance with the momentum residuals of both sides inside";
     const CLAIM: Claim = Claim::Errors;
-    const MEMORY: &'static [(&'static str, &'static str)] = &[("sigma_l", "kg m²/s"), ("sigma_m", "kg m²/s")];
+    const MEMORY: &'static [(&'static str, &'static str)] = &MEMORY;
 
     type Gains = [Vec<f64>; 5];
-    const GAINS: [Gain; 5] = [
-        LINK[0],
-        LINK[1],
-        INNER[0],
-        INNER[1],
-        Gain::new("bandwidth", Quantity::positive("bandwidth ω of the residuals", units::RATE), |drive| {
-            2.0 * drive.bandwidth()
-        }),
-    ];
+    const GAINS: [Gain; 5] = [LINK[0], LINK[1], INNER[0], INNER[1], BANDWIDTH];
 
     type Core<C: Scalar, const N: usize> = control::DisturbanceRejecting<C, ImmersionInvariance<C, N>, N>;
 

@@ -21,6 +21,16 @@ impl Gain {
         Self { key, quantity, start }
     }
 
+    /// Reads its numbers from `field`.
+    pub(crate) fn read(&self, field: &Field<'_>, joints: &Joints) -> Option<Vec<f64>> {
+        field.per_joint(joints, &self.quantity)
+    }
+
+    /// By which power it grows with the speed of the loop.
+    pub(crate) fn per_second(&self) -> i32 {
+        self.quantity.per_second()
+    }
+
     /// What it is, and in which unit.
     pub fn described(&self) -> String {
         self.quantity.described()
@@ -116,6 +126,11 @@ pub trait GainSet: Sized {
     /// What tuning starts from, by what each joint has to move.
     fn start(shape: &Self::Shape, drives: &[Drive]) -> Self;
 
+    /// The same of a law that has what these gains choose besides numbers.
+    fn restart(&self, shape: &Self::Shape, drives: &[Drive]) -> Self {
+        Self::start(shape, drives)
+    }
+
     /// Every gain with its path below `[controller]`, one number per joint.
     fn named<'a>(&'a self, shape: &Self::Shape) -> Vec<(String, &'a [f64])>;
 
@@ -144,7 +159,7 @@ impl<const G: usize> GainSet for [Vec<f64>; G] {
     }
 
     fn speed_powers(&self, shape: &[Gain; G]) -> Vec<i32> {
-        shape.iter().map(|gain| gain.quantity.per_second()).collect()
+        shape.iter().map(Gain::per_second).collect()
     }
 
     fn slots(&mut self) -> Vec<&mut Vec<f64>> {

@@ -5,7 +5,7 @@ use flexure_core::linalg::Vector;
 use flexure_core::scalar::Scalar;
 
 use crate::laws::gain::Gain;
-use crate::laws::optimal::{NO_DESIGN, WEIGHTS, matrix, regulator};
+use crate::laws::optimal::{NO_DESIGN, WEIGHTS, is_designed, matrix, regulator};
 use crate::laws::registry::{Claim, LawKind};
 use crate::robot::Robot;
 
@@ -21,8 +21,7 @@ impl LawKind for Lqr {
     const GAINS: [Gain; 5] = WEIGHTS;
 
     fn objection(gains: &Self::Gains, robot: &Robot) -> Option<String> {
-        let none =
-            regulator(robot, gains.each_ref()).iter().flatten().flatten().any(|gain| !gain.is_finite());
+        let none = !is_designed(&regulator(robot, gains.each_ref(), None));
         none.then(|| NO_DESIGN.to_owned())
     }
 
@@ -33,6 +32,6 @@ impl LawKind for Lqr {
         robot: &Robot,
         vector: impl Fn(&Vec<f64>) -> Vector<C, N>,
     ) -> Self::Core<C, N> {
-        control::Lqr { gain: regulator(robot, gains.each_ref()).map(|rows| matrix(&rows, &vector)) }
+        control::Lqr { gain: regulator(robot, gains.each_ref(), None).map(|rows| matrix(&rows, &vector)) }
     }
 }

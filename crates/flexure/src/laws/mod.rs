@@ -12,6 +12,7 @@ mod command_filtered_backstepping;
 mod composite_ph;
 mod control_by_interconnection;
 mod disturbance_rejecting;
+mod disturbance_rejecting_vcbc;
 pub(crate) mod document;
 mod drive;
 mod esp;
@@ -19,6 +20,7 @@ mod feedback_linearization;
 mod feedforward_pd;
 mod gain;
 mod gravity_cancellation;
+mod h_infinity;
 mod ida_pbc;
 mod immersion_invariance;
 mod integral_manifold;
@@ -53,7 +55,7 @@ use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion};
 use flexure_core::scalar::{Jet, Over, Piecewise, Scalar};
 
-use crate::files::Entry;
+use crate::files::{Entry, Problems};
 use crate::robot::Robot;
 use gain::{GainSet, ReadGains};
 use std::marker::PhantomData;
@@ -92,6 +94,7 @@ laws! {
         composite_ph::CompositePh,
         sliding_mode::SlidingMode,
         lqr::Lqr,
+        h_infinity::HInfinity,
         mpc::Mpc;
     dynamic:
         position_feedback::PositionFeedback,
@@ -102,6 +105,7 @@ laws! {
         control_by_interconnection::ControlByInterconnection,
         loria_ortega::LoriaOrtega,
         disturbance_rejecting::DisturbanceRejecting,
+        disturbance_rejecting_vcbc::DisturbanceRejectingVcbc,
         sea_cascade::SeaCascade,
         pid::Pid,
         command_filtered_backstepping::CommandFilteredBackstepping,

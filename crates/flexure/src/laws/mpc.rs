@@ -6,7 +6,7 @@ use flexure_core::scalar::Scalar;
 
 use crate::files::quantity::Quantity;
 use crate::laws::gain::Gain;
-use crate::laws::optimal::{Designed, NO_DESIGN, WEIGHTS, matrix, predictive};
+use crate::laws::optimal::{Designed, NO_DESIGN, WEIGHTS, matrix, one_for_all, predictive};
 use crate::laws::registry::{Claim, LawKind};
 use crate::robot::Robot;
 use crate::units;
@@ -32,12 +32,8 @@ impl LawKind for Mpc {
 
     fn objection(gains: &Self::Gains, robot: &Robot) -> Option<String> {
         let [.., steps] = gains;
-        let first = steps.first()?;
-        #[expect(clippy::float_cmp, reason = "one number, or another")]
-        if let Some(other) = steps.iter().find(|step| *step != first) {
-            return Some(format!(
-                "step is {first} s for one joint and {other} s for another: all torques are planned together"
-            ));
+        if let Err(objection) = one_for_all("step", steps, "all torques are planned together") {
+            return Some(objection);
         }
         let none = designed(robot, gains).reach.iter().any(|reach| !reach.is_finite());
         none.then(|| NO_DESIGN.to_owned())

@@ -1,6 +1,6 @@
 //! What optimal laws share: the weights of errors and torques, and designs whose joint count is hidden.
 
-use flexure_core::control::{Lqr, Mpc, QuadraticCost};
+use flexure_core::control::{LinearModel, Mpc, QuadraticCost, Regulator};
 use flexure_core::linalg::{Matrix, Vector};
 use flexure_core::scalar::Scalar;
 
@@ -71,17 +71,39 @@ pub(super) fn matrix<C: Scalar, const N: usize>(
 }
 
 /// F of q, θ, v and w, designed where all joints are at 0; not numbers where the weights have no stabilising solution, and of robots with more joints than this
-/// program was built for.
-pub(super) fn regulator(robot: &Robot, weights: [&Vec<f64>; 5]) -> [Rows; 4] {
+/// program was built for. With a number `above` 1 it keeps torques on the links, each weighed as that of its motor, to so many times the least that any feedback
+/// keeps them to.
+pub(super) fn regulator(robot: &Robot, weights: [&Vec<f64>; 5], above: Option<f64>) -> [Rows; 4] {
     let n = robot.joint_count();
     let designed = || -> Result<_, Problems> {
         Ok(sized!(roomy robot, L, N => {
             let arm = fjr::<_, L<f64>, N>(robot, &robot.links, |x| x, &|x| x).expect(OF_THE_KIND);
-            let law = Lqr::design(&arm, &Vector::ZERO, &cost(weights), f64::INFINITY).ok();
-            law.map(|law| law.gain.map(|block| rows(&block, n)))
+            let (model, cost) = (LinearModel::at_rest(&arm, &Vector::ZERO), cost(weights));
+            let by_torque = cost.torque.map(f64::sqrt);
+            let attenuation = match above {
+                None => Ok(f64::INFINITY),
+                Some(above) => Regulator::least_attenuation(&model, &cost, &by_torque).map(|least| above * least),
+            };
+            let law = attenuation.and_then(|gamma| Regulator::continuous(&model, &cost, &by_torque.scaled(gamma)));
+            law.ok().map(|law| law.gain.map(|block| rows(&block, n)))
         }))
     };
     designed().ok().flatten().unwrap_or_else(|| [(); 4].map(|()| nothing(n)))
+}
+
+/// Whether there is a law with these gains.
+pub(super) fn is_designed(gains: &[Rows; 4]) -> bool {
+    gains.iter().flatten().flatten().all(|gain| gain.is_finite())
+}
+
+/// What `values`, called `key`, are for all joints, or why they are not.
+pub(super) fn one_for_all(key: &str, values: &[f64], reason: &str) -> Result<f64, String> {
+    let first = values.first().copied().unwrap_or(f64::NAN);
+    #[expect(clippy::float_cmp, reason = "one number, or another")]
+    match values.iter().find(|value| **value != first) {
+        Some(other) => Err(format!("{key} is {first} for one joint and {other} for another: {reason}")),
+        None => Ok(first),
+    }
 }
 
 /// What [`Mpc`] has of a design, by joints of the robot.

@@ -300,6 +300,19 @@ macro_rules! laws {
                 }
             }
 
+            /// The same law with the gains that tuning starts from.
+            ///
+            /// # Errors
+            /// If the robot has more joints than this program was built for.
+            pub(crate) fn restart(&self, robot: &Robot) -> Result<Self, Problems> {
+                let drives = drives(robot)?;
+                Ok(match self {
+                    $(Self::$kind(gains) => {
+                        Self::$kind(Box::new(gains.restart(&<$file::$kind as LawKind>::GAINS, &drives)))
+                    })+
+                })
+            }
+
             /// Why these gains are none for `robot`, if they are not.
             pub(crate) fn objection(&self, robot: &Robot) -> Option<String> {
                 match self {
@@ -323,7 +336,8 @@ macro_rules! laws {
 
             /// What the law is called in words.
             pub fn in_words(&self) -> String {
-                self.phi().map_or_else(|| self.kind().to_owned(), |phi| format!("v-CBC with φ = {phi}"))
+                let name = if matches!(self, Self::Vcbc(_)) { "v-CBC" } else { self.kind() };
+                self.phi().map_or_else(|| name.to_owned(), |phi| format!("{name} with φ = {phi}"))
             }
 
             /// Every gain with its path below `[controller]`, one number per joint: `link.metric`, `stiffness`.

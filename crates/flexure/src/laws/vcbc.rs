@@ -31,14 +31,14 @@ impl LawKind for Vcbc {
         _: &Robot,
         vector: impl Fn(&Vec<f64>) -> Vector<C, N>,
     ) -> Law<C, N> {
-        made(gains, vector)
+        made(gains, &vector)
     }
 }
 
 /// The law with these gains; `vector` makes constants of a gain.
-fn made<C: Scalar, const N: usize>(
+pub(super) fn made<C: Scalar, const N: usize>(
     gains: &VcbcGains,
-    vector: impl Fn(&Vec<f64>) -> Vector<C, N>,
+    vector: &impl Fn(&Vec<f64>) -> Vector<C, N>,
 ) -> Law<C, N> {
     let VcbcGains { phi, link, motor } = gains;
     let base = vector(&link.metric);
@@ -104,6 +104,10 @@ impl GainSet for VcbcGains {
         Self { phi: Phi::Linear, link, motor }
     }
 
+    fn restart(&self, (): &(), drives: &[Drive]) -> Self {
+        Self::start(&(), drives).shaped_by(self.phi)
+    }
+
     fn named<'a>(&'a self, (): &()) -> Vec<(String, &'a [f64])> {
         let side = |name: &'static str, gains: &'a SideGains| {
             let entries = gains.entries(self.phi).into_iter();
@@ -128,7 +132,18 @@ impl GainSet for VcbcGains {
 
 impl ReadGains for VcbcGains {
     fn read((): &(), field: &Field<'_>, joints: &Joints, starting: &Starting<'_>) -> Option<Self> {
-        let table = field.table(&["kind", "phi", "link", "motor"])?;
+        field.table(&KEYS)?;
+        Self::within(field, joints, starting)
+    }
+}
+
+/// The keys of `[controller]`.
+pub(super) const KEYS: [&str; 4] = ["kind", "phi", "link", "motor"];
+
+impl VcbcGains {
+    /// Reads them from a `[controller]` whose keys are known to be good.
+    pub(super) fn within(field: &Field<'_>, joints: &Joints, starting: &Starting<'_>) -> Option<Self> {
+        let table = field.any_table()?;
         let known: Vec<_> = Phi::ALL.iter().map(|phi| (phi.name(), *phi)).collect();
         if ["link", "motor"].iter().all(|side| table.get(side).is_none()) {
             let phi = table.optional("phi", |field| field.choice(&known))?.unwrap_or(Phi::Linear);
@@ -167,7 +182,7 @@ pub fn law<const N: usize>(gains: &VcbcGains) -> Law<f64, N> {
 ///
 /// [`Scenario::bounds`]: crate::scenario::Scenario::bounds
 pub fn law_over<C: Scalar, const N: usize>(gains: &VcbcGains, number: impl Fn(f64) -> C) -> Law<C, N> {
-    made(gains, constants(&number))
+    made(gains, &constants(&number))
 }
 
 /// What the v-CBC `law` commands the robot at `x` to do, following `q_ld`, the reference in rad to order 4. Compiled once

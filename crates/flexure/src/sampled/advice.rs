@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::files::Problems;
 use crate::imperfections::{Imperfection, Sampling};
-use crate::laws::{Controller, drives};
+use crate::laws::drives;
 use crate::linalg::{Dense, Mode, dominant_mode};
 use crate::sampled::exchange::fastest;
 use crate::sampled::{Probe, Spot};
@@ -76,10 +76,7 @@ pub(super) fn advice(probe: &Probe<'_>, worst: usize) -> Result<Option<Advice>, 
         (None, Some(&(gain, direction))) => (gain, direction, None),
         (None, None) => return Ok(None),
     };
-    let mut start = Controller::default_for(law.kind(), &scenario.robot)?;
-    if let (Controller::Vcbc(start), Controller::Vcbc(gains)) = (&mut start, law) {
-        **start = start.as_ref().clone().shaped_by(gains.phi);
-    }
+    let start = law.restart(&scenario.robot)?;
     let drive = drives(&scenario.robot)?.swap_remove(joint);
     Ok(Some(Advice {
         joint_name: scenario.robot.joints[joint].name.clone(),

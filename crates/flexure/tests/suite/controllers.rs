@@ -40,8 +40,9 @@ fn written(kind: &str) -> String {
 /// Gain number `i` in these files, which is called `key`: below what springs and dampers allow of some laws.
 fn gain(i: usize, key: &str) -> [f64; 2] {
     match key {
-        // One for all joints, and a share.
+        // One for all joints, a factor of at least 1, and a share.
         "step" => [0.25; 2],
+        "attenuation" => [1.25; 2],
         "least" => [0.25, 0.125],
         _ => {
             let first = [[0.5, 0.01], [1.5, 0.75], [2.5, 0.8], [0.25, 0.125]];
@@ -52,8 +53,8 @@ fn gain(i: usize, key: &str) -> [f64; 2] {
 
 #[test]
 fn every_registered_law_is_read() {
-    let kinds: Vec<_> = CONTROLLERS.iter().map(|entry| entry.name).filter(|name| *name != "vcbc").collect();
-    for kind in kinds {
+    // Those of v-CBC have tables: `a_kind_alone_has_starting_gains`.
+    for kind in names().filter(|name| !["vcbc", "disturbance-rejecting-vcbc"].contains(name)) {
         let scenario = read(&written(kind)).unwrap_or_else(|problems| panic!("{kind}: {problems}"));
         assert_eq!(scenario.controller.kind(), kind);
         assert_eq!(scenario.controller.phi(), None);
@@ -172,8 +173,9 @@ fn a_kind_alone_has_starting_gains() {
         let scenario = given(table);
         assert!(scenario.controller == expected && !scenario.has_starting_gains(), "{written}");
     }
-    for phi in Phi::ALL {
-        let scenario = given(&format!("kind = \"vcbc\"\nphi = \"{}\"", phi.name()));
+    let shaped = |kind: &'static str| Phi::ALL.iter().map(move |phi| (kind, phi));
+    for (kind, phi) in shaped("vcbc").chain(shaped("disturbance-rejecting-vcbc")) {
+        let scenario = given(&format!("kind = \"{kind}\"\nphi = \"{}\"", phi.name()));
         assert_eq!(scenario.controller.phi(), Some(phi.name()));
         let written = scenario.controller.to_toml();
         assert_eq!(given(&written[13..]).controller, scenario.controller, "{written}");
@@ -202,6 +204,74 @@ fn a_kind_alone_has_starting_gains() {
     let text = format!("{HEAD}kind = \"pd\"").replace("quanser-2dof", "nothing.toml");
     let problems = scenario_from_text("test.toml", &text, Path::new(".")).expect_err("no robot");
     assert_eq!(problems.iter().count(), 1, "{problems}");
+}
+
+/// The residuals are at a key of their own beside the sides, and start where they are left out.
+#[test]
+fn v_cbc_with_residuals_has_their_bandwidth() {
+    let sides = "[controller.link]\nmetric = 20\ndamping = 2\n[controller.motor]\nmetric = 20\ndamping = 2";
+    let given = |more: &str| {
+        let text = format!("kind = \"disturbance-rejecting-vcbc\"\nphi = \"tanh\"\n{more}{sides}");
+        read(&text).unwrap_or_else(|problems| panic!("{text}: {problems}")).controller
+    };
+    let start =
+        Controller::default_for("disturbance-rejecting-vcbc", &load_robot("quanser-2dof").expect("built in"));
+    let bandwidth = |controller: &Controller| controller.gains()[0].1.to_vec();
+    assert_eq!(bandwidth(&given("")), bandwidth(&start.expect("registered")));
+    assert_eq!(bandwidth(&given("bandwidth = [3, 4]\n")), [3.0, 4.0]);
+    for (bad, said) in [
+        ("bandwidth = 0", "controller.bandwidth is 0 1/s, must be > 0"),
+        ("bandwith = 1", "unknown key 'bandwith'"),
+        ("phi = \"tanh\"\n[controller.link]\nmetric = 1\ndamping = 1", "missing key controller.motor"),
+    ] {
+        let problems =
+            read(&format!("kind = \"disturbance-rejecting-vcbc\"\n{bad}")).expect_err(bad).to_string();
+        assert!(problems.contains(said), "{problems}");
+    }
+}
+
+/// A kilogram that the model does not know bends v-CBC away from its goal, and with residuals inside it does not.
+#[test]
+fn v_cbc_with_residuals_carries_what_it_does_not_know() {
+    let mut scenario = load_scenario("task-payload").expect("built in");
+    let mut left = |kind: &str| {
+        scenario.controller = Controller::default_for(kind, &scenario.robot).expect("registered");
+        let run = run(&scenario, &flexure::progress::unwatched).expect("few joints");
+        run.summary.final_abs_e_l
+    };
+    let (without, with) = (left("vcbc"), left("disturbance-rejecting-vcbc"));
+    assert!(with < 1e-2 * without, "{with} and {without}");
+}
+
+/// Far above the least attenuation the H∞ gain is that of `lqr`, near it another, and what is below no number.
+#[test]
+fn h_infinity_is_lqr_where_torques_may_cost_anything() {
+    let data = load_robot("tomei-3r").expect("built in");
+    let (x, q_ld) = place();
+    let start = |kind: &str| Controller::default_for(kind, &data).expect("registered");
+    let torque = |controller: &Controller| {
+        let law = any_law::<f64, 3>(controller, &data, &|x| x);
+        law.static_torque(&arm(&data, |x| x, |x| x), &x, &q_ld).expect("no memory")
+    };
+    let above = |factor: f64| {
+        let mut gains: Vec<_> = start("h-infinity").gains().iter().map(|(_, gain)| gain.to_vec()).collect();
+        gains[5] = vec![factor; 3];
+        start("h-infinity").with_gains(&gains)
+    };
+    let lqr = torque(&start("lqr"));
+    let off = |factor: f64| {
+        (torque(&above(factor)) - lqr).iter().zip(lqr.iter()).fold(0.0, |m: f64, (d, u)| m.max((d / u).abs()))
+    };
+    assert!(off(1e5) < 1e-6 && off(1.05) > 1e-2, "{} {}", off(1e5), off(1.05));
+    let one = written("h-infinity");
+    for (good, bad, said) in [
+        ("[1.25, 1.25]", "0.9", "controller.attenuation is 0.9, must be >= 1"),
+        ("[1.25, 1.25]", "[1.25, 1.5]", "attenuation is 1.25 for one joint and 1.5 for another"),
+    ] {
+        let text = one.replace(good, bad);
+        let problems = read(&text).expect_err(&text).to_string();
+        assert!(problems.contains(said), "{problems}");
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Torques that the model does not know, estimated inside the law.
 
 use super::{Applied, DynamicLaw};
-use crate::control::{ControlLaw, Signals};
+use crate::control::{ControlLaw, Signals, Vcbc};
 use crate::linalg::Vector;
 use crate::model::{Fjr, Links, Motion};
 use crate::scalar::{Jet, Over, Scalar};
@@ -19,6 +19,9 @@ pub struct DisturbanceRejecting<C, F, const N: usize> {
     /// ω, how fast residuals follow [1/s].
     pub bandwidth: Vector<C, N>,
 }
+
+/// The same with v-CBC inside: this project's. Where the residuals have found constant torques, the loop is that of [`Vcbc`] for a robot whose model has them.
+pub type DisturbanceRejectingVcbc<C, Pl, Pm, const N: usize> = DisturbanceRejecting<C, Vcbc<C, Pl, Pm, N>, N>;
 
 /// A law that can count on a constant torque on the links that is not in the model.
 pub trait LoadedLaw<C: Scalar, const N: usize>: ControlLaw<C, N> {

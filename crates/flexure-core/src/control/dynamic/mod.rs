@@ -23,7 +23,7 @@ pub use adaptive_backstepping::AdaptiveCommandFilteredBackstepping;
 pub use adaptive_vcbc::AdaptiveVcbc;
 pub use command_filtered::CommandFilteredBackstepping;
 pub use control_by_interconnection::ControlByInterconnection;
-pub use disturbance_rejecting::{DisturbanceRejecting, LoadedLaw};
+pub use disturbance_rejecting::{DisturbanceRejecting, DisturbanceRejectingVcbc, LoadedLaw};
 pub use dynamic_feedback_linearization::{DynamicFeedbackLinearization, Planned};
 pub use law::{Applied, DynamicLaw};
 pub use link_position_feedback::{LinkPositionFeedback, observer_gains};

@@ -17,8 +17,12 @@ pub struct Lqr<C, const N: usize> {
     pub gain: [Matrix<C, N, N>; 4],
 }
 
+/// The same feedback, published as well: F keeps what torques on the links may cost, where that of [`Lqr`] is for none. Made by [`Lqr::design`] with finite
+/// attenuations; what is kept is in [`Regulator::continuous`], for errors that are small.
+pub type HInfinity<C, const N: usize> = Lqr<C, N>;
+
 impl<C: Float, const N: usize> Lqr<C, N> {
-    /// The law for a robot linearised at rest with links at `posture` in rad: linear quadratic where `attenuation` is ∞, H∞ where it is less
+    /// The law for a robot linearised at rest with links at `posture` in rad: linear quadratic where each `attenuation` is ∞, H∞ where they are less
     /// [1/(N m √s)]. See [`Regulator::continuous`].
     ///
     /// # Errors
@@ -27,7 +31,7 @@ impl<C: Float, const N: usize> Lqr<C, N> {
         robot: &Fjr<C, L, N>,
         posture: &Vector<C, N>,
         cost: &QuadraticCost<C, N>,
-        attenuation: C,
+        attenuation: &Vector<C, N>,
     ) -> Result<Self, NoRegulator> {
         let model = LinearModel::at_rest(robot, posture);
         Ok(Self { gain: Regulator::continuous(&model, cost, attenuation)?.gain })

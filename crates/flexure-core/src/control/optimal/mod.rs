@@ -8,7 +8,7 @@ mod regulator;
 mod riccati;
 
 pub use linear_model::LinearModel;
-pub use lqr::Lqr;
+pub use lqr::{HInfinity, Lqr};
 pub use mpc::Mpc;
 pub use regulator::{NoRegulator, QuadraticCost, Regulator};
 

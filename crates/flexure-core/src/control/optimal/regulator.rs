@@ -41,26 +41,53 @@ impl<C: Float, const N: usize> QuadraticCost<C, N> {
 }
 
 impl<C: Float, const N: usize> Regulator<C, N> {
-    /// Of ẋ = A x + B u + G τ: F = R⁻¹ Bᵀ P, where Aᵀ P + P A − P (B R⁻¹ Bᵀ − γ⁻² G Gᵀ) P + Q = 0.
+    /// Of ẋ = A x + B u + G τ: F = R⁻¹ Bᵀ P, where Aᵀ P + P A − P (B R⁻¹ Bᵀ − G γ⁻² Gᵀ) P + Q = 0.
     ///
-    /// With γ = ∞ the linear quadratic regulator, Anderson and Moore, *Optimal control: linear quadratic methods*, 1990, section 3.2. A finite
-    /// `attenuation` γ [1/(N m √s)] makes it H∞: from rest, ∫cost dt ≤ γ² ∫|τ|² dt under any torques τ on the links. Doyle, Glover, Khargonekar and
-    /// Francis, *State-space solutions to standard H₂ and H∞ control problems*, IEEE Trans. Automatic Control 34, 1989.
+    /// With γ = ∞ the linear quadratic regulator, Anderson and Moore, *Optimal control: linear quadratic methods*, 1990, section 3.2. Finite
+    /// `attenuation`s γ, the diagonal of γ [1/(N m √s)], make it H∞: from rest, ∫cost dt ≤ ∫|γ τ|² dt under any torques τ on the links. Doyle, Glover,
+    /// Khargonekar and Francis, *State-space solutions to standard H₂ and H∞ control problems*, IEEE Trans. Automatic Control 34, 1989.
     ///
     /// # Errors
     /// Without a stabilising, positive definite solution.
     pub fn continuous(
         model: &LinearModel<C, N>,
         cost: &QuadraticCost<C, N>,
-        attenuation: C,
+        attenuation: &Vector<C, N>,
     ) -> Result<Self, NoRegulator> {
         let LinearModel { state: A, input: B, disturbance: G } = model;
-        let (by_R, by_gamma) = (cost.torque.map(C::recip), attenuation.square().recip());
+        let (by_R, by_gamma) = (cost.torque.map(C::recip), attenuation.map(|gamma| gamma.square().recip()));
         let mut g = squares(B, &by_R);
-        g -= &squares(G, &Vector([by_gamma; N]));
+        g -= &squares(G, &by_gamma);
         let P = positive(riccati::continuous(A, &g, &BlockMatrix::diagonal(&cost.state)))?;
         let gain = (&P * B).map(|block| Matrix::diagonal(&by_R) * block.transpose());
         Ok(Self { gain, cost_to_go: P })
+    }
+
+    /// The least γ for which [`continuous`](Self::continuous) has a solution with the attenuations γ · `weights`, to a hundredth above it.
+    ///
+    /// # Errors
+    /// Without a solution for γ = ∞.
+    pub fn least_attenuation(
+        model: &LinearModel<C, N>,
+        cost: &QuadraticCost<C, N>,
+        weights: &Vector<C, N>,
+    ) -> Result<C, NoRegulator> {
+        let keeps = |gamma: C| Self::continuous(model, cost, &weights.scaled(gamma)).is_ok();
+        Self::continuous(model, cost, &Vector([C::INFINITY; N]))?;
+        // Brackets one way or the other, as far as numbers go; eight halvings of their factor leave a hundredth.
+        let factor = C::from_f64(16.0);
+        let (mut refused, mut kept) = (C::ONE, C::ONE);
+        while keeps(refused) && refused > C::ZERO {
+            (refused, kept) = (refused / factor, refused);
+        }
+        while !keeps(kept) && kept.is_finite() {
+            (refused, kept) = (kept, kept * factor);
+        }
+        for _ in 0..8 {
+            let middle = (refused * kept).sqrt();
+            if keeps(middle) { kept = middle } else { refused = middle }
+        }
+        Ok(kept)
     }
 
     /// Of x⁺ = A x + B u, the robot [`held`](LinearModel::held) over a period: F = (R + Bᵀ P B)⁻¹ Bᵀ P A, where P = Aᵀ P (1 + B R⁻¹ Bᵀ P)⁻¹ A + Q, with
