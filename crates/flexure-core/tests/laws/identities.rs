@@ -7,12 +7,13 @@ use flexure_core::control::{
     MotorObserverPd, MotorPd, MotorPositionPd, MotorPositionPdCapped, PositionFeedback, SlidingMode,
     in_series, observer_gains,
 };
-use flexure_core::linalg::{Matrix, Vector};
+use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, MassFactor, Motion};
 use flexure_core::scalar::{Dual, Jet, Over, Scalar as _};
 
 use crate::common::laws::{Course, motor, resting};
 use crate::common::{Numbers, branched, flexible, moving_motion, planar, rate, serial, shifting};
+use crate::coupled_rotors::accelerations;
 
 /// Of the largest term: a few hundred operations, each to 10⁻¹⁶, on what cancels.
 const ROUNDING: f64 = 1e-12;
@@ -550,17 +551,7 @@ fn dynamic_feedback_linearization() {
         let x = r.motion(1.0);
         let xi = [r.vector(1.0), r.vector(1.0)];
         let planned = law.planned(&robot, &x, &q_ld.map(|q| q.truncate()), &xi);
-        // The complete model: θ̈_2 moves the first link, q̈_1 the second rotor.
-        let left =
-            robot.link_torque(&x) - robot.links.inverse_dynamics(&x.q_l, &x.v_l, &x.v_l, &Vector::ZERO);
-        let right =
-            planned.torque - robot.spring_torque(&x.q_l, &x.q_m) - robot.motor_damping.diag_mul(&x.v_m);
-        let mass = robot.links.mass_matrix(&x.q_l);
-        let [b_1, b_2] = robot.motor_inertia.0;
-        let reduced =
-            Matrix([[mass[(0, 0)] - coupling * coupling / b_2, mass[(0, 1)]], [mass[(1, 0)], mass[(1, 1)]]]);
-        let a_l = reduced.ldl().solve(&Vector([left[0] - coupling / b_2 * right[1], left[1]]));
-        let a_m = Vector([right[0] / b_1, (right[1] - coupling * a_l[0]) / b_2]);
+        let [a_l, a_m] = accelerations(&robot, coupling, &x, &planned.torque);
         let moving = moving_motion(&x, &Motion { q_l: x.v_l, q_m: x.v_m, v_l: a_l, v_m: a_m });
         let xi = core::array::from_fn(|k| {
             Vector::from_fn(|i| Dual { value: xi[k][i], gradient: [planned.rate[k][i]] })

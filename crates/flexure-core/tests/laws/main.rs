@@ -6,6 +6,7 @@ mod all;
 #[path = "../suite/common/mod.rs"]
 #[expect(dead_code, reason = "shared with the other suites")]
 mod common;
+mod coupled_rotors;
 mod golden;
 mod identities;
 mod limits;

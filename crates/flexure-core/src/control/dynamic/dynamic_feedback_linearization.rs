@@ -10,8 +10,8 @@ use crate::scalar::{Jet, Over, Scalar};
 ///
 /// The robot is M q̈ + S θ̈ + n = K ζ, Sᵀ q̈ + B θ̈ + D_m θ̇ + K ζ = u, ζ = θ − q. Memory ξ: q̈, q⃛, then q⁗ and the fifth derivative of the first joint.
 ///
-/// It needs the reference to order 6, divides by s, and its hidden loop gain is K_1/s: a control period of 1 ms is far too long for drives of arms, 50 µs is
-/// not. So it is for simulations, and no [`DynamicLaw`](super::DynamicLaw).
+/// It needs the reference to order 6, divides by s, and its hidden loop gain is K_1/s: a control period of 0.1 ms is too long for drives of arms, and what a
+/// shorter one leaves falls with the period alone. So it is for simulations, and no [`DynamicLaw`](super::DynamicLaw).
 #[derive(Clone, Copy, Debug)]
 pub struct DynamicFeedbackLinearization<C> {
     /// λ [1/s].
