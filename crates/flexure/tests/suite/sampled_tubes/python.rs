@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use crate::common::packed::{numbers, text_of};
 use crate::common::python;
 use crate::sampled_tubes::file::file;
+use crate::sampled_tubes::readings::hardware;
 use crate::sampled_tubes::{scenario, with_delay};
 
 /// Exit code and words for a file, so many of whose periods are followed.
@@ -38,6 +39,65 @@ fn the_second_checker_accepts_tubes() {
         println!("{}: {said}", scenario.name);
         assert!(code == 0 && said.contains("proved for periods 0"), "{}: {said}", scenario.name);
     }
+}
+
+/// The arm as its hardware runs it, for so long in s, on counts of 15 µrad, with other `changes` of its text.
+fn counted(seconds: &str, changes: &[(&str, &str)]) -> String {
+    let duration = format!("duration = {seconds}");
+    let own = [("duration = 0.5", duration.as_str()), ("resolution = 1e-4", "resolution = 1.5e-5")];
+    file(&hardware(&[&own, changes].concat()), 5e-4)
+}
+
+/// Filters, readings that are off, torques a part of a period late; every period, and a sample whose P it has to find from the readings before.
+#[test]
+fn the_second_checker_finds_what_readings_do() {
+    let late = "[[imperfection]]\nkind = \"delay\"\ncomputation = 1e-3\n\n[sources]";
+    for (text, sample, of) in [
+        (counted("0.04", &[]), 20, "proved for all 20 periods"),
+        (counted("0.04", &[("[sources]", late)]), 2, "proved for periods 0, 19 of 20"),
+    ] {
+        let Some((code, said)) = checked(&text, sample) else { return };
+        println!("{said}");
+        assert!(code == 0 && said.contains(of), "{said}");
+    }
+}
+
+/// Readings that are off by more than the file is of, and claims and numbers that say more.
+#[test]
+fn the_second_checker_is_not_fooled_about_readings() {
+    let text = counted("0.012", &[]);
+    let document: Value = serde_json::from_str(&text).unwrap();
+    let with = |place: &str, value: Value| {
+        let mut other = document.clone();
+        *other.pointer_mut(place).unwrap() = value;
+        other.to_string()
+    };
+    let claimed = |place: &str, factor: f64| {
+        let claim: f64 = document.pointer(place).unwrap().as_str().unwrap().parse().unwrap();
+        with(place, json!(format!("{}", claim * factor)))
+    };
+    let narrower = |k: usize, i: usize, factor: f64| {
+        let mut all = numbers(&document["sections"][k]);
+        all[i] *= factor;
+        with(&format!("/sections/{k}"), text_of(&all))
+    };
+    let refuted = [
+        (claimed("/claims/rate", 1.25), "rate"),
+        (claimed("/claims/error/2", 0.98), "error"),
+        (claimed("/claims/torque/0", 0.98), "torque"),
+        (with("/loop/off/2", json!("1.5e-4")), "torque"),
+        // The first number of L after the sixteen of the middle.
+        (narrower(4, 16, 0.9), "period 3"),
+        // Readings that are forgotten at once.
+        (with("/kept", json!(vec![0; 7])), "period 0"),
+        (claimed("/loop/filter/forward/0", 1.01), "the start is not in E_0"),
+    ];
+    for (text, what) in refuted {
+        let Some((code, said)) = checked(&text, 20) else { return };
+        assert!(code == 1 && said.contains(what), "{what}: {said}");
+    }
+    let (code, said) = checked(&with("/loop/off", json!(["1e-5"])), 20).unwrap();
+    assert!(code == 2 && said.contains("off has another length"), "{said}");
 }
 
 /// A period or two of the arm with the paper's gains, with claims and numbers that say more, and what is no such file.
