@@ -270,7 +270,7 @@ class Counted(Loop):  # readings are off. Columns are those of y, of what torque
         inverse = section.inverse()
         def back(all):
             return flipped((inverse * arb_mat(flipped(all))).tolist()) if all else []
-        beside, of_torques = [sum((abs(x - x.mid()) for x in row), ZERO).abs_upper() for row in zip(*scaled[dropped:])], back(columns[m:m + n])
+        beside, of_torques = [sum((abs(column[i] - column[i].mid()) for column in scaled[dropped:]), ZERO).abs_upper() for i in range(m)], back(columns[m:m + n])
         bends = [self.parted(h) for h in combined([row[:4 * n] for row in inverse.tolist()], self.motion)]
         by_y, count = largest(total(h.transpose() * h for h, _, _ in bends), 6).sqrt(), self.by.nrows()
         by_both = [length_of(h[i, j] for _, h, _ in bends for i in range(m)) for j in range(count)]
