@@ -95,7 +95,7 @@ fn leaves_none(inner: impl LoadedLaw<f64, 2> + Copy) {
     let push = Push { link: Vector([0.5, -0.2]), motor: Vector([0.3, 0.1]) };
     let (goal, period) = (Vector([0.5, -0.4]), 1e-3);
     let q_ld = goal.map(Jet::value);
-    let off = |x: &Motion<f64, 2>| (x.q_l - goal).iter().map(|e| e.abs()).sum::<f64>();
+    let off = |x: &Motion<f64, 2>| (x.q_l - goal).iter().map(f64::abs).sum::<f64>();
 
     let law = DisturbanceRejecting { law: inner, bandwidth: Vector([20.0; 2]) };
     let mut x = Motion::at_rest(Vector::ZERO);
