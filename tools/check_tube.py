@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks files of tubes as docs/tube.md states them, with Python and python-flint alone: check_tube.py FILE... [--all] [--sample K]
 
-Checked are the start, `torque` at every instant, and for K control periods spread evenly (20 unless told) or, with --all, for every one: 1, 2, 3 and 5 of that page, and `rate`.
+Checked are the start, `torque` at every instant, and for K control periods spread evenly (20 unless told) or, with --all, for every one: 1 to 5 of that page, and `rate`.
 `error` needs every period before: without --all it is compared with the extents of all sections alone. The line of a file says which periods were checked.
 
 Exit code: 0 all proved, 1 a claim does not hold or is not proved here, 2 not a file of a tube, or one of a loop that this program does not know; the worst of all files.
@@ -14,8 +14,8 @@ How, where readings are exact: everything is a function of y in the unit ball, k
 such functions, c + g y + s w with |w| <= 1/2 for what is of second order; so are the coefficients and the remainder of the robot's Taylor polynomial in time. Slopes of G_k at the
 centre, by y and by w, and how far they change bound lambda; where the centre goes, rho.
 
-Where they are off: all is linear in y, z and e (Line), and torques and motions are functions (Form) of as many numbers as they have, each in [-1, 1]: coordinates of a frame that is
-made for those lines. What torques are beside their slopes at 0 is a number more for each; second derivatives of motions go to lambda and sigma, rows of L^-1 at once."""
+Where they are off: all is linear in y, z and e (Line), and torques and motions are functions (Form) of y and of as many numbers in [-1, 1] as they have: what readings make of them, in
+a frame that is made for it. What torques are beside their slopes at 0 is a number more for each; second derivatives of motions go to lambda and sigma."""
 import sys
 from math import ceil
 from flint import arb, arb_mat
@@ -24,7 +24,7 @@ from balls import *
 ORDERS = range(11, 30)  # of Taylor polynomials of motions: the first that leaves so little beside extents
 LITTLE = 1e-12
 LARGER = 4  # w is as much smaller, so that there is little of it beside y
-PARTS = [arb(0.5)]  # of extents
+PARTS = [arb(0.5)]  # of extents, evenly up to all of them
 PACE = 0.7  # in a piece of a period, the fastest rate times its length is at most this
 
 # ---- Linear functions of y, |y| <= 1, and of others
@@ -96,6 +96,7 @@ def piece(robot, x, torques, length):  # from the forms x, under the forms of to
         left = length.abs_upper() ** (order + 1)
         if all(series[order + 1].range().abs_upper() * left <= size * LITTLE for series, size in zip(rest, sizes)):
             break
+    # Slopes at a point are those in the middle and the mean of second derivatives on the way there, times the way: in nearer parts of the box they are known more closely
     after, nearer = [], [(part, sum(robot.motion(*within(part))[2], [])) for part in PARTS]
     def along(series, end):
         for k in reversed(range(order + 1)):
