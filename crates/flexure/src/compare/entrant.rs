@@ -1,7 +1,7 @@
 //! The laws that take part, by name.
 
 use crate::files::{Problem, Problems, suggest};
-use crate::laws::{self, About, CONTROLLERS, Controller, Phi};
+use crate::laws::{self, About, CONTROLLERS, Controller, Phi, VCBC};
 use crate::robot::Robot;
 
 /// A law that takes part: a registered controller, v-CBC with one of its shaping functions.
@@ -15,9 +15,6 @@ pub struct Entrant {
 fn vcbc(phi: Phi) -> String {
     if phi == Phi::Linear { VCBC.to_owned() } else { format!("{VCBC}:{}", phi.name()) }
 }
-
-/// The registered name of v-CBC.
-const VCBC: &str = "vcbc";
 
 impl Entrant {
     /// The law of that name: one of `flexure list controllers`, `vcbc:tanh` or `vcbc:coupled-tanh`; `vcbc` is φ linear.

@@ -5,9 +5,7 @@ use serde::Serialize;
 use crate::compare::ranking::{Spread, Standing, TIE, ranks, standings};
 use crate::compare::score::Score;
 use crate::compare::task::Task;
-
-/// What v-CBC is called, alone or before its shaping function.
-const VCBC: &str = "vcbc";
+use crate::laws::VCBC;
 
 /// Laws on tasks: the contract of `compare --json`.
 ///

@@ -113,6 +113,9 @@ laws! {
         adaptive_vcbc::AdaptiveVcbc;
 }
 
+/// The registered name of v-CBC.
+pub(crate) const VCBC: &str = <vcbc::Vcbc as LawKind>::NAME;
+
 /// What is known of the kind of law `kind`; none for names that are not registered.
 pub fn about(kind: &str) -> Option<About> {
     ABOUT.iter().find(|(name, _)| *name == kind).map(|(_, about)| *about)

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use crate::files::number::{engineering, small};
 use crate::files::{Problem, Problems, Unfinished};
+use crate::laws::VCBC;
 use crate::progress::{PartProgress, Progress};
 use crate::prove::question::{Direct, Proof, Question, Region, certified, prove};
 use crate::prove::standing::is_about;
@@ -381,7 +382,7 @@ fn verdict(summary: &Summary) -> String {
 
 /// What a run came to, in a sentence.
 fn outcome(summary: &Summary) -> String {
-    let law = summary.phi.as_ref().map_or_else(|| summary.controller.clone(), |phi| format!("φ = {phi}"));
+    let law = if summary.controller == VCBC { format!("φ = {}", summary.law()) } else { summary.law() };
     let unknown = unknown(&summary.plant).map(|unknown| format!("; {unknown}")).unwrap_or_default();
     format!("{law}: {}{unknown}. {}", summary.in_words(), verdict(summary))
 }

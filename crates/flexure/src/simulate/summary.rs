@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::files::number::{engineering, small};
+use crate::laws::VCBC;
 use crate::robot::JointKind;
 use crate::simulate::following::Following;
 use crate::units::{self, Unit, of_joints};
@@ -72,6 +73,15 @@ pub struct Summary {
 }
 
 impl Summary {
+    /// The law in short: v-CBC by its shaping function, any other by its kind, with its shaping function if it has one.
+    pub fn law(&self) -> String {
+        match &self.phi {
+            Some(phi) if self.controller == VCBC => phi.clone(),
+            Some(phi) => format!("{} {phi}", self.controller),
+            None => self.controller.clone(),
+        }
+    }
+
     /// How far the links are off, whether and when they settle, and what that takes of the motors.
     pub fn in_words(&self) -> String {
         let unit = |unit: Unit, prefix: &str| of_joints(unit, prefix, &self.kinds);

@@ -237,9 +237,12 @@ fn v_cbc_with_residuals_carries_what_it_does_not_know() {
     let mut left = |kind: &str| {
         scenario.controller = Controller::default_for(kind, &scenario.robot).expect("registered");
         let run = run(&scenario, &flexure::progress::unwatched).expect("few joints");
+        let shown = if kind == "vcbc" { "linear" } else { "disturbance-rejecting-vcbc linear" };
+        assert_eq!(run.summary.law(), shown);
         run.summary.final_abs_e_l
     };
     let (without, with) = (left("vcbc"), left("disturbance-rejecting-vcbc"));
+    assert_eq!(scenario.controller.in_words(), "disturbance-rejecting-vcbc with φ = linear");
     assert!(with < 1e-2 * without, "{with} and {without}");
 }
 

@@ -142,8 +142,7 @@ fn words(options: &[&str]) -> String {
 }
 
 fn row(summary: &Summary, columns: &[Column]) -> Row {
-    let law = summary.phi.as_ref().unwrap_or(&summary.controller);
-    let words = [&summary.name, law].map(Cell::new);
+    let words = [&summary.name, &summary.law()].map(Cell::new);
     let numbers = columns.iter().map(|(_, show)| right(show(summary)));
     Row::from(words.into_iter().chain(numbers).collect::<Vec<_>>())
 }
