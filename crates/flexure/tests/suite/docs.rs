@@ -51,7 +51,7 @@ fn function_exists(path: &str) -> bool {
     let text = module(&root().join("crates").join(krate).join("src"), name);
     let rest: Vec<_> = parts.collect();
     let item = |name: &str| {
-        ["pub mod ", "pub struct ", "pub enum ", "pub trait ", "pub fn ", "    fn ", "    pub "]
+        ["pub mod ", "pub struct ", "pub enum ", "pub trait ", "pub type ", "pub fn ", "    fn ", "    pub "]
             .iter()
             .any(|kind| declares(&text, kind, name))
     };
