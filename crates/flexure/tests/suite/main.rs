@@ -34,6 +34,7 @@ mod identify;
 mod imperfection_files;
 mod imperfections;
 mod integrator;
+mod laws_on_numbers;
 mod limits;
 mod logs;
 mod mangled_files;

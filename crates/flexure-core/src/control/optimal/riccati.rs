@@ -30,7 +30,8 @@ pub(super) fn discrete<S: Float, const N: usize>([a, g, x]: &mut [Square<S, N>; 
         next += x;
         next.symmetrize();
         *a = &*a * by_a;
-        if next.diagonal_entries().zip(x.diagonal_entries()).any(|(next, x)| next + next < x) {
+        let falls = |(next, x): (S, S)| x > S::ZERO && next + next < x;
+        if next.diagonal_entries().zip(x.diagonal_entries()).any(falls) {
             return None;
         }
         // What is added shrinks with the square of a: it rounds to nothing at last.

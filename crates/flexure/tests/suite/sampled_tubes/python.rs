@@ -15,6 +15,19 @@ fn checked(text: &str, sample: usize) -> Option<(i32, String)> {
     python::checked("check_tube.py", text, sample)
 }
 
+/// The file with another `value` at a `place`.
+fn with(document: &Value, place: &str, value: Value) -> String {
+    let mut other = document.clone();
+    *other.pointer_mut(place).unwrap() = value;
+    other.to_string()
+}
+
+/// The file with so many times as much at a `place`.
+fn claimed(document: &Value, place: &str, factor: f64) -> String {
+    let claim: f64 = document.pointer(place).unwrap().as_str().unwrap().parse().unwrap();
+    with(document, place, json!(format!("{}", claim * factor)))
+}
+
 #[test]
 fn the_second_checker_accepts_tubes() {
     let late = |delay: f64| {
@@ -67,15 +80,8 @@ fn the_second_checker_finds_what_readings_do() {
 fn the_second_checker_is_not_fooled_about_readings() {
     let text = counted("0.012", &[]);
     let document: Value = serde_json::from_str(&text).unwrap();
-    let with = |place: &str, value: Value| {
-        let mut other = document.clone();
-        *other.pointer_mut(place).unwrap() = value;
-        other.to_string()
-    };
-    let claimed = |place: &str, factor: f64| {
-        let claim: f64 = document.pointer(place).unwrap().as_str().unwrap().parse().unwrap();
-        with(place, json!(format!("{}", claim * factor)))
-    };
+    let with = |place: &str, value: Value| with(&document, place, value);
+    let claimed = |place: &str, factor: f64| claimed(&document, place, factor);
     let narrower = |k: usize, i: usize, factor: f64| {
         let mut all = numbers(&document["sections"][k]);
         all[i] *= factor;
@@ -107,15 +113,8 @@ fn the_second_checker_is_not_fooled() {
         scenario("two-link-tanh-smooth", &["duration = 0.002", "reference.smooth_start.duration = 0.1"]);
     let text = file(&scenario, 1e-5);
     let document: Value = serde_json::from_str(&text).unwrap();
-    let with = |place: &str, value: Value| {
-        let mut other = document.clone();
-        *other.pointer_mut(place).unwrap() = value;
-        other.to_string()
-    };
-    let claimed = |place: &str, factor: f64| {
-        let claim: f64 = document.pointer(place).unwrap().as_str().unwrap().parse().unwrap();
-        with(place, json!(format!("{}", claim * factor)))
-    };
+    let with = |place: &str, value: Value| with(&document, place, value);
+    let claimed = |place: &str, factor: f64| claimed(&document, place, factor);
     let section = |k: usize, i: usize, change: &dyn Fn(f64) -> f64| {
         let mut moved = numbers(&document["sections"][k]);
         moved[i] = change(moved[i]);
