@@ -29,7 +29,7 @@ pub(crate) struct Scatter<'a> {
     pub aside: (&'a str, Vec<Marker>),
 }
 
-const LEFT: f64 = 64.0;
+const LEFT: f64 = 78.0;
 const RIGHT: f64 = 14.0;
 const TOP: f64 = 34.0;
 const MARK: Stroke = Stroke { color: INK, width: 1.4, dash: &[2.0, 4.0] };

@@ -50,8 +50,14 @@ fn verdict(board: &Leaderboard) -> Verdict {
     };
     let is_other = |standing: &&Standing| is_vcbc(&standing.law) && standing.law != first.law;
     let vcbc = board.ranking.iter().find(|standing| is_vcbc(&standing.law)).filter(is_other);
+    let beside: Vec<_> = board.ranking[1..]
+        .iter()
+        .filter(|standing| standing.place == first.place)
+        .map(|standing| standing.law.as_str())
+        .collect();
     let said = [
         Some(format!("First of {}: {}.", counted(board.laws().count(), "law"), words(first))),
+        (!beside.is_empty()).then(|| format!("It shares the place with {}.", beside.join(", "))),
         vcbc.map(|vcbc| format!("The best v-CBC is at place {}: {}.", vcbc.place, words(vcbc))),
         (hopeless > 0).then(|| format!("On {} no law follows.", counted(hopeless, "task"))),
     ];
