@@ -5,24 +5,27 @@ use flexure_core::control::{Command, Input, Metric, Shaping, Vcbc};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, MassFactor, Motion};
 use flexure_core::reference::Reference;
-use flexure_core::scalar::{Interval, Jet, Over, Scalar};
+use flexure_core::scalar::{Dual, Interval, Jet, Over, Scalar};
 
 use crate::linalg::Symmetric;
 
 /// A number over a box as a series in one direction: its value, its first derivative and half its second.
 pub type Slope = Jet<Interval, 3>;
 
+/// Such a series, and its derivative in a second direction.
+pub type Tilt = Dual<Slope, 1>;
+
 /// A motion, one number per joint each: positions in rad, velocities [rad/s].
 #[derive(Clone, Debug)]
-pub struct Place {
+pub struct Place<S = Slope> {
     /// Link positions.
-    pub q_l: Vec<Slope>,
+    pub q_l: Vec<S>,
     /// Motor positions.
-    pub q_m: Vec<Slope>,
+    pub q_m: Vec<S>,
     /// Link velocities.
-    pub v_l: Vec<Slope>,
+    pub v_l: Vec<S>,
     /// Motor velocities.
-    pub v_m: Vec<Slope>,
+    pub v_m: Vec<S>,
 }
 
 /// What the law says at a place; see [`Command`].
@@ -69,6 +72,8 @@ pub trait TrackingLoop: Sync {
     fn approach_m(&self, e_m: &[Slope]) -> Vec<Slope>;
     /// What the law says at `x`, with the Taylor coefficients `q_ld` of the reference in rad/sᵏ.
     fn command(&self, x: &Place, q_ld: &[[Slope; 5]]) -> Answer;
+    /// The motor torques [N m] that the law says there, by two directions.
+    fn torques(&self, x: &Place<Tilt>, q_ld: &[[Slope; 5]]) -> Vec<Tilt>;
     /// M_l `a_l` + (C_l + D_l) `v_l` + g_l [N m]: what the springs have to give where the links are at `q_l` in rad, move at `v_l` [rad/s] and speed
     /// up by `a_l` [rad/s²].
     fn link_load(&self, q_l: &[Slope], v_l: &[Slope], a_l: &[Slope]) -> Vec<Slope>;
@@ -142,16 +147,16 @@ where
     }
 
     fn command(&self, x: &Place, q_ld: &[[Slope; 5]]) -> Answer {
-        let motion =
-            Motion { q_l: vector(&x.q_l), q_m: vector(&x.q_m), v_l: vector(&x.v_l), v_m: vector(&x.v_m) };
-        let Command { u_m, q_md, e_l, e_m, s_l, s_m, .. } = command(
-            &self.law,
-            &self.robot,
-            &motion,
-            &Vector::from_fn(|i| q_ld.get(i).map_or(Jet::ZERO, |q| Jet::new(*q))),
-        );
+        let q_ld = Vector::from_fn(|i| q_ld.get(i).map_or(Jet::ZERO, |q| Jet::new(*q)));
+        let Command { u_m, q_md, e_l, e_m, s_l, s_m, .. } = command(&self.law, &self.robot, x, &q_ld);
         let [u_m, q_md, e_l, e_m, s_l, s_m] = [u_m, q_md, e_l, e_m, s_l, s_m].map(|v| self.list(&v));
         Answer { u_m, q_md, e_l, e_m, s_l, s_m }
+    }
+
+    fn torques(&self, x: &Place<Tilt>, q_ld: &[[Slope; 5]]) -> Vec<Tilt> {
+        let lifted = |q: &[Slope; 5]| Jet::new(q.map(Tilt::constant));
+        let q_ld = Vector::from_fn(|i| q_ld.get(i).map_or(Jet::ZERO, lifted));
+        self.list(&command(&self.law, &self.robot, x, &q_ld).u_m)
     }
 
     fn link_load(&self, q_l: &[Slope], v_l: &[Slope], a_l: &[Slope]) -> Vec<Slope> {
@@ -222,20 +227,22 @@ where
     }
 }
 
-/// The law over intervals with two derivatives. Compiled once per robot, out of line: it is much code.
+/// The law over intervals with derivatives. Compiled once per robot and number, out of line: it is much code.
 #[inline(never)]
-fn command<L, Pl, Pm, const N: usize>(
+fn command<S: Over<Interval>, L, Pl, Pm, const N: usize>(
     law: &Vcbc<Interval, Pl, Pm, N>,
     robot: &Fjr<Interval, L, N>,
-    x: &Motion<Slope, N>,
-    q_ld: &Vector<Jet<Slope, 5>, N>,
-) -> Command<Slope, N>
+    x: &Place<S>,
+    q_ld: &Vector<Jet<S, 5>, N>,
+) -> Command<S, N>
 where
     L: Links<Interval, N>,
     Pl: Shaping<Interval, N>,
     Pm: Shaping<Interval, N>,
 {
-    law.command(robot, x, q_ld, &Input::ZERO)
+    let motion =
+        Motion { q_l: vector(&x.q_l), q_m: vector(&x.q_m), v_l: vector(&x.v_l), v_m: vector(&x.v_m) };
+    law.command(robot, &motion, q_ld, &Input::ZERO)
 }
 
 /// The unit vector of joint `j`.

@@ -1,10 +1,11 @@
-//! The law's second derivatives, over boxes that last for some instants.
+//! How far the law is from linear, over boxes that last for some instants.
 
 use flexure_core::scalar::Interval;
 
 use crate::linalg::Dense;
+use crate::prove::engine::sampled_data::bends::{Bends, Order};
 use crate::prove::engine::sampled_data::frame::Frame;
-use crate::prove::engine::sampled_data::instant::{Bends, Instant, Middle};
+use crate::prove::engine::sampled_data::instant::{Instant, Middle};
 use crate::prove::engine::sampled_data::norm::onwards;
 use crate::prove::engine::sampled_data::period::HeldLoop;
 use crate::prove::engine::sampled_data::spread::{Sizes, Spread};
@@ -29,8 +30,9 @@ fn by(seen: &Spread, sizes: &Sizes) -> Dense<f64> {
 }
 
 /// What is known from instants before.
-#[derive(Default)]
 pub struct Ahead {
+    /// Second derivatives until those leave open too much.
+    order: Order,
     bends: Option<Bends>,
     before: Option<Vec<f64>>,
     /// Instants that boxes are made for, beside the one where they are.
@@ -39,8 +41,14 @@ pub struct Ahead {
     rest: u32,
 }
 
+impl Default for Ahead {
+    fn default() -> Self {
+        Self { order: Order::Second, bends: None, before: None, instants: 0.0, rest: 0 }
+    }
+}
+
 impl Ahead {
-    /// The law at the time `t` in s over what is `seen`. Boxes are as long as all |η_j| have slopes up to `enough`, which cost a tube nothing.
+    /// The law at the time `t` in s over what is `seen`. Boxes are as long as all |η_j| are up to `enough`, which costs a tube nothing.
     pub fn law(
         &mut self,
         of: &HeldLoop<'_>,
@@ -50,15 +58,17 @@ impl Ahead {
         enough: &[f64],
     ) -> Instant {
         let frame = Frame::of(&by(seen, sizes));
-        let middle = Middle::of(of.system, t, &seen.center, frame.clone());
+        let middle = |order| Middle::of(of.system, t, &seen.center, frame.clone(), order);
+        let mut about = middle(self.order);
         let ranges = seen.ranges(sizes);
         let now: Vec<_> = seen.center.iter().map(|c| c.midpoint()).collect();
         let before = self.before.replace(now.clone()).unwrap_or_else(|| now.clone());
         let within = |instant: &Instant, part: f64| {
-            instant.sizes.slopes.iter().zip(enough).all(|(slope, enough)| *slope <= part * enough)
+            let Sizes { slopes, most, .. } = &instant.sizes;
+            slopes.iter().zip(most).zip(enough).all(|((slope, most), enough)| slope + most <= part * enough)
         };
         if let Some(bends) = self.bends.as_ref().filter(|bends| bends.cover(t, &ranges)) {
-            let instant = middle.over(seen, sizes, bends);
+            let instant = about.over(seen, sizes, bends);
             if within(&instant, MOST) {
                 return instant;
             }
@@ -72,8 +82,13 @@ impl Ahead {
             };
             let boxes = || ranges.iter().zip(now.iter().zip(&before));
             let over = if self.instants > 0.0 { boxes().map(roomy).collect() } else { ranges.clone() };
-            let bends = Bends::over(of.system, times, over, &frame);
-            let instant = middle.over(seen, sizes, &bends);
+            let bends = Bends::over(of.system, times, over, &frame, self.order);
+            let instant = about.over(seen, sizes, &bends);
+            if self.instants == 0.0 && self.order == Order::Second && !within(&instant, 1.0) {
+                self.order = Order::Third;
+                about = middle(self.order);
+                continue;
+            }
             if self.instants == 0.0 || within(&instant, MOST) {
                 if self.rest == 0 && within(&instant, LITTLE) {
                     self.instants = (2.0 * self.instants).clamp(1.0, LONGEST);

@@ -1,13 +1,13 @@
 //! What the law asks for at an instant, over an ellipsoid of states.
 
-use flexure_core::scalar::{Interval, Jet, Scalar};
+use flexure_core::scalar::{Interval, Scalar};
 use rayon::prelude::*;
 
 use crate::linalg::{Dense, Symmetric};
-use crate::prove::engine::envelope::closed_loop::{Place, Slope, TrackingLoop};
+use crate::prove::engine::envelope::closed_loop::TrackingLoop;
+use crate::prove::engine::sampled_data::bends::{Bends, Order, along, columns, reference, second};
 use crate::prove::engine::sampled_data::frame::Frame;
 use crate::prove::engine::sampled_data::norm::{frobenius, spectral};
-use crate::prove::engine::sampled_data::second::second_derivatives;
 use crate::prove::engine::sampled_data::spread::{Sizes, Spread};
 
 /// The torque of the law at an instant, and what that depends on.
@@ -20,52 +20,6 @@ pub struct Instant {
     pub sizes: Sizes,
 }
 
-/// The law's torques [N m] along a line of motions x = (q_l, q_m, q̇_l, q̇_m) that move at `rates`.
-fn along(system: &dyn TrackingLoop, q_ld: &[[Slope; 5]], x: &[Interval], rates: &[Interval]) -> Vec<Slope> {
-    let n = x.len() / 4;
-    let slope = |i: usize| Jet::new([x[i], rates[i], Interval::ZERO]);
-    let part = |k: usize| (k * n..(k + 1) * n).map(slope).collect();
-    system.command(&Place { q_l: part(0), q_m: part(1), v_l: part(2), v_m: part(3) }, q_ld).u_m
-}
-
-/// The sum of so many columns.
-fn columns(lower: &Dense<f64>, of: &[usize]) -> Vec<Interval> {
-    let sum = |row: &[f64]| of.iter().fold(Interval::ZERO, |sum, &k| sum + Interval::point(row[k]));
-    lower.rows().map(sum).collect()
-}
-
-/// Taylor coefficients of the reference over the times `t` in s.
-fn reference(system: &dyn TrackingLoop, t: Interval) -> Vec<[Slope; 5]> {
-    system.reference(t).iter().map(|jet| std::array::from_fn(|k| Slope::value(jet[k]))).collect()
-}
-
-/// Second derivatives of the law's torques by the coordinates of a frame, over a box of motions and some time.
-#[derive(Clone, Debug)]
-pub struct Bends {
-    times: Interval,
-    over: Vec<Interval>,
-    frame: Frame,
-    /// ∂²u_j/∂ξ².
-    of: Vec<Symmetric<Interval>>,
-}
-
-impl Bends {
-    /// Over the `times` in s and the box `over` of motions.
-    pub fn over(system: &dyn TrackingLoop, times: Interval, over: Vec<Interval>, frame: &Frame) -> Self {
-        let q_ld = reference(system, times);
-        let of = second_derivatives(over.len(), &|_, _| false, &|directions| {
-            let torques = along(system, &q_ld, &over, &columns(&frame.lower, directions));
-            torques.iter().map(|u| u.coefficient(2)).collect()
-        });
-        Self { times, over, frame: frame.clone(), of }
-    }
-
-    /// Whether they are known at the time `t` in s over all of the box `x`.
-    pub fn cover(&self, t: Interval, x: &[Interval]) -> bool {
-        self.times.contains_interval(t) && self.over.iter().zip(x).all(|(over, x)| over.contains_interval(*x))
-    }
-}
-
 /// The law at the middle of what is seen: its torques [N m] and their slopes by the coordinates of a frame.
 #[derive(Clone, Debug)]
 pub struct Middle {
@@ -73,27 +27,34 @@ pub struct Middle {
     frame: Frame,
     torques: Vec<Interval>,
     slopes: Dense<Interval>,
+    /// ∂²u_j/∂ξ², where boxes have third derivatives; else none.
+    bends: Vec<Symmetric<Interval>>,
 }
 
 impl Middle {
     /// At the time `t` in s and the motion `x`.
-    pub fn of(system: &dyn TrackingLoop, t: Interval, x: &[Interval], frame: Frame) -> Self {
+    pub fn of(system: &dyn TrackingLoop, t: Interval, x: &[Interval], frame: Frame, order: Order) -> Self {
         let q_ld = reference(system, t);
         let one = |directions: &[usize]| along(system, &q_ld, x, &columns(&frame.lower, directions));
         let torques: Vec<_> = one(&[]).iter().map(|u| u.coefficient(0)).collect();
         let first: Vec<_> = (0..x.len()).into_par_iter().map(|k| one(&[k])).collect();
         let slopes = Dense::from_fn(torques.len(), x.len(), |j, k| first[k][j].coefficient(1));
-        Self { at: x.to_vec(), frame, torques, slopes }
+        let bends = match order {
+            Order::Second => Vec::new(),
+            Order::Third => second(system, &q_ld, x, &frame),
+        };
+        Self { at: x.to_vec(), frame, torques, slopes, bends }
     }
 
     /// Over all that is `seen`, c + A y + B z, |z_i| ≤ r_i of `sizes.most`: u(c) + J (A y + B z) + η with
     ///
-    /// |η_j| ≤ s_j |y| + o_j, s_j = ‖Aᵀ H_j A‖ + | |Aᵀ H_j| β |, o_j = ½ βᵀ |H_j| β, β = |B| r,
+    /// |η_j| ≤ s_j |y| + o_j, s_j = ‖Aᵀ H_j A‖ + | |Aᵀ H_j| β |, o_j = ½ βᵀ |G_j| β, β = |B| r,
     ///
-    /// and those of the same z differ by s_j |Δy| at most: ∂η_j/∂y is ∫ (A y + B z)ᵀ H_j A over a way from c, the second derivatives H_j in `bends`.
+    /// and those of the same z differ by s_j |Δy| at most. With w = A y + B z, ∂η_j/∂y is wᵀ H_j A, H_j = ∫ u_j''(c + t w) dt, and η_j for y = 0 is
+    /// ½ wᵀ G_j w, G_j = 2 ∫ (1 − t) u_j''(c + t w) dt: t is ½ in the mean there, and ⅓.
     pub fn over(&self, seen: &Spread, sizes: &Sizes, bends: &Bends) -> Instant {
         let (n, ball) = (self.torques.len(), sizes.ball);
-        let by = bends.frame.coordinates(&seen.deviations);
+        let by = bends.coordinates(&seen.deviations);
         let of_ball = Dense::from_fn(seen.center.len(), ball, |i, j| by[(i, j)]);
         let across = of_ball.transposed();
         let by_others = |row: &[Interval]| {
@@ -103,17 +64,21 @@ impl Middle {
             })
         };
         let others: Vec<_> = by.rows().map(by_others).collect();
+        let both = of_ball.rows().map(|row| Interval::point(frobenius(row.iter().copied())));
+        let both: Vec<_> = both.zip(&others).map(|(ball, &others)| ball + others).collect();
+        let [one, two, three] = [1.0, 2.0, 3.0].map(Interval::point);
+        let slopes = bends.mean(&self.bends, &both, one / two);
+        let values = bends.mean(&self.bends, &others, one / three);
         let sized = |all: Dense<Interval>| all.map(|x| Interval::point(x.magnitude()));
         let dot = |a: &[Interval]| a.iter().zip(&others).fold(Interval::ZERO, |sum, (&a, &b)| sum + a * b);
-        let beside = |bend: &Symmetric<Interval>| {
-            let bend = Dense::from(bend);
-            let half = &across * &bend;
+        let beside = |(slopes, values): (&Symmetric<Interval>, &Symmetric<Interval>)| {
+            let half = &across * &Dense::from(slopes);
             let slope = Interval::point(spectral(&(&half * &of_ball)))
                 + Interval::point(frobenius(sized(half).apply(&others).into_iter()));
-            let twice = dot(&sized(bend).apply(&others));
-            [slope.hi(), (twice * Interval::point(0.5)).hi()]
+            let twice = dot(&sized(Dense::from(values)).apply(&others));
+            [slope.hi(), (twice / two).hi()]
         };
-        let beside: Vec<_> = bends.of.par_iter().map(beside).collect();
+        let beside: Vec<_> = slopes.par_iter().zip(&values).map(beside).collect();
         let mut sizes = sizes.clone();
         for (j, [slope, most]) in beside.into_iter().enumerate() {
             (sizes.slopes[j], sizes.most[j]) = (slope, most);
@@ -130,7 +95,7 @@ impl Middle {
 impl Instant {
     /// The torques for what is `seen`, in other columns than those of `asked`, but for η.
     pub fn at(&self, seen: &Spread) -> Spread {
-        let Middle { at, frame, torques, slopes } = &self.middle;
+        let Middle { at, frame, torques, slopes, .. } = &self.middle;
         let off = Dense::from_fn(at.len(), 1, |i, _| seen.center[i] - at[i]);
         let moved = slopes * &frame.coordinates(&off);
         Spread {

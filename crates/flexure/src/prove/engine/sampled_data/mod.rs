@@ -19,6 +19,7 @@
 //! directions that Q holds, as do readings. A torque that would be off by w at each instant is such a Q: it makes the tube as wide as it is asked to be.
 
 pub mod ahead;
+pub mod bends;
 pub mod curvature;
 pub mod flow;
 pub mod frame;
@@ -33,6 +34,7 @@ pub mod second;
 pub mod section;
 pub mod sensors;
 pub mod spread;
+pub mod step;
 pub mod stretch;
 pub mod tube;
 pub mod watch;

@@ -1,14 +1,14 @@
-//! The recursion of ellipsoids, and the check of each.
+//! All sections of a tube, from the start on.
 
 use flexure_core::scalar::{Interval, Scalar};
 
-use crate::linalg::{Dense, Symmetric, cholesky, lower_inverse, stein};
+use crate::linalg::{Dense, Symmetric, cholesky, stein};
 use crate::progress::Progress;
 use crate::prove::engine::sampled_data::ahead::Ahead;
 use crate::prove::engine::sampled_data::instant::Instant;
-use crate::prove::engine::sampled_data::norm::{frobenius, spectral};
-use crate::prove::engine::sampled_data::period::{Before, Cuts, HeldLoop, Passage, open_of, passage};
-use crate::prove::engine::sampled_data::section::{Section, inverse_of};
+use crate::prove::engine::sampled_data::period::{Before, Cuts, HeldLoop, passage};
+use crate::prove::engine::sampled_data::section::Section;
+use crate::prove::engine::sampled_data::step::{LEAST, Recursion, Step, check, latest, middles, spread};
 use crate::prove::engine::sampled_data::watch::{Beyond, Watch};
 
 /// What tube is asked for.
@@ -22,17 +22,6 @@ pub struct TubeRequest {
     pub extents: Vec<f64>,
     /// The rate to look for [1/s].
     pub rate: f64,
-}
-
-/// What is said of a period.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step {
-    /// λ.
-    pub growth: f64,
-    /// ρ, by which the middle is missed.
-    pub offset: f64,
-    /// σ, by which readings that are off move the loop.
-    pub noise: f64,
 }
 
 /// An instant of a tube.
@@ -76,23 +65,8 @@ pub enum Why {
     Beyond(Beyond),
 }
 
-/// Of 1 − λ, the parts for what intervals leave open of the law and of the robot, and for readings that are off.
-#[derive(Clone, Copy)]
-struct Shares {
-    law: f64,
-    robot: f64,
-    readings: f64,
-}
-
-/// Where readings are exact, and where they are off.
-const EXACT: Shares = Shares { law: 0.25, robot: 0.5, readings: 0.0 };
-const OFF: Shares = Shares { law: 0.25, robot: 0.3, readings: 0.4 };
-
 /// A tube whose links reach so many times as far as was asked for is none: what makes it so wide has taken over.
 const WIDEST: f64 = 10.0;
-
-/// Numbers of a state are off by this part of their extents at least, each for itself.
-const LEAST: f64 = 1e-6;
 
 /// Extents of the first ellipsoid are brought to those that are asked for in so many rounds.
 const ROUNDS: u32 = 8;
@@ -122,7 +96,7 @@ pub fn tube(
 ) -> Option<Result<Vec<Section>, Ends>> {
     let ends = |period: usize, why: Why| Some(Err(Ends { period, why }));
     let shrink = (-request.rate * of.period.midpoint()).exp();
-    let Some((first, off)) = first(of, request, shrink) else { return ends(0, Why::NotStable) };
+    let Some((first, torques)) = first(of, request, shrink) else { return ends(0, Why::NotStable) };
     let mut now = match sections {
         Sections::Made => first,
         Sections::Given(all, _) => all[0].clone(),
@@ -133,20 +107,16 @@ pub fn tube(
         return ends(0, Why::StartsOutside);
     }
     let (mut cuts, mut ahead, mut watch) = (Cuts::new(shrink), Ahead::default(), Watch::default());
-    // Torques beside the law's that hold the tube open anyway leave this much to |η|.
-    let count = (off.len() as f64).sqrt();
-    let enough: Vec<_> = off.iter().map(|w| w * shares(of).law * (1.0 - shrink) / count).collect();
+    let mut recursion = Recursion::new(torques, shrink, of.sensors.off.is_empty());
+    let enough = recursion.enough();
     for k in 0.. {
         if progress(k as f64 / request.periods as f64).is_break() {
             return None;
         }
-        let reached = now
-            .extents()
-            .into_iter()
-            .zip(&request.extents)
-            .position(|(extent, asked)| extent > WIDEST * asked);
-        if let Some(link) = reached {
-            return ends(k, Why::Widens(link, now.extents()[link]));
+        let extents = now.extents();
+        let reaches = || extents.iter().zip(&request.extents).map(|(extent, asked)| extent / asked);
+        if let Some(link) = reaches().position(|reach| reach > WIDEST) {
+            return ends(k, Why::Widens(link, extents[link]));
         }
         let before = Before::over(of, &now);
         let t = of.period * Interval::point(k as f64);
@@ -160,60 +130,25 @@ pub fn tube(
         }
         let Some(passage) = cuts.passage(of, &before, &law) else { return ends(k, Why::Unbounded) };
         let next = match sections {
-            Sections::Made => next(&passage, &off, shrink, shares(of)),
+            Sections::Made => recursion.after(&passage, reaches().fold(0.0, f64::max)),
             Sections::Given(all, kept) => {
-                let [_, _, readings] = middles(&passage, off.len());
-                Some(Section { past: latest(&readings, kept[k + 1]), ..all[k + 1].clone() })
+                let [_, _, readings] = middles(&passage, of.system.joints());
+                let next = Section { past: latest(&readings, kept[k + 1]), ..all[k + 1].clone() };
+                let step = check(&passage, &next, of.system.joints());
+                Some((next, step))
             }
         };
-        let Some(next) = next else { return ends(k, Why::Grows) };
-        let step = check(&passage, &next, off.len());
-        let Step { growth, offset, noise } = step;
-        let most = (Interval::point(growth) + Interval::point(offset) + Interval::point(noise)).hi();
-        if most.is_nan() || most > 1.0 {
-            let missed = (Interval::point(growth) + Interval::point(noise)).hi() <= 1.0;
-            return ends(k, if missed { Why::Missed } else { Why::Grows });
+        let Some((next, step)) = next else { return ends(k, Why::Grows) };
+        if !step.holds() {
+            let exact = Step { offset: 0.0, ..step };
+            return ends(k, if exact.holds() { Why::Missed } else { Why::Grows });
         }
         each(At { k, section: &now, law: &law, step: Some(step) });
-        watch.passed(&before, &passage, off.len());
+        watch.passed(&before, &passage, of.system.joints());
         found.push(std::mem::replace(&mut now, next));
     }
     found.push(now);
     Some(Ok(found))
-}
-
-fn shares(of: &HeldLoop<'_>) -> Shares {
-    if of.sensors.off.is_empty() { EXACT } else { OFF }
-}
-
-/// Φ, the columns that torques beside the law's go by, and those of readings, the oldest first, as long as they may be off.
-fn middles(passage: &Passage, n: usize) -> [Dense<f64>; 3] {
-    let (all, sizes) = (&passage.after.deviations, &passage.law.sizes);
-    let ball = sizes.ball;
-    let part = |from: usize, count: usize| Dense::from_fn(ball, count, |i, j| all[(i, from + j)].midpoint());
-    let readings = Dense::from_fn(ball, all.columns() - ball - n, |i, j| {
-        all[(i, ball + n + j)].midpoint() * sizes.most[n + j]
-    });
-    [part(0, ball), part(ball, n), readings]
-}
-
-/// For each z, how far it may be off so that all together move a tube by `part` of what it is, from what they are.
-fn held_open(sizes: &[f64], part: f64) -> impl Iterator<Item = f64> {
-    let count = sizes.len() as f64;
-    sizes.iter().map(move |size| size * count.sqrt() / part)
-}
-
-/// λ⁻² A + Σ w² b bᵀ and a little on the diagonal.
-fn spread(a: &Dense<f64>, columns: &Dense<f64>, others: &[f64], shrink: f64, open: &[f64]) -> Symmetric<f64> {
-    let entry = |i: usize, j: usize| {
-        let by_others = others.iter().enumerate().map(|(k, w)| w * w * columns[(i, k)] * columns[(j, k)]);
-        a[(i, j)] / (shrink * shrink) + by_others.sum::<f64>()
-    };
-    let size = a.columns();
-    Symmetric::from_fn(size, |i, j| {
-        let own = if i == j { (LEAST * LEAST * entry(i, i)).max(open[i] * open[i]) } else { 0.0 };
-        entry(i, j) + own
-    })
 }
 
 /// The first ellipsoid, and the torques that hold the tube open [N m].
@@ -225,7 +160,7 @@ fn first(of: &HeldLoop<'_>, request: &TubeRequest, shrink: f64) -> Option<(Secti
     let small =
         Section { center: center.clone(), lower: Dense::identity(size).scaled(SMALL), past: none.clone() };
     let before = Before::over(of, &small);
-    let law = Ahead::default().law(of, Interval::ZERO, &before.seen, &before.sizes, &vec![0.0; n]);
+    let law = Ahead::default().law(of, Interval::ZERO, &before.seen, &before.sizes, &vec![f64::INFINITY; n]);
     let [flow, columns, _] = middles(&passage(of, &before, &law, 1)?, n);
     let flow = flow.scaled(1.0 / (SMALL * shrink));
     let mut torques = vec![1.0; n];
@@ -256,80 +191,4 @@ fn first(of: &HeldLoop<'_>, request: &TubeRequest, shrink: f64) -> Option<(Secti
         }
     }
     None
-}
-
-/// The section after `passage`, without the oldest readings of which little is left.
-fn next(passage: &Passage, torques: &[f64], shrink: f64, shares: Shares) -> Option<Section> {
-    let n = torques.len();
-    let [flow, columns, readings] = middles(passage, n);
-    let sizes = &passage.law.sizes;
-    let [law, robot, of_readings] =
-        [shares.law, shares.robot, shares.readings].map(|part| part * (1.0 - shrink));
-    // Half of it for the law beside its slopes, half for readings that are not kept.
-    let others =
-        held_open(&sizes.slopes[..n], law).zip(held_open(&sizes.most[..n], 0.5 * of_readings.max(law)));
-    let torques: Vec<_> =
-        others.zip(torques).map(|((slope, most), &anyway)| slope.max(most).max(anyway)).collect();
-    // Of all r with Σ (open/r)² = robot², those with the least Σ (r/row)².
-    let (open, rows) = open_of(passage);
-    let beside = beside(passage, &readings);
-    let open: Vec<_> = open.iter().zip(&beside).map(|(open, beside)| open + beside).collect();
-    let parts: f64 = open.iter().zip(&rows).map(|(open, row)| open / row).sum();
-    let open: Vec<_> =
-        open.iter().zip(&rows).map(|(open, row)| (open * row * parts).sqrt() / robot).collect();
-    let lower = cholesky(&spread(&(&flow * &flow.transposed()), &columns, &torques, shrink, &open))?;
-    let center = passage.after.center.iter().map(|c| c.midpoint()).collect();
-    let scaled = &lower_inverse(&lower) * &readings;
-    let length = |j: usize| (0..sizes.ball).map(|i| scaled[(i, j)].powi(2)).sum::<f64>().sqrt();
-    let (mut dropped, mut left) = (0, 0.5 * of_readings);
-    while dropped < readings.columns() && length(dropped) < left {
-        left -= length(dropped);
-        dropped += 1;
-    }
-    let past = latest(&readings, readings.columns() - dropped);
-    Some(Section { center, lower, past })
-}
-
-/// The last columns.
-fn latest(readings: &Dense<f64>, count: usize) -> Dense<f64> {
-    let from = readings.columns() - count;
-    Dense::from_fn(readings.rows().len(), count, |i, j| readings[(i, from + j)])
-}
-
-/// How far columns of readings are beside those of `kept`, the last of them, all together, number by number, from above.
-fn beside(passage: &Passage, kept: &Dense<f64>) -> Vec<f64> {
-    let (all, sizes) = (&passage.after.deviations, &passage.law.sizes);
-    let from = all.columns() - kept.columns();
-    let row = |i: usize| {
-        let each = all.row(i)[from..].iter().zip(&sizes.most[from - sizes.ball..]).zip(kept.row(i));
-        let off = each.map(|((&x, &most), &kept)| x * Interval::point(most) - Interval::point(kept));
-        off.fold(Interval::ZERO, |sum, off| sum + Interval::point(off.magnitude())).hi()
-    };
-    (0..sizes.ball).map(row).collect()
-}
-
-/// λ, ρ and σ from above, from what is known at the end of `passage` of `n` joints to `next`, which keeps the latest readings.
-fn check(passage: &Passage, next: &Section, n: usize) -> Step {
-    let (all, sizes) = (&passage.after.deviations, &passage.law.sizes);
-    let ball = sizes.ball;
-    let dropped = all.columns() - ball - n - next.past.columns();
-    let (root, inverse) = inverse_of(&next.lower);
-    let little = &root * &Dense::from_fn(ball, ball + n + dropped, |i, j| all[(i, j)]);
-    let flow = Dense::from_fn(ball, ball, |i, j| little[(i, j)]);
-    // |M z| for all z with |z_j| ≤ sizes_j: column by column, or by |z| ≤ √count, whichever is less.
-    let moved = |from: usize, sizes: &[f64]| {
-        let scaled =
-            Dense::from_fn(ball, sizes.len(), |i, k| little[(i, from + k)] * Interval::point(sizes[k]));
-        let column = |k: usize| Interval::point(frobenius((0..ball).map(|i| scaled[(i, k)])));
-        let each = (0..sizes.len()).fold(Interval::ZERO, |sum, k| sum + column(k));
-        let together = Interval::point(spectral(&scaled)) * Interval::point(sizes.len() as f64).sqrt();
-        Interval::point(each.hi().min(together.hi()))
-    };
-    let growth = inverse * (Interval::point(spectral(&flow)) + moved(ball, &sizes.slopes[..n]));
-    let sized = root.map(|x| Interval::point(x.magnitude()));
-    let beside: Vec<_> = beside(passage, &next.past).into_iter().map(Interval::point).collect();
-    let noise = moved(ball, &sizes.most[..n])
-        + moved(ball + n, &sizes.most[n..n + dropped])
-        + Interval::point(frobenius(sized.apply(&beside).into_iter()));
-    Step { growth: growth.hi(), offset: next.reach(&passage.after.center), noise: (inverse * noise).hi() }
 }
