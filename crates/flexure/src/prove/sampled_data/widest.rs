@@ -17,10 +17,17 @@ const WIDTHS: [f64; 19] = [
     2e-7, 1e-7,
 ];
 
+/// Control periods after which a tube is taken to have come far.
+const FAR: usize = 50;
+
+/// Three widths narrower, nearly.
+const DECADE: f64 = 9.0;
+
 /// The widest tube of those that were tried in which two motions come closer at `least` 1/s or faster, all links reaching equally far at
 /// the start; or why there is none. None where `progress` breaks it off.
 ///
-/// Too wide a tube ends within a few periods, so that trying from wide to narrow costs little beside the tube that is found.
+/// Too wide a tube ends within a few periods, so that trying from wide to narrow costs little beside the tube that is found. Where one comes far but not to the end, what is
+/// asked of it is not what ends it: of those that are narrower a decade more is tried.
 ///
 /// # Errors
 /// As [`sampled_tube`](super::sampled_tube).
@@ -56,7 +63,8 @@ pub fn widest_tube(
         if farthest.as_ref().is_none_or(|(_, best)| best.shown <= none.shown) {
             farthest = Some((width, none));
         }
-        if way != Way::Narrower {
+        let past_it = |(best, none): &(f64, NoTube)| none.shown >= FAR && DECADE * width < *best;
+        if way != Way::Narrower || farthest.as_ref().is_some_and(past_it) {
             break;
         }
     }

@@ -62,7 +62,13 @@ fn the_strongest_is_what_can_be_proved() {
             Step::Ideal,
             Some("acts in continuous time"),
         ),
-        (scenario("two-link-hardware", &["duration = 0.3"]), Step::Ideal, Some("widths were tried")),
+        (scenario("two-link-hardware", &["duration = 0.1"]), Step::Sampled, None),
+        // Counts that are twenty times as coarse.
+        (
+            scenario("two-link-hardware", &["duration = 0.1", "imperfection.encoder.resolution = 3e-2"]),
+            Step::Ideal,
+            Some("widths were tried"),
+        ),
     ] {
         let proof = prove(&scenario, &strongest).unwrap_or_else(|problems| panic!("{problems}"));
         assert_eq!(Step::of(&scenario, &proof), Some(step), "{}", scenario.name);

@@ -17,6 +17,9 @@ const LONGEST: f64 = 64.0;
 const MOST: f64 = 0.1;
 const LITTLE: f64 = 0.05;
 
+/// Instants that boxes of third derivatives are made for, which are little wider over larger boxes.
+const FEW: f64 = 4.0;
+
 /// Instants for which each has its own box where one for two left too much open.
 const REST: u32 = 16;
 
@@ -58,8 +61,7 @@ impl Ahead {
         enough: &[f64],
     ) -> Instant {
         let frame = Frame::of(&by(seen, sizes));
-        let middle = |order| Middle::of(of.system, t, &seen.center, frame.clone(), order);
-        let mut about = middle(self.order);
+        let middle = Middle::of(of.system, t, &seen.center, frame.clone());
         let ranges = seen.ranges(sizes);
         let now: Vec<_> = seen.center.iter().map(|c| c.midpoint()).collect();
         let before = self.before.replace(now.clone()).unwrap_or_else(|| now.clone());
@@ -68,8 +70,8 @@ impl Ahead {
             slopes.iter().zip(most).zip(enough).all(|((slope, most), enough)| slope + most <= part * enough)
         };
         if let Some(bends) = self.bends.as_ref().filter(|bends| bends.cover(t, &ranges)) {
-            let instant = about.over(seen, sizes, bends);
-            if within(&instant, MOST) {
+            let instant = middle.over(of.system, seen, sizes, bends);
+            if self.order == Order::Third || within(&instant, MOST) {
                 return instant;
             }
         }
@@ -83,10 +85,13 @@ impl Ahead {
             let boxes = || ranges.iter().zip(now.iter().zip(&before));
             let over = if self.instants > 0.0 { boxes().map(roomy).collect() } else { ranges.clone() };
             let bends = Bends::over(of.system, times, over, &frame, self.order);
-            let instant = about.over(seen, sizes, &bends);
-            if self.instants == 0.0 && self.order == Order::Second && !within(&instant, 1.0) {
-                self.order = Order::Third;
-                about = middle(self.order);
+            let instant = middle.over(of.system, seen, sizes, &bends);
+            if self.order == Order::Third {
+                self.bends = Some(bends);
+                return instant;
+            }
+            if self.instants == 0.0 && !within(&instant, 1.0) {
+                (self.order, self.instants) = (Order::Third, FEW);
                 continue;
             }
             if self.instants == 0.0 || within(&instant, MOST) {

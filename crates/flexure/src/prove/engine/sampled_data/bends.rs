@@ -68,8 +68,8 @@ pub fn reference(system: &dyn TrackingLoop, t: Interval) -> Vec<[Slope; 5]> {
     system.reference(t).iter().map(|jet| std::array::from_fn(|k| Slope::value(jet[k]))).collect()
 }
 
-/// ∂²u_j/∂ξ² at `x`, or over all of it.
-pub fn second(
+/// ∂²u_j/∂ξ² over `x`.
+fn second(
     system: &dyn TrackingLoop,
     q_ld: &[[Slope; 5]],
     x: &[Interval],
@@ -131,6 +131,19 @@ impl Bends {
     /// Whether they are known at the time `t` in s over all of the box `x`.
     pub fn cover(&self, t: Interval, x: &[Interval]) -> bool {
         self.times.contains_interval(t) && self.over.iter().zip(x).all(|(over, x)| over.contains_interval(*x))
+    }
+
+    /// ∂²u_j/∂ξ² at the time `t` in s and the motion `x`, where [`mean`](Self::mean) needs it; else none.
+    pub fn second_at(
+        &self,
+        system: &dyn TrackingLoop,
+        t: Interval,
+        x: &[Interval],
+    ) -> Vec<Symmetric<Interval>> {
+        match self.known {
+            Known::Second(_) => Vec::new(),
+            Known::Third(_) => second(system, &reference(system, t), x, &self.frame),
+        }
     }
 
     /// H(c + t ξ) for a motion c with H(c) in `at`, |ξ_i| ≤ `reach`_i and t from 0 to 1, averaged with weights that have t at `mean` in the mean.
