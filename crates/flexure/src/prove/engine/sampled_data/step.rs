@@ -33,9 +33,9 @@ const OFF: Shares = Shares { law: 0.25, robot: 0.3, readings: 0.1 };
 /// How the sections of a tube follow each other.
 pub struct Recursion {
     /// Torques beside the law's that hold the tube open anyway [N m].
-    pub torques: Vec<f64>,
+    torques: Vec<f64>,
     /// The factor that errors are asked to shrink by in a period.
-    pub shrink: f64,
+    shrink: f64,
     shares: Shares,
     /// A tube that gets wider than was asked for is held so many times tighter than its shares say: narrower, and what is left open takes more of 1 − λ.
     grip: f64,
@@ -48,6 +48,10 @@ const WIDE: f64 = 1.5;
 const FIRMER: f64 = 1.1;
 const TIGHTEST: f64 = 6.0;
 const LOOSER: f64 = 1.2;
+
+/// Of 1 − λ, what a firm grip leaves over, for checkers whose bounds are wider, and what it leaves of the rate.
+const OVER: f64 = 0.1;
+const RATE: f64 = 0.5;
 
 impl Recursion {
     /// Of a tube that is held open by `torques` anyway; `exact` where readings are.
@@ -68,7 +72,9 @@ impl Recursion {
         loop {
             let next = self.next(passage)?;
             let step = check(passage, &next, self.torques.len());
-            if step.holds() || self.grip <= 1.0 {
+            let part = 1.0 - self.shrink;
+            let room = step.total() <= 1.0 - OVER * part && step.growth <= 1.0 - RATE * part;
+            if self.grip <= 1.0 || room {
                 return Some((next, step));
             }
             self.grip = (self.grip / LOOSER).max(1.0);
@@ -109,10 +115,15 @@ impl Recursion {
 }
 
 impl Step {
-    /// λ + ρ + σ ≤ 1.
-    pub fn holds(&self) -> bool {
+    /// λ + ρ + σ, from above: 1 at most where the period is proved.
+    pub fn total(&self) -> f64 {
         let Self { growth, offset, noise } = self;
-        (Interval::point(*growth) + Interval::point(*offset) + Interval::point(*noise)).hi() <= 1.0
+        (Interval::point(*growth) + Interval::point(*offset) + Interval::point(*noise)).hi()
+    }
+
+    /// Whether the period is proved.
+    pub fn holds(&self) -> bool {
+        self.total() <= 1.0
     }
 }
 
