@@ -13,12 +13,14 @@ use crate::prove::engine::sampled_data::spread::{Sizes, Spread};
 /// Instants that boxes are made for at most.
 const LONGEST: f64 = 64.0;
 
-/// Of what a tube can take to be left open, boxes for instants to come may leave this part, and are made for more of them where they leave that.
+/// Of what a tube can take to be left open, boxes of second derivatives for instants to come may leave this part, those of third ones all of it, and are made for more of them where
+/// they leave half of that.
 const MOST: f64 = 0.1;
-const LITTLE: f64 = 0.05;
+const LITTLE: f64 = 0.5;
 
-/// Instants that boxes of third derivatives are made for, which are little wider over larger boxes.
-const FEW: f64 = 4.0;
+/// Of motions of more numbers third derivatives are not looked for: of seven joints a box of them takes four thousand evaluations of a law, seconds, and what ends tubes
+/// are torques.
+const MANY: usize = 16;
 
 /// Instants for which each has its own box where one for two left too much open.
 const REST: u32 = 16;
@@ -51,6 +53,14 @@ impl Default for Ahead {
 }
 
 impl Ahead {
+    /// Of what a tube can take to be left open, what boxes for instants to come may leave.
+    fn most(&self) -> f64 {
+        match self.order {
+            Order::Second => MOST,
+            Order::Third => 1.0,
+        }
+    }
+
     /// The law at the time `t` in s over what is `seen`. Boxes are as long as all |η_j| are up to `enough`, which costs a tube nothing.
     pub fn law(
         &mut self,
@@ -71,7 +81,7 @@ impl Ahead {
         };
         if let Some(bends) = self.bends.as_ref().filter(|bends| bends.cover(t, &ranges)) {
             let instant = middle.over(of.system, seen, sizes, bends);
-            if self.order == Order::Third || within(&instant, MOST) {
+            if within(&instant, self.most()) {
                 return instant;
             }
         }
@@ -86,16 +96,16 @@ impl Ahead {
             let over = if self.instants > 0.0 { boxes().map(roomy).collect() } else { ranges.clone() };
             let bends = Bends::over(of.system, times, over, &frame, self.order);
             let instant = middle.over(of.system, seen, sizes, &bends);
-            if self.order == Order::Third {
-                self.bends = Some(bends);
-                return instant;
-            }
-            if self.instants == 0.0 && !within(&instant, 1.0) {
-                (self.order, self.instants) = (Order::Third, FEW);
+            if self.instants == 0.0
+                && self.order == Order::Second
+                && now.len() <= MANY
+                && !within(&instant, 1.0)
+            {
+                self.order = Order::Third;
                 continue;
             }
-            if self.instants == 0.0 || within(&instant, MOST) {
-                if self.rest == 0 && within(&instant, LITTLE) {
+            if self.instants == 0.0 || within(&instant, self.most()) {
+                if self.rest == 0 && within(&instant, LITTLE * self.most()) {
                     self.instants = (2.0 * self.instants).clamp(1.0, LONGEST);
                 }
                 self.rest = self.rest.saturating_sub(1);
