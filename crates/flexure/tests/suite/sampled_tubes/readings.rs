@@ -51,21 +51,28 @@ pub fn run(scenario: &Scenario) -> Vec<(Vec<f64>, Vec<f64>)> {
 /// run on exact readings, or from the reference, than was said, and no larger torques.
 #[test]
 fn readings_that_are_off_move_no_run_out_of_its_tube() {
-    keeps_to_its_tube(&[]);
+    keeps_to_its_tube(&[], OFF, 5e-5);
+}
+
+/// Counts of half a millirad, of which the law's third derivatives have to be known.
+#[test]
+fn nor_do_coarse_readings() {
+    keeps_to_its_tube(&[("resolution = 1e-4", "resolution = 5e-4")], 5.0 * OFF, 5e-4);
 }
 
 /// The same a millisecond late: the torque that acts until the first command is that of the springs where the run starts.
 #[test]
 fn nor_do_they_late() {
     let late = "[[imperfection]]\nkind = \"delay\"\ncomputation = 1e-3\n\n[sources]";
-    keeps_to_its_tube(&[("[sources]", late)]);
+    keeps_to_its_tube(&[("[sources]", late)], OFF, 5e-5);
 }
 
-fn keeps_to_its_tube(changes: &[(&str, &str)]) {
+/// With half a count of `off` in rad, links in the tube `error` in rad from the run at the start.
+fn keeps_to_its_tube(changes: &[(&str, &str)], off: f64, error: f64) {
     let scenario = hardware(changes);
-    let tube = found(&scenario, 5e-5).unwrap_or_else(|none| panic!("{}", none.at));
+    let tube = found(&scenario, error).unwrap_or_else(|none| panic!("{}", none.at));
     assert!(
-        tube.rate > 2.0 && tube.readings.iter().all(|&off| (OFF..1.001 * OFF).contains(&off)),
+        tube.rate > 2.0 && tube.readings.iter().all(|found| (off..1.001 * off).contains(found)),
         "{tube:?}"
     );
     let n = scenario.robot.joint_count();
@@ -79,7 +86,7 @@ fn keeps_to_its_tube(changes: &[(&str, &str)]) {
     let mut random = Random(7);
     let (mut largest, mut reached) = (vec![0.0_f64; 2 * n], 0.0_f64);
     for number in 0..24 {
-        let sign = |bit: usize| if number >> bit & 1 == 1 { OFF } else { -OFF };
+        let sign = |bit: usize| if number >> bit & 1 == 1 { off } else { -off };
         let part = 0.5 * (1.0 + random.next());
         let moved = [0.999 * tube.alone[number % 4], 0.0][number / 4 % 2];
         let runs = with(&|scenario| {
@@ -136,7 +143,7 @@ fn keeps_to_its_tube(changes: &[(&str, &str)]) {
     println!("of what the tube says runs reach {largest:?}, of how near the reference {reached}");
     assert!(largest.iter().all(|&part| part < 1.0) && reached < 1.0, "{largest:?} {reached}");
     // It says something.
-    assert!(largest.iter().all(|&part| part > 0.3) && reached > 0.1, "{largest:?} {reached}");
+    assert!(largest.iter().all(|&part| part > 0.2) && reached > 0.1, "{largest:?} {reached}");
 }
 
 /// A guard that would limit the torque's rate, or doubt a reading, is not said to do nothing.
