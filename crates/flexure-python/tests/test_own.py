@@ -80,7 +80,7 @@ class TestPaths:
         scenario = flexure.follow(SCENARIO, path, smooth_start=1.0)
         run = flexure.simulate(scenario)
         assert run.follows
-        assert flexure.certify(scenario)["verdict"].startswith("proved")
+        assert flexure.certify(scenario, strongest=False)["verdict"].startswith("proved")
         again = pickle.loads(pickle.dumps(scenario))
         assert again == scenario and again != flexure.follow(SCENARIO, path)
 

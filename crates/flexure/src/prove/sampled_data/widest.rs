@@ -20,14 +20,15 @@ const WIDTHS: [f64; 19] = [
 /// Control periods after which a tube is taken to have come far.
 const FAR: usize = 50;
 
-/// Three widths narrower, nearly.
-const DECADE: f64 = 9.0;
+/// So many widths in a row that come less than this part farther than those before are enough.
+const ENOUGH: u32 = 2;
+const FARTHER: f64 = 0.1;
 
 /// The widest tube of those that were tried in which two motions come closer at `least` 1/s or faster, all links reaching equally far at
 /// the start; or why there is none. None where `progress` breaks it off.
 ///
-/// Too wide a tube ends within a few periods, so that trying from wide to narrow costs little beside the tube that is found. Where one comes far but not to the end, what is
-/// asked of it is not what ends it: of those that are narrower a decade more is tried.
+/// Too wide a tube ends within a few periods, so that trying from wide to narrow costs little beside the tube that is found. Where tubes come far but not to the end, and being
+/// narrower no longer takes them farther, it is not their width that ends them: then narrower ones are not tried.
 ///
 /// # Errors
 /// As [`sampled_tube`](super::sampled_tube).
@@ -48,7 +49,7 @@ pub fn widest_tube(
         progress(f64::from_bits(before.max(fraction.to_bits())))
     };
     let n = scenario.robot.joint_count();
-    let mut tried = 0;
+    let (mut tried, mut no_farther) = (0, 0);
     let mut farthest: Option<(f64, NoTube)> = None;
     for width in WIDTHS {
         tried += 1;
@@ -60,11 +61,15 @@ pub fn widest_tube(
             Some(Err(none)) => none,
         };
         let way = none.way;
-        if farthest.as_ref().is_none_or(|(_, best)| best.shown <= none.shown) {
+        let before = farthest.as_ref().map_or(0, |(_, best)| best.shown);
+        let farther = none.shown as f64 > (1.0 + FARTHER) * before as f64;
+        // One that is too slow comes to the end: narrower ones are faster.
+        let ends = none.shown < scenario.periods() as usize;
+        no_farther = if ends && !farther && before >= FAR { no_farther + 1 } else { 0 };
+        if before <= none.shown {
             farthest = Some((width, none));
         }
-        let past_it = |(best, none): &(f64, NoTube)| none.shown >= FAR && DECADE * width < *best;
-        if way != Way::Narrower || farthest.as_ref().is_some_and(past_it) {
+        if way != Way::Narrower || no_farther >= ENOUGH {
             break;
         }
     }
