@@ -47,8 +47,8 @@ pub struct Certify {
     /// with the control period, delay, encoders, velocity filter, guard and limits of the file. Begin with 1e-5 and try smaller and larger ones.
     #[arg(long, value_name = "E", value_delimiter = ',', allow_negative_numbers = true)]
     pub sampled_tube: Option<Vec<f64>>,
-    /// Look for the widest tube of the sampled loop, from 0.1 rad down to 1e-7, whatever else is asked for and however long it takes: minutes for two joints and a
-    /// long run, more than an hour for 10 s of seven. Where there is none, what is proved of the ideal loop stands, and it is said why. Without options that name a statement it
+    /// Look for the widest tube of the sampled loop, from 0.1 rad down to 1e-7 or until narrower ones come no farther, whatever else is asked for and
+    /// however long it takes: minutes for two joints and a long run, more than an hour for 10 s of seven. Where there is none, what is proved of the ideal loop stands, and it is said why. Without options that name a statement it
     /// is looked for where that takes a minute or two.
     #[arg(long, conflicts_with = "sampled_tube")]
     pub strongest: bool,

@@ -405,6 +405,11 @@ impl Walk<'_> {
                 format!("{}[{index}]: {} has {count} entries, counted from 0", self.so_far, self.so_far);
             return Err(self.refuse(step, "range", message, "name an entry that is there"));
         };
+        if let (What::Key(kind), true, false) = (&step.what, rest.is_empty(), value.get_ref().is_table()) {
+            let path = format!("{}.{kind}", self.so_far);
+            let hint = format!("set one of its keys: {path}.KEY=VALUE");
+            return Err(self.refuse(step, "type", format!("{path} is a table, not one value"), &hint));
+        }
         self.so_far = format!("{}[{index}]", self.so_far);
         if rest.is_empty() {
             *entry = value;

@@ -90,6 +90,7 @@ fn what_is_wrong_points_into_the_change() {
         ("controller.link.metric=[1, -2]", "controller.link.metric[1] is -2", 28),
         ("controller.phi=tahn", "controller.phi is 'tahn'", 16),
         ("duration.x=3", "duration is no table", 10),
+        ("imperfection.delay=1e-3", "imperfection.delay is a table, not one value", 14),
         ("imperfection.encodr.resolution=1", "imperfection[3].kind is 'encodr', which is not known", 14),
         ("imperfection[7].cutoff=1", "imperfection has 3 entries", 13),
         ("controller.link.metric.first=1", "controller.link.metric is an array", 24),

@@ -103,6 +103,9 @@ pub struct NoTube {
     /// Control periods that were shown.
     #[serde(skip)]
     pub shown: usize,
+    /// How many times as far as was asked for links reach after those.
+    #[serde(skip)]
+    pub wide: f64,
 }
 
 /// Which tubes may be there where one is not.
@@ -152,7 +155,7 @@ fn rate_to_look_for(scenario: &Scenario) -> Result<Result<f64, NoTube>, Problems
 impl NoTube {
     /// Of no width.
     pub(crate) fn at_all(at: String) -> Self {
-        Self { not_shown: at.clone(), at, way: Way::None, shown: 0 }
+        Self { not_shown: at.clone(), at, way: Way::None, shown: 0, wide: 1.0 }
     }
 }
 

@@ -20,15 +20,17 @@ const WIDTHS: [f64; 19] = [
 /// Control periods after which a tube is taken to have come far.
 const FAR: usize = 50;
 
-/// So many widths in a row that come less than this part farther than those before are enough.
-const ENOUGH: u32 = 2;
+/// What comes farther by less than this part comes as far.
 const FARTHER: f64 = 0.1;
+
+/// A tube that ends so many times as wide as was asked for is not as wide as it is because of that.
+const DRIVEN: f64 = 2.0;
 
 /// The widest tube of those that were tried in which two motions come closer at `least` 1/s or faster, all links reaching equally far at
 /// the start; or why there is none. None where `progress` breaks it off.
 ///
-/// Too wide a tube ends within a few periods, so that trying from wide to narrow costs little beside the tube that is found. Where tubes come far but not to the end, and being
-/// narrower no longer takes them farther, it is not their width that ends them: then narrower ones are not tried.
+/// Too wide a tube ends within a few periods, so that trying from wide to narrow costs little beside the tube that is found. Where one comes far but not to the end, no
+/// farther than the wider ones before it, and is wide there whatever was asked for, narrower ones are not tried: it is what readings do that ends them.
 ///
 /// # Errors
 /// As [`sampled_tube`](super::sampled_tube).
@@ -49,7 +51,7 @@ pub fn widest_tube(
         progress(f64::from_bits(before.max(fraction.to_bits())))
     };
     let n = scenario.robot.joint_count();
-    let (mut tried, mut no_farther) = (0, 0);
+    let mut tried = 0;
     let mut farthest: Option<(f64, NoTube)> = None;
     for width in WIDTHS {
         tried += 1;
@@ -62,14 +64,13 @@ pub fn widest_tube(
         };
         let way = none.way;
         let before = farthest.as_ref().map_or(0, |(_, best)| best.shown);
-        let farther = none.shown as f64 > (1.0 + FARTHER) * before as f64;
+        let as_far = none.shown as f64 <= (1.0 + FARTHER) * before as f64;
         // One that is too slow comes to the end: narrower ones are faster.
-        let ends = none.shown < scenario.periods() as usize;
-        no_farther = if ends && !farther && before >= FAR { no_farther + 1 } else { 0 };
+        let driven = none.shown < scenario.periods() as usize && none.wide > DRIVEN;
         if before <= none.shown {
             farthest = Some((width, none));
         }
-        if way != Way::Narrower || no_farther >= ENOUGH {
+        if way != Way::Narrower || (before >= FAR && as_far && driven) {
             break;
         }
     }

@@ -38,7 +38,7 @@ pub fn why(scenario: &Scenario, rate: f64, sensors: &Sensors, ends: &Ends) -> No
         Why::Missed => {
             format!("{time} where its middle goes is not known as closely as motions come closer")
         }
-        Why::Beyond(Beyond { limit, joint, found, passes }) => {
+        Why::Beyond(Beyond { limit, joint, found, passes, parts }) => {
             let (what, of, who) = match limit {
                 Limit::Torque => ("the torque", units::TORQUE, "and the limit is"),
                 Limit::TorqueStep => {
@@ -56,8 +56,16 @@ pub fn why(scenario: &Scenario, rate: f64, sensors: &Sensors, ends: &Ends) -> No
                 ),
             };
             let (found, passes) = (short(found, 5), short(passes, 5));
-            let unit = unit(of, joint);
-            format!("{time} {what} of joint {} may come to {found} {unit}, {who} {passes} {unit}", joint + 1)
+            let (unit, joint) = (unit(of, joint), joint + 1);
+            let parts = parts.map_or_else(String::new, |[run, readings]| {
+                let readings = if sensors.off.is_empty() {
+                    String::new()
+                } else {
+                    format!(", readings may add {}", short(readings, 3))
+                };
+                format!(": the run takes {}{readings}", short(run, 3))
+            });
+            format!("{time} {what} of joint {joint} may come to {found} {unit}, {who} {passes} {unit}{parts}")
         }
     };
     let (way, other) = match ends.why {
@@ -68,5 +76,5 @@ pub fn why(scenario: &Scenario, rate: f64, sensors: &Sensors, ends: &Ends) -> No
         Why::NotStable | Why::StartsOutside => (Way::None, None),
     };
     let advised = other.map_or(at.clone(), |other| format!("{at}; {other} may have one"));
-    NoTube { at: advised, not_shown: at, way, shown: ends.period }
+    NoTube { at: advised, not_shown: at, way, shown: ends.period, wide: ends.wide }
 }

@@ -100,6 +100,13 @@ impl Instant {
         }
     }
 
+    /// Of the largest |u_j| of the joint `j`, that in the middle and what readings that are off may add to it, to first order [N m].
+    pub fn parts(&self, j: usize) -> [f64; 2] {
+        let others = self.asked.deviations.row(j)[self.sizes.ball..].iter().zip(&self.sizes.most);
+        let readings = others.skip(self.asked.center.len()).map(|(x, most)| x.magnitude() * most);
+        [self.asked.center[j].magnitude(), readings.sum()]
+    }
+
     /// The largest |u_j| of all those motions [N m], from above.
     pub fn largest(&self) -> Vec<f64> {
         self.asked.ranges(&self.sizes).iter().map(|u| u.magnitude()).collect()

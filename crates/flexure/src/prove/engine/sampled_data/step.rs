@@ -65,9 +65,9 @@ impl Recursion {
         self.torques.iter().map(|w| w * self.shares.law * (1.0 - self.shrink) / count).collect()
     }
 
-    /// The section after `passage`, from one whose links reach so many times as far as was `asked` for, and what is said of the period; no section where there is no root.
-    pub fn after(&mut self, passage: &Passage, asked: f64) -> Option<(Section, Step)> {
-        let firmer = if asked > WIDE { self.grip * FIRMER } else { self.grip / FIRMER };
+    /// The section after `passage`, from one whose links reach `wide` times as far as was asked for, and what is said of the period; no section where there is no root.
+    pub fn after(&mut self, passage: &Passage, wide: f64) -> Option<(Section, Step)> {
+        let firmer = if wide > WIDE { self.grip * FIRMER } else { self.grip / FIRMER };
         self.grip = firmer.clamp(1.0, TIGHTEST);
         loop {
             let next = self.next(passage)?;

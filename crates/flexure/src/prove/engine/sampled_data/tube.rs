@@ -44,6 +44,8 @@ pub struct Ends {
     pub period: usize,
     /// What was not shown there.
     pub why: Why,
+    /// How many times as far as was asked for links reach there.
+    pub wide: f64,
 }
 
 /// What was not shown.
@@ -94,9 +96,10 @@ pub fn tube(
     progress: Progress<'_>,
     each: &mut dyn FnMut(At<'_>),
 ) -> Option<Result<Vec<Section>, Ends>> {
-    let ends = |period: usize, why: Why| Some(Err(Ends { period, why }));
+    let mut wide = 1.0;
+    let ends = |period: usize, wide: f64, why: Why| Some(Err(Ends { period, why, wide }));
     let shrink = (-request.rate * of.period.midpoint()).exp();
-    let Some((first, torques)) = first(of, request, shrink) else { return ends(0, Why::NotStable) };
+    let Some((first, torques)) = first(of, request, shrink) else { return ends(0, wide, Why::NotStable) };
     let mut now = match sections {
         Sections::Made => first,
         Sections::Given(all, _) => all[0].clone(),
@@ -104,7 +107,7 @@ pub fn tube(
     let mut found = Vec::with_capacity(request.periods + 1);
     let begins = now.reach(&of.started(&request.start));
     if begins.is_nan() || begins > 1.0 {
-        return ends(0, Why::StartsOutside);
+        return ends(0, wide, Why::StartsOutside);
     }
     let (mut cuts, mut ahead, mut watch) = (Cuts::new(shrink), Ahead::default(), Watch::default());
     let mut recursion = Recursion::new(torques, shrink, of.sensors.off.is_empty());
@@ -115,22 +118,23 @@ pub fn tube(
         }
         let extents = now.extents();
         let reaches = || extents.iter().zip(&request.extents).map(|(extent, asked)| extent / asked);
+        wide = reaches().fold(0.0, f64::max);
         if let Some(link) = reaches().position(|reach| reach > WIDEST) {
-            return ends(k, Why::Widens(link, extents[link]));
+            return ends(k, wide, Why::Widens(link, extents[link]));
         }
         let before = Before::over(of, &now);
         let t = of.period * Interval::point(k as f64);
         let law = ahead.law(of, t, &before.seen, &before.sizes, &enough);
         if let Some(beyond) = watch.look(of, t, &before, &law) {
-            return ends(k, Why::Beyond(beyond));
+            return ends(k, wide, Why::Beyond(beyond));
         }
         if k == request.periods {
             each(At { k, section: &now, law: &law, step: None });
             break;
         }
-        let Some(passage) = cuts.passage(of, &before, &law) else { return ends(k, Why::Unbounded) };
+        let Some(passage) = cuts.passage(of, &before, &law) else { return ends(k, wide, Why::Unbounded) };
         let next = match sections {
-            Sections::Made => recursion.after(&passage, reaches().fold(0.0, f64::max)),
+            Sections::Made => recursion.after(&passage, wide),
             Sections::Given(all, kept) => {
                 let [_, _, readings] = middles(&passage, of.system.joints());
                 let next = Section { past: latest(&readings, kept[k + 1]), ..all[k + 1].clone() };
@@ -138,10 +142,10 @@ pub fn tube(
                 Some((next, step))
             }
         };
-        let Some((next, step)) = next else { return ends(k, Why::Grows) };
+        let Some((next, step)) = next else { return ends(k, wide, Why::Grows) };
         if !step.holds() {
             let exact = Step { offset: 0.0, ..step };
-            return ends(k, if exact.holds() { Why::Missed } else { Why::Grows });
+            return ends(k, wide, if exact.holds() { Why::Missed } else { Why::Grows });
         }
         each(At { k, section: &now, law: &law, step: Some(step) });
         watch.passed(&before, &passage, of.system.joints());

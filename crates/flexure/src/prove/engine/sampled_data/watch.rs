@@ -67,13 +67,15 @@ pub struct Beyond {
     pub found: f64,
     /// In the same.
     pub passes: f64,
+    /// Of a torque, what the run on exact readings takes of it and what readings may add, to first order.
+    pub parts: Option<[f64; 2]>,
 }
 
 /// The first of those that are.
 fn beyond(limit: Limit, found: impl IntoIterator<Item = f64>, passes: &[f64]) -> Option<Beyond> {
     let mut all = found.into_iter().zip(passes.iter().enumerate().cycle());
     let found = all.find(|(found, (_, passes))| found.is_nan() || found > passes);
-    found.map(|(found, (joint, &passes))| Beyond { limit, joint, found, passes })
+    found.map(|(found, (joint, &passes))| Beyond { limit, joint, found, passes, parts: None })
 }
 
 /// What is remembered from the instant before.
@@ -125,7 +127,8 @@ impl Watch {
     pub fn look(&mut self, of: &HeldLoop<'_>, t: Interval, before: &Before, law: &Instant) -> Option<Beyond> {
         let n = of.system.joints();
         let passes = of.passes;
-        let torque = beyond(Limit::Torque, law.largest(), &passes.torque);
+        let torque = beyond(Limit::Torque, law.largest(), &passes.torque)
+            .map(|torque| Beyond { parts: Some(law.parts(torque.joint)), ..torque });
         torque.or_else(|| self.step(of, before, law)).or_else(|| {
             let believed = passes.readings.as_ref()?;
             let seen = before.seen.ranges(&before.sizes);
