@@ -156,7 +156,10 @@ fn guards_that_would_act_are_named() {
         ("deflection = 1e-4", "a reading of the deflection of joint"),
         ("jump = 1e-4", "period's change of a reading of joint"),
         ("frozen_travel = 1e-4", "takes it to be frozen"),
-        ("torque_limit = [0.05, 0.05]", "and the limit is 0.05 N m: the run takes 0.284, readings may add 0.00846"),
+        (
+            "torque_limit = [0.05, 0.05]",
+            "and the limit is 0.05 N m: the run takes 0.284, readings may add 0.00846",
+        ),
     ] {
         let limit = "torque_rate_limit = [2000.0, 400.0] # N m/s";
         let from = if change.starts_with("torque_rate") { limit } else { rejoin };
