@@ -25,6 +25,7 @@ ORDERS = range(11, 30)  # of Taylor polynomials of motions: the first that leave
 LITTLE = 1e-12
 LARGER = 4  # w is as much smaller, so that there is little of it beside y
 PARTS = [arb(0.5)]  # of extents, evenly up to all of them
+LAW_PARTS = [arb(k) / 4 for k in range(1, 5)]  # of y, evenly up to all of it
 PACE = 0.7  # in a piece of a period, the fastest rate times its length is at most this
 
 # ---- Linear functions of y, |y| <= 1, and of others
@@ -96,7 +97,7 @@ def piece(robot, x, torques, length):  # from the forms x, under the forms of to
         left = length.abs_upper() ** (order + 1)
         if all(series[order + 1].range().abs_upper() * left <= size * LITTLE for series, size in zip(rest, sizes)):
             break
-    # Slopes at a point are those in the middle and the mean of second derivatives on the way there, times the way: in nearer parts of the box they are known more closely
+    # Slopes at a point are those in the middle and the mean of second derivatives on the way there, times the way: in nearer parts of the box they are known more closely (as in law_at)
     after, nearer = [], [(part, sum(robot.motion(*within(part))[2], [])) for part in PARTS]
     def along(series, end):
         for k in reversed(range(order + 1)):
@@ -195,7 +196,9 @@ class Loop:
         return x
     def law_at(self, k, seen):  # what the law asks for at instant k
         span = self.h.low * k, self.h.high * k
-        return self.law.asked(reference(self.file["reference"], enclosing(*span), span, self.begins), seen)
+        at = reference(self.file["reference"], enclosing(*span), span, self.begins)
+        found = [self.law.asked(at, [Form(form.on, form.c, form.g * part, form.h * part ** 2) for form in seen]) for part in LAW_PARTS]
+        return [Form(all[-1].on, all[-1].c, all[-1].g, total(form.h / part ** 2 for form, part in zip(all, LAW_PARTS)) / len(LAW_PARTS)) for all in zip(*found)]
     def queue(self, state, asked):  # torques that act in a period, and that are on their way after it
         return [state[self.m - j * self.n:][:self.n] for j in range(self.waiting, 0, -1)] + [asked]
     def waits(self, state):
