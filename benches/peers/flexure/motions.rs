@@ -125,7 +125,9 @@ const LOOPS: usize = 16;
 /// Many loops of a scenario, side by side in the registers of one core; periods go on and on.
 fn batch(scenario: &str, tol: &str) -> Result<Motion, Box<dyn Error>> {
     let mut scenario = Scenario::load(scenario)?;
-    if let Ok(tol) = tol.parse() { scenario.integration_tolerance = tol; }
+    if let Ok(tol) = tol.parse() {
+        scenario.integration_tolerance = tol;
+    }
     let mut batch = Batch::open(&[&scenario; LOOPS])?;
     batch.steps(JOINED);
     let on = move |periods| {

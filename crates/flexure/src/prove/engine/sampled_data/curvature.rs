@@ -5,7 +5,7 @@ use flexure_core::scalar::{Interval, Scalar};
 use crate::linalg::{Dense, Symmetric};
 use crate::prove::engine::envelope::closed_loop::TrackingLoop;
 use crate::prove::engine::sampled_data::links::{Links, springs};
-use crate::prove::engine::sampled_data::norm::around_zero;
+use crate::prove::engine::sampled_data::norm::{around_zero, radius};
 
 /// Second derivatives of a_l by x = (q_l, δ, q̇_l) over a box.
 #[derive(Clone, Debug)]
@@ -14,6 +14,16 @@ pub struct Curvature {
     over: Vec<Interval>,
     /// ∂²a_i/∂x².
     of: Vec<Symmetric<Interval>>,
+}
+
+/// How far motions are off another, number by number: D z, and beside that.
+pub struct Off<'a> {
+    /// D.
+    pub columns: &'a Dense<Interval>,
+    /// Beside that, from above.
+    pub beside: &'a [f64],
+    /// All together, from above.
+    pub all: &'a [f64],
 }
 
 impl Curvature {
@@ -34,12 +44,38 @@ impl Curvature {
     /// What the slopes `at` a motion are wherever motions are off it by `off` at most, from above.
     pub fn around(&self, at: &Dense<Interval>, off: &[f64]) -> Dense<Interval> {
         Dense::from_fn(at.rows().len(), at.columns(), |i, j| {
-            let bend = |k: usize| Interval::point(self.of[i].at(j, k).magnitude());
-            let change = off
-                .iter()
-                .enumerate()
-                .fold(Interval::ZERO, |sum, (k, &off)| sum + bend(k) * Interval::point(off));
+            let change = self.sum(i, j, off, |bend| bend.magnitude());
             at[(i, j)] + around_zero(change.hi())
+        })
+    }
+
+    /// The same where what motions are off by is D z and `beside` that at most, for some z: `reach` says of a row how far its product with z gets.
+    pub fn around_columns(
+        &self,
+        at: &Dense<Interval>,
+        off: &Off<'_>,
+        reach: &dyn Fn(&[Interval]) -> f64,
+    ) -> Dense<Interval> {
+        Dense::from_fn(at.rows().len(), at.columns(), |i, j| {
+            let along = |column: usize| {
+                let each = off.columns.rows().enumerate();
+                each.fold(Interval::ZERO, |sum, (k, row)| {
+                    sum + Interval::point(self.of[i].at(j, k).midpoint()) * row[column]
+                })
+            };
+            let row: Vec<_> = (0..off.columns.columns()).map(along).collect();
+            let known =
+                Interval::point(reach(&row)) + self.sum(i, j, off.beside, |bend| bend.midpoint().abs());
+            let change = known + self.sum(i, j, off.all, |bend| radius(bend).hi());
+            at[(i, j)] + around_zero(change.hi())
+        })
+    }
+
+    /// Σ_k of the second derivative of a_i by x_j and x_k, `sized`, times `off`_k.
+    fn sum(&self, i: usize, j: usize, off: &[f64], sized: impl Fn(Interval) -> f64) -> Interval {
+        let each = off.iter().enumerate();
+        each.fold(Interval::ZERO, |sum, (k, &off)| {
+            sum + Interval::point(sized(self.of[i].at(j, k))) * Interval::point(off)
         })
     }
 

@@ -1,11 +1,13 @@
 //! The robot while torques are held: motions about a motion, validated.
 
+use std::ops::Range;
+
 use flexure_core::scalar::{Interval, Scalar};
 
 use crate::linalg::Dense;
 use crate::prove::engine::envelope::closed_loop::TrackingLoop;
-use crate::prove::engine::sampled_data::curvature::Curvature;
-use crate::prove::engine::sampled_data::flow::flow;
+use crate::prove::engine::sampled_data::curvature::{Curvature, Off};
+use crate::prove::engine::sampled_data::flow::{Slopes, flow};
 use crate::prove::engine::sampled_data::links::Links;
 use crate::prove::engine::sampled_data::norm::around_zero;
 use crate::prove::engine::sampled_data::path::Path;
@@ -17,7 +19,8 @@ use crate::prove::engine::sampled_data::stretch::{enclosed, stretch};
 ///
 /// In a piece every motion x is in a box, by Picard's theorem. A polynomial p(t) near the middle one leaves r(t) of the equations over. With the rates of change
 /// ∂f/∂x, ∂f/∂u where motions and the path are at a time t, d/dt (x − p) = J(t) (x − p) + J_u (u − u_p) + r(t) with J(t) in those intervals (mean values, row by row);
-/// two motions differ by a solution of the same equation without r(t).
+/// two motions of the same readings differ by a solution of the same equation without r(t), and so do those of y = 0 with and without readings that are off: there J(t) is its mean
+/// over the way from the one to the other.
 pub fn held(
     system: &dyn TrackingLoop,
     motion: &Spread,
@@ -86,11 +89,32 @@ fn piece(
         let far = Curvature::over(system, stretch.onwards(3 * n, left));
         *curvature = Some(far.or_else(|| Curvature::over(system, of_links.to_vec()))?);
     }
-    let slopes = stretch.slopes(system, u_m, curvature.as_ref()?, length)?;
+    // Motions of the same readings lie anywhere beside each other; what readings do to the middle is between it and where they take it.
+    let (all, all_columns) = (sizes.ball + n, motion.deviations.columns());
+    let by_readings = all < all_columns;
+    let columns =
+        Dense::from_fn(3 * n, if by_readings { all_columns } else { 0 }, |i, j| motion.deviations[(i, j)]);
+    let hull: Vec<_> = motion.center.iter().zip(&begin).map(|(&c, &p)| c.hull(p)).collect();
+    let drift = &stretch.off_of(&hull)[..3 * n];
+    let between = stretch.off_between(&motion.center, &motion.ranges_of_others(sizes));
+    let [slopes, slopes_of_readings] = stretch.slopes(
+        system,
+        u_m,
+        curvature.as_ref()?,
+        [
+            (&Off { columns: &columns, beside: drift, all: &stretch.off[..3 * n] }, &|row| sizes.reach(row)),
+            (&Off { columns: &columns, beside: drift, all: &between[..3 * n] }, &|row| {
+                sizes.reach_of_others(row, 0.5)
+            }),
+        ],
+    )?;
 
     let beside = |x: &[Interval], p: &[Interval]| x.iter().zip(p).map(|(&x, &p)| x - p).collect::<Vec<_>>();
     let start = [beside(&motion.center, &begin), beside(&torque.center, &u_p)].concat();
-    let flow = flow(system, &slopes, &path_rates, &start, length)?;
+    let way = |slopes: &Slopes| flow(system, slopes, &path_rates, &start, length);
+    let flow = way(&slopes)?;
+    // Columns of y and of what torques are beside the law's are those of all motions.
+    let of_readings = if by_readings { Some(way(&slopes_of_readings)?.at_end) } else { None };
     let (end, moved) = (path.at(length), flow.at_end.apply(&start));
     let late = flow.between.map(Interval::point);
     let later: Vec<_> = later.iter().map(|r| Interval::point(r.magnitude())).collect();
@@ -102,8 +126,19 @@ fn piece(
         // Both enclose it: where they do not meet, something is wrong, and nothing is known.
         by_path.intersection(by_start)
     };
-    let part = |from: usize, count: usize| Dense::from_fn(size, count, |i, j| flow.at_end[(i, from + j)]);
-    let deviations = &(&part(0, size) * &motion.deviations) + &(&part(size, n) * &torque.deviations);
+    let carried = |at_end: &Dense<Interval>, columns: Range<usize>| {
+        let part = |from: usize, count: usize| Dense::from_fn(size, count, |i, j| at_end[(i, from + j)]);
+        let of = |all: &Dense<Interval>| {
+            Dense::from_fn(all.rows().len(), columns.len(), |i, j| all[(i, columns.start + j)])
+        };
+        &(&part(0, size) * &of(&motion.deviations)) + &(&part(size, n) * &of(&torque.deviations))
+    };
+    let first = carried(&flow.at_end, 0..all.min(all_columns));
+    let rest = of_readings.map(|at_end| carried(&at_end, all..all_columns));
+    let deviations = Dense::from_fn(size, all_columns, |i, j| match &rest {
+        Some(rest) if j >= all => rest[(i, j - all)],
+        _ => first[(i, j)],
+    });
     Some(Spread { center: (0..size).map(center).collect::<Option<_>>()?, deviations })
 }
 
@@ -134,7 +169,9 @@ pub fn pace(system: &dyn TrackingLoop, motion: &[Interval], length: Interval) ->
 mod tests {
     use flexure_core::scalar::Interval;
 
-    use super::{Curvature, Dense, Links, Path, Sizes, Spread, TrackingLoop, enclosed, held, pace, stretch};
+    use super::{
+        Curvature, Dense, Links, Off, Path, Sizes, Spread, TrackingLoop, enclosed, held, pace, stretch,
+    };
     use crate::prove::closed_loop::along_reference;
     use crate::prove::engine::envelope::closed_loop::Slope;
     use crate::prove::engine::sampled_data::links::springs;
@@ -233,7 +270,10 @@ mod tests {
         let begin = path.at(Interval::point(0.0));
         let stretch = stretch(system, (&starts, &begin), &ranges, (&path, &u), length).unwrap();
         let over = stretch.onwards(3 * n, Interval::point(0.0));
-        let said = stretch.slopes(system, &u, &Curvature::over(system, over).unwrap(), length).unwrap();
+        let curvature = Curvature::over(system, over).unwrap();
+        let none = Dense::zeros(3 * n, 0).map(Interval::point);
+        let off = Off { columns: &none, beside: &[], all: &stretch.off[..3 * n] };
+        let [said] = stretch.slopes(system, &u, &curvature, [(&off, &|_| 0.0)]).unwrap();
 
         let mut farthest = 0.0_f64;
         for corner in 0..16 {
@@ -299,5 +339,46 @@ mod tests {
             }
         }
         assert!(widest < 2e-4, "{widest}");
+    }
+
+    /// What readings do to the middle is what their columns say, at the corners of what they may be.
+    #[test]
+    fn readings_move_the_middle_as_their_columns_say() {
+        let system = along_reference(&Scenario::load("two-link-hardware").unwrap()).unwrap();
+        let x = vec![0.3, 0.9, 0.31, 0.88, 0.6, 0.5, 0.58, 0.55];
+        let (system, u_m) = (&*system, vec![2.0, 0.7]);
+        let n = u_m.len();
+        let (size, count) = (4 * n, 3);
+        let far = |i: usize| [1e-3, 1e-3, 0.1, 0.1][i / n];
+        let wave = |i: usize, k: usize| (1.7 * (i + 1) as f64 * (k + 2) as f64).sin();
+        // Columns of y and of torques beside the law's have nothing.
+        let columns = size + n + count;
+        let entry = |i: usize, j: usize| j.checked_sub(size + n).map_or(0.0, |k| far(i) * wave(i, k));
+        let deviations = Dense::from_fn(size, columns, |i, j| Interval::point(entry(i, j)));
+        let most = [vec![0.0; n], vec![1.0; count]].concat();
+        let sizes = Sizes { ball: size, slopes: vec![0.0; most.len()], most };
+        let motion = Spread { center: points(&x), deviations };
+        let torque =
+            Spread { center: points(&u_m), deviations: Dense::zeros(n, columns).map(Interval::point) };
+        let length = Interval::point(LENGTH);
+        let pieces = 8 * pace(system, &motion.center, length);
+        let found = held(system, &motion, &torque, &sizes, length, pieces).unwrap();
+        let middle = moved(system, &x, &u_m, LENGTH);
+        let mut closest = 0.0_f64;
+        for corner in 0..1 << count {
+            let z: Vec<_> = (0..count).map(|k| if corner >> k & 1 == 0 { 1.0 } else { -1.0 }).collect();
+            let start: Vec<_> = (0..size)
+                .map(|i| x[i] + (0..count).map(|k| far(i) * wave(i, k) * z[k]).sum::<f64>())
+                .collect();
+            let end = moved(system, &start, &u_m, LENGTH);
+            for i in 0..size {
+                let off = end[i] - middle[i];
+                let columns = (0..count).map(|k| found.deviations[(i, size + n + k)] * Interval::point(z[k]));
+                let columns = columns.fold(Interval::point(0.0), |sum, x| sum + x);
+                assert!(wide(columns, 1e-9 * off.abs()).contains(off), "{i}: {off} not in {columns:?}");
+                closest = closest.max(2.0 * (off - columns.midpoint()).abs() / columns.width());
+            }
+        }
+        assert!(closest > 0.5, "{closest}");
     }
 }

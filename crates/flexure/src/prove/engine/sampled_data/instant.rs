@@ -8,6 +8,7 @@ use crate::prove::engine::envelope::closed_loop::TrackingLoop;
 use crate::prove::engine::sampled_data::bends::{Bends, along, columns, reference};
 use crate::prove::engine::sampled_data::frame::Frame;
 use crate::prove::engine::sampled_data::norm::{frobenius, spectral};
+use crate::prove::engine::sampled_data::quadratic::{largest_value, reaches};
 use crate::prove::engine::sampled_data::spread::{Sizes, Spread};
 
 /// The torque of the law at an instant, and what that depends on.
@@ -43,7 +44,7 @@ impl Middle {
 
     /// Over all that is `seen`, c + A y + B z, |z_i| ≤ r_i of `sizes.most`: u(c) + J (A y + B z) + η with
     ///
-    /// |η_j| ≤ s_j |y| + o_j, s_j = ‖Aᵀ H_j A‖ + | |Aᵀ H_j| β |, o_j = ½ βᵀ |G_j| β, β = |B| r,
+    /// |η_j| ≤ s_j |y| + o_j, s_j = ‖Aᵀ H_j A‖ + | |Aᵀ H_j B| r |, o_j = ½ max |zᵀ Bᵀ G_j B z|,
     ///
     /// and those of the same z differ by s_j |Δy| at most. With w = A y + B z, ∂η_j/∂y is wᵀ H_j A, H_j = ∫ u_j''(c + t w) dt, and η_j for y = 0 is
     /// ½ wᵀ G_j w, G_j = 2 ∫ (1 − t) u_j''(c + t w) dt: t is ½ in the mean there, and ⅓.
@@ -52,27 +53,23 @@ impl Middle {
         let by = bends.coordinates(&seen.deviations);
         let of_ball = Dense::from_fn(seen.center.len(), ball, |i, j| by[(i, j)]);
         let across = of_ball.transposed();
-        let by_others = |row: &[Interval]| {
-            let each = row[ball..].iter().zip(&sizes.most);
-            each.fold(Interval::ZERO, |sum, (x, &r)| {
-                sum + Interval::point(x.magnitude()) * Interval::point(r)
-            })
-        };
-        let others: Vec<_> = by.rows().map(by_others).collect();
+        // What is 0 is so for many columns: torques beside the law's are not seen by it.
+        let counts: Vec<_> = (0..sizes.most.len()).filter(|&k| sizes.most[k] > 0.0).collect();
+        let of_others = Dense::from_fn(seen.center.len(), counts.len(), |i, j| {
+            by[(i, ball + counts[j])] * Interval::point(sizes.most[counts[j]])
+        });
+        let others = reaches(&of_others);
         let both = of_ball.rows().map(|row| Interval::point(frobenius(row.iter().copied())));
         let both: Vec<_> = both.zip(&others).map(|(ball, &others)| ball + others).collect();
         let [one, two, three] = [1.0, 2.0, 3.0].map(Interval::point);
         let at = bends.second_at(system, self.t, &self.at);
         let slopes = bends.mean(&at, &both, one / two);
         let values = bends.mean(&at, &others, one / three);
-        let sized = |all: Dense<Interval>| all.map(|x| Interval::point(x.magnitude()));
-        let dot = |a: &[Interval]| a.iter().zip(&others).fold(Interval::ZERO, |sum, (&a, &b)| sum + a * b);
         let beside = |(slopes, values): (&Symmetric<Interval>, &Symmetric<Interval>)| {
             let half = &across * &Dense::from(slopes);
             let slope = Interval::point(spectral(&(&half * &of_ball)))
-                + Interval::point(frobenius(sized(half).apply(&others).into_iter()));
-            let twice = dot(&sized(Dense::from(values)).apply(&others));
-            [slope.hi(), (twice / two).hi()]
+                + Interval::point(frobenius(reaches(&(&half * &of_others)).into_iter()));
+            [slope.hi(), (largest_value(values, &of_others) / two).hi()]
         };
         let beside: Vec<_> = slopes.par_iter().zip(&values).map(beside).collect();
         let mut sizes = sizes.clone();

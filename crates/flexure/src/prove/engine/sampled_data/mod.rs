@@ -30,6 +30,7 @@ pub mod links;
 pub mod norm;
 pub mod path;
 pub mod period;
+pub mod quadratic;
 pub mod second;
 pub mod section;
 pub mod sensors;

@@ -5,7 +5,8 @@ use flexure_core::scalar::{Interval, Scalar};
 use crate::linalg::Dense;
 use crate::prove::engine::sampled_data::norm::{around_zero, frobenius};
 
-/// Numbers that are in `center` for y = 0 and z = 0, |y| ≤ 1 and z as [`Sizes`] says; of two y and z, they differ by some M (Δy, Δz), M in `deviations`.
+/// Numbers that are in `center` for y = 0 and z = 0, |y| ≤ 1 and z as [`Sizes`] says; those of two y and the same z differ by some M Δy, those of y = 0 with z and without by some M z, M in
+/// `deviations`.
 #[derive(Clone, Debug)]
 pub struct Spread {
     /// c.
@@ -28,17 +29,21 @@ pub struct Sizes {
 impl Sizes {
     /// How far row·(y, z) goes, from above.
     pub fn reach(&self, row: &[Interval]) -> f64 {
-        let (y, others) = row.split_at(self.ball);
-        let sizes = self
-            .slopes
-            .iter()
-            .zip(&self.most)
-            .map(|(&slope, &most)| Interval::point(slope) + Interval::point(most));
-        let others = others
-            .iter()
-            .zip(sizes)
-            .fold(Interval::ZERO, |sum, (x, size)| sum + Interval::point(x.magnitude()) * size);
-        (Interval::point(frobenius(y.iter().copied())) + others).hi()
+        let by_ball = Interval::point(frobenius(row[..self.ball].iter().copied()));
+        let of_ball = Self::sum(&row[self.ball..], &self.slopes);
+        (by_ball + of_ball + Self::sum(&row[self.ball..], &self.most)).hi()
+    }
+
+    /// How far `part` of row·(0, z) goes, from above.
+    pub fn reach_of_others(&self, row: &[Interval], part: f64) -> f64 {
+        (Interval::point(part) * Self::sum(&row[self.ball..], &self.most)).hi()
+    }
+
+    fn sum(row: &[Interval], sizes: &[f64]) -> Interval {
+        let each = row.iter().zip(sizes);
+        each.fold(Interval::ZERO, |sum, (x, &size)| {
+            sum + Interval::point(x.magnitude()) * Interval::point(size)
+        })
     }
 }
 
@@ -46,6 +51,12 @@ impl Spread {
     /// The box around all of it.
     pub fn ranges(&self, sizes: &Sizes) -> Vec<Interval> {
         let range = |(&c, row): (&Interval, &[Interval])| c + around_zero(sizes.reach(row));
+        self.center.iter().zip(self.deviations.rows()).map(range).collect()
+    }
+
+    /// The box around those of y = 0.
+    pub fn ranges_of_others(&self, sizes: &Sizes) -> Vec<Interval> {
+        let range = |(&c, row): (&Interval, &[Interval])| c + around_zero(sizes.reach_of_others(row, 1.0));
         self.center.iter().zip(self.deviations.rows()).map(range).collect()
     }
 

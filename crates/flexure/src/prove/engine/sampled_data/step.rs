@@ -28,7 +28,7 @@ struct Shares {
 
 /// Where readings are exact, and where they are off.
 const EXACT: Shares = Shares { law: 0.25, robot: 0.5, readings: 0.0 };
-const OFF: Shares = Shares { law: 0.25, robot: 0.3, readings: 0.1 };
+const OFF: Shares = Shares { law: 0.25, robot: 0.3, readings: 0.05 };
 
 /// How the sections of a tube follow each other.
 pub struct Recursion {
@@ -46,12 +46,12 @@ const WIDE: f64 = 1.5;
 
 /// By what a grip changes from one period to the next, what it is at most, and how much looser it is taken where it was too tight.
 const FIRMER: f64 = 1.1;
-const TIGHTEST: f64 = 6.0;
-const LOOSER: f64 = 1.2;
+const TIGHTEST: f64 = 12.0;
+const LOOSER: f64 = 1.05;
 
 /// Of 1 − λ, what a firm grip leaves over, for checkers whose bounds are wider, and what it leaves of the rate.
-const OVER: f64 = 0.1;
-const RATE: f64 = 0.5;
+const OVER: f64 = 0.05;
+const RATE: f64 = 0.15;
 
 impl Recursion {
     /// Of a tube that is held open by `torques` anyway; `exact` where readings are.

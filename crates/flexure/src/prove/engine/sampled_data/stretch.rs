@@ -4,7 +4,7 @@ use flexure_core::scalar::{Interval, Scalar};
 
 use crate::linalg::Dense;
 use crate::prove::engine::envelope::closed_loop::TrackingLoop;
-use crate::prove::engine::sampled_data::curvature::Curvature;
+use crate::prove::engine::sampled_data::curvature::{Curvature, Off};
 use crate::prove::engine::sampled_data::flow::Slopes;
 use crate::prove::engine::sampled_data::links::{Links, springs};
 use crate::prove::engine::sampled_data::norm::{around_zero, onwards, radius};
@@ -28,8 +28,11 @@ pub struct Stretch {
     middle: Vec<f64>,
     /// With which all move, about [rad/s, rad/s²].
     rates: Vec<f64>,
+    /// With which they move.
+    all_rates: Vec<Interval>,
+    length: Interval,
     /// How far they are off `middle` + (t − ½ length) `rates` at a time t, from above.
-    off: Vec<f64>,
+    pub off: Vec<f64>,
 }
 
 /// From `starts` and the path's `begin`, for `length` in s, motions in `ranges`.
@@ -50,17 +53,31 @@ pub fn stretch(
     let starts: Vec<_> = starts.iter().zip(begin).map(|(x, p)| x.hull(*p)).collect();
     let ahead = 0.5 * length.midpoint();
     let middle: Vec<_> = starts.iter().zip(&rates).map(|(x, rate)| x.midpoint() + ahead * rate).collect();
-    let off = |i: usize| {
-        let rate = Interval::point(rates[i]);
-        let begin = starts[i] - Interval::point(middle[i]) + length * rate * Interval::point(0.5);
-        (begin + meanwhile * (all[i] - rate)).magnitude()
-    };
-    let off = (0..ranges.len()).map(off).collect();
     ranges.iter_mut().zip(&middle).for_each(|(x, &m)| *x = x.hull(Interval::point(m)));
-    Some(Stretch { ranges, links, accelerations, middle, rates, off })
+    let mut stretch =
+        Stretch { ranges, links, accelerations, middle, rates, all_rates: all, length, off: Vec::new() };
+    stretch.off = stretch.off_of(&starts);
+    Some(stretch)
 }
 
 impl Stretch {
+    /// How far motions from `starts`, which are some of them, are off `middle` + (t − ½ length) `rates` at a time t, from above.
+    pub fn off_of(&self, starts: &[Interval]) -> Vec<f64> {
+        let (half, meanwhile) = (Interval::point(0.5), Interval::ZERO.hull(self.length));
+        let off = |i: usize| {
+            let rate = Interval::point(self.rates[i]);
+            let begin = starts[i] - Interval::point(self.middle[i]) + self.length * rate * half;
+            (begin + meanwhile * (self.all_rates[i] - rate)).magnitude()
+        };
+        (0..starts.len()).map(off).collect()
+    }
+
+    /// The same of what is between a motion from `center` and one from `starts`, in the mean over the way from the one to the other.
+    pub fn off_between(&self, center: &[Interval], starts: &[Interval]) -> Vec<f64> {
+        let both = self.off_of(center).into_iter().zip(self.off_of(starts));
+        both.map(|(a, b)| ((Interval::point(a) + Interval::point(b)) * Interval::point(0.5)).hi()).collect()
+    }
+
     /// A box for the first `count` numbers where motions may be for `left` in s after the piece, too, if they go on about as they do.
     pub fn onwards(&self, count: usize, left: Interval) -> Vec<Interval> {
         let on = |(&x, &rate): (&Interval, &f64)| onwards(x, left * Interval::point(rate));
@@ -71,15 +88,15 @@ impl Stretch {
     ///
     /// J(ξ) = J + Σ_k H_k ((t rates)_k + ω_k), |ω| ≤ `off`, H_k in the intervals of second derivatives;
     ///
-    /// or, entry by entry, those over the box, where that has less beside it.
-    pub fn slopes(
+    /// or, entry by entry, those over the box, where that has less beside it. For each of `offs`: with columns, ω is closer than the box around it.
+    pub fn slopes<const K: usize>(
         &self,
         system: &dyn TrackingLoop,
         u_m: &[Interval],
         curvature: &Curvature,
-        length: Interval,
-    ) -> Option<Slopes> {
-        let Self { ranges, links, accelerations, middle, rates, off } = self;
+        offs: [(&Off<'_>, &dyn Fn(&[Interval]) -> f64); K],
+    ) -> Option<[Slopes; K]> {
+        let Self { ranges, links, accelerations, middle, rates, length, .. } = self;
         let (n, half) = (u_m.len(), ranges.len() / 2);
         let everywhere = links.rates(system, &ranges[..n], &ranges[half..half + n], &accelerations[..n]);
         let points: Vec<_> = middle.iter().map(|&x| Interval::point(x)).collect();
@@ -91,28 +108,34 @@ impl Stretch {
         let anywhere = Dense::from_fn(n, 3 * n, |i, j| {
             everywhere[(i, j)].intersection(around[(i, j)]).unwrap_or(Interval::ENTIRE)
         });
-        let moved: Vec<_> = rates[..3 * n].iter().map(|&rate| length * Interval::point(rate)).collect();
+        let moved: Vec<_> = rates[..3 * n].iter().map(|&rate| *length * Interval::point(rate)).collect();
         let moved = curvature.along(&moved);
-        let beside = curvature.around(&at, &off[..3 * n]);
         let half = Interval::point(0.5);
-        let line = |i: usize, j: usize| {
-            let change = Interval::point(moved[(i, j)].midpoint());
-            let open = half * radius(moved[(i, j)]);
-            (beside[(i, j)] + around_zero(open.hi()) - half * change, change)
-        };
-        let better = |i: usize, j: usize| {
-            let (begin, change) = line(i, j);
-            if begin.width() < anywhere[(i, j)].width() {
-                (begin, change)
-            } else {
-                (anywhere[(i, j)], Interval::ZERO)
+        let slopes = |(off, reach): (&Off<'_>, &dyn Fn(&[Interval]) -> f64)| {
+            let mut beside = curvature.around(&at, &off.all[..3 * n]);
+            if off.columns.columns() > 0 {
+                let by_columns = curvature.around_columns(&at, off, reach);
+                beside = Dense::from_fn(n, 3 * n, |i, j| {
+                    beside[(i, j)].intersection(by_columns[(i, j)]).unwrap_or(Interval::ENTIRE)
+                });
+            }
+            let better = |i: usize, j: usize| {
+                let change = Interval::point(moved[(i, j)].midpoint());
+                let open = half * radius(moved[(i, j)]);
+                let begin = beside[(i, j)] + around_zero(open.hi()) - half * change;
+                if begin.width() < anywhere[(i, j)].width() {
+                    (begin, change)
+                } else {
+                    (anywhere[(i, j)], Interval::ZERO)
+                }
+            };
+            Slopes {
+                begin: Dense::from_fn(n, 3 * n, |i, j| better(i, j).0),
+                change: Dense::from_fn(n, 3 * n, |i, j| better(i, j).1),
+                anywhere: anywhere.clone(),
             }
         };
-        Some(Slopes {
-            begin: Dense::from_fn(n, 3 * n, |i, j| better(i, j).0),
-            change: Dense::from_fn(n, 3 * n, |i, j| better(i, j).1),
-            anywhere,
-        })
+        Some(offs.map(slopes))
     }
 }
 
