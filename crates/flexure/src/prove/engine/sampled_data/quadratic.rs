@@ -61,9 +61,8 @@ mod tests {
         for (rows, columns) in [(1, 1), (3, 1), (4, 10), (8, 12)] {
             for open in [0.0, 0.1] {
                 let g = Symmetric::from_fn(rows, |i, k| wave(7 * i + k) + 2.0);
-                let b = Dense::from_fn(rows, columns, |i, k| {
-                    wave(columns * i + k + 3) * 0.5_f64.powi(i as i32)
-                });
+                let b =
+                    Dense::from_fn(rows, columns, |i, k| wave(columns * i + k + 3) * 0.5_f64.powi(i as i32));
                 let wide = |x: f64| Interval::new(x - open, x + open).unwrap();
                 let said = largest_value(&g.map(wide), &b.map(Interval::point)).hi();
                 let (mut most, mut entries) = (0.0_f64, 0.0);
