@@ -47,8 +47,8 @@ pub fn motion(name: &str) -> Result<Option<Motion>, Box<dyn Error>> {
         "loop2" => closed("two-link-tanh-smooth")?,
         "loop7" => closed("panda-tanh-smooth")?,
         "loop" => closed(method)?,
-        "batch2" => batch("two-link-tanh-smooth", method)?,
-        "batch7" => batch("panda-tanh-smooth", method)?,
+        "batch2" => batch("two-link-tanh-smooth")?,
+        "batch7" => batch("panda-tanh-smooth")?,
         _ => return Ok(None),
     }))
 }
@@ -78,7 +78,7 @@ where
     let fresh = match method {
         "midpoint" => Stepper::Rough(Stepping::new(1e-3)),
         "tight" => Stepper::new(&plant, 1e-15, 1e-5),
-        method => Stepper::new(&plant, method.parse().unwrap_or(TOLERANCE), Stepping::<N>::STEP),
+        _ => Stepper::new(&plant, TOLERANCE, Stepping::<N>::STEP),
     };
     let pieces: u32 = if method == "tight" { 10 } else { 1 };
     Motion::of_one(SECOND, move |periods| {
@@ -123,11 +123,8 @@ fn closed(scenario: &str) -> Result<Motion, Box<dyn Error>> {
 const LOOPS: usize = 16;
 
 /// Many loops of a scenario, side by side in the registers of one core; periods go on and on.
-fn batch(scenario: &str, tol: &str) -> Result<Motion, Box<dyn Error>> {
-    let mut scenario = Scenario::load(scenario)?;
-    if let Ok(tol) = tol.parse() {
-        scenario.integration_tolerance = tol;
-    }
+fn batch(scenario: &str) -> Result<Motion, Box<dyn Error>> {
+    let scenario = Scenario::load(scenario)?;
     let mut batch = Batch::open(&[&scenario; LOOPS])?;
     batch.steps(JOINED);
     let on = move |periods| {

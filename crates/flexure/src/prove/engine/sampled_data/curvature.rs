@@ -20,6 +20,8 @@ pub struct Curvature {
 pub struct Off<'a> {
     /// D.
     pub columns: &'a Dense<Interval>,
+    /// Of a row, how far its product with z gets, from above.
+    pub reach: &'a dyn Fn(&[Interval]) -> f64,
     /// Beside that, from above.
     pub beside: &'a [f64],
     /// All together, from above.
@@ -44,18 +46,13 @@ impl Curvature {
     /// What the slopes `at` a motion are wherever motions are off it by `off` at most, from above.
     pub fn around(&self, at: &Dense<Interval>, off: &[f64]) -> Dense<Interval> {
         Dense::from_fn(at.rows().len(), at.columns(), |i, j| {
-            let change = self.sum(i, j, off, |bend| bend.magnitude());
+            let change = self.sum(i, j, off, Interval::magnitude);
             at[(i, j)] + around_zero(change.hi())
         })
     }
 
-    /// The same where what motions are off by is D z and `beside` that at most, for some z: `reach` says of a row how far its product with z gets.
-    pub fn around_columns(
-        &self,
-        at: &Dense<Interval>,
-        off: &Off<'_>,
-        reach: &dyn Fn(&[Interval]) -> f64,
-    ) -> Dense<Interval> {
+    /// The same by columns.
+    pub fn around_columns(&self, at: &Dense<Interval>, off: &Off<'_>) -> Dense<Interval> {
         Dense::from_fn(at.rows().len(), at.columns(), |i, j| {
             let along = |column: usize| {
                 let each = off.columns.rows().enumerate();
@@ -65,7 +62,7 @@ impl Curvature {
             };
             let row: Vec<_> = (0..off.columns.columns()).map(along).collect();
             let known =
-                Interval::point(reach(&row)) + self.sum(i, j, off.beside, |bend| bend.midpoint().abs());
+                Interval::point((off.reach)(&row)) + self.sum(i, j, off.beside, |bend| bend.midpoint().abs());
             let change = known + self.sum(i, j, off.all, |bend| radius(bend).hi());
             at[(i, j)] + around_zero(change.hi())
         })

@@ -97,17 +97,13 @@ fn piece(
     let hull: Vec<_> = motion.center.iter().zip(&begin).map(|(&c, &p)| c.hull(p)).collect();
     let drift = &stretch.off_of(&hull)[..3 * n];
     let between = stretch.off_between(&motion.center, &motion.ranges_of_others(sizes));
-    let [slopes, slopes_of_readings] = stretch.slopes(
-        system,
-        u_m,
-        curvature.as_ref()?,
-        [
-            (&Off { columns: &columns, beside: drift, all: &stretch.off[..3 * n] }, &|row| sizes.reach(row)),
-            (&Off { columns: &columns, beside: drift, all: &between[..3 * n] }, &|row| {
-                sizes.reach_of_others(row, 0.5)
-            }),
-        ],
-    )?;
+    let (of_all, of_half) =
+        (|row: &[Interval]| sizes.reach(row), |row: &[Interval]| sizes.reach_of_others(row, 0.5));
+    let offs = [
+        Off { columns: &columns, reach: &of_all, beside: drift, all: &stretch.off[..3 * n] },
+        Off { columns: &columns, reach: &of_half, beside: drift, all: &between[..3 * n] },
+    ];
+    let [slopes, slopes_of_readings] = stretch.slopes(system, u_m, curvature.as_ref()?, offs)?;
 
     let beside = |x: &[Interval], p: &[Interval]| x.iter().zip(p).map(|(&x, &p)| x - p).collect::<Vec<_>>();
     let start = [beside(&motion.center, &begin), beside(&torque.center, &u_p)].concat();
@@ -272,8 +268,8 @@ mod tests {
         let over = stretch.onwards(3 * n, Interval::point(0.0));
         let curvature = Curvature::over(system, over).unwrap();
         let none = Dense::zeros(3 * n, 0).map(Interval::point);
-        let off = Off { columns: &none, beside: &[], all: &stretch.off[..3 * n] };
-        let [said] = stretch.slopes(system, &u, &curvature, [(&off, &|_| 0.0)]).unwrap();
+        let off = Off { columns: &none, reach: &|_| 0.0, beside: &[], all: &stretch.off[..3 * n] };
+        let [said] = stretch.slopes(system, &u, &curvature, [off]).unwrap();
 
         let mut farthest = 0.0_f64;
         for corner in 0..16 {

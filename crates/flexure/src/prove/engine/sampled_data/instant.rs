@@ -55,8 +55,8 @@ impl Middle {
         let across = of_ball.transposed();
         // What is 0 is so for many columns: torques beside the law's are not seen by it.
         let counts: Vec<_> = (0..sizes.most.len()).filter(|&k| sizes.most[k] > 0.0).collect();
-        let of_others = Dense::from_fn(seen.center.len(), counts.len(), |i, j| {
-            by[(i, ball + counts[j])] * Interval::point(sizes.most[counts[j]])
+        let of_others = Dense::from_fn(seen.center.len(), counts.len().max(1), |i, j| {
+            counts.get(j).map_or(Interval::ZERO, |&k| by[(i, ball + k)] * Interval::point(sizes.most[k]))
         });
         let others = reaches(&of_others);
         let both = of_ball.rows().map(|row| Interval::point(frobenius(row.iter().copied())));

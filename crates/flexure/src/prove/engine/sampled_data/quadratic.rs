@@ -18,6 +18,9 @@ pub fn reaches(rows: &Dense<Interval>) -> Vec<Interval> {
 /// v_i orthogonal in units of β, and entry by entry.
 pub fn largest_value(g: &Symmetric<Interval>, b: &Dense<Interval>) -> Interval {
     let reach = reaches(b);
+    if reach.iter().all(|x| x.hi() == 0.0) {
+        return Interval::ZERO;
+    }
     let sized = g.map(|x| Interval::point(x.magnitude()));
     let of_reach = reach.iter().map(|x| if x.midpoint() > 0.0 { x.midpoint() } else { 1.0 }).collect();
     let by_vectors = [vec![1.0; reach.len()], of_reach].map(|unit| by_vectors(g, b, &reach, &unit));
@@ -61,8 +64,7 @@ mod tests {
         for (rows, columns) in [(1, 1), (3, 1), (4, 10), (8, 12)] {
             for open in [0.0, 0.1] {
                 let g = Symmetric::from_fn(rows, |i, k| wave(7 * i + k) + 2.0);
-                let b =
-                    Dense::from_fn(rows, columns, |i, k| wave(columns * i + k + 3) * 0.5_f64.powi(i as i32));
+                let b = Dense::from_fn(rows, columns, |i, k| wave(columns * i + k + 3) / (1 + i) as f64);
                 let wide = |x: f64| Interval::new(x - open, x + open).unwrap();
                 let said = largest_value(&g.map(wide), &b.map(Interval::point)).hi();
                 let (mut most, mut entries) = (0.0_f64, 0.0);

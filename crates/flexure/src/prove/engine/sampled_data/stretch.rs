@@ -94,7 +94,7 @@ impl Stretch {
         system: &dyn TrackingLoop,
         u_m: &[Interval],
         curvature: &Curvature,
-        offs: [(&Off<'_>, &dyn Fn(&[Interval]) -> f64); K],
+        offs: [Off<'_>; K],
     ) -> Option<[Slopes; K]> {
         let Self { ranges, links, accelerations, middle, rates, length, .. } = self;
         let (n, half) = (u_m.len(), ranges.len() / 2);
@@ -111,10 +111,10 @@ impl Stretch {
         let moved: Vec<_> = rates[..3 * n].iter().map(|&rate| *length * Interval::point(rate)).collect();
         let moved = curvature.along(&moved);
         let half = Interval::point(0.5);
-        let slopes = |(off, reach): (&Off<'_>, &dyn Fn(&[Interval]) -> f64)| {
+        let slopes = |off: Off<'_>| {
             let mut beside = curvature.around(&at, &off.all[..3 * n]);
             if off.columns.columns() > 0 {
-                let by_columns = curvature.around_columns(&at, off, reach);
+                let by_columns = curvature.around_columns(&at, &off);
                 beside = Dense::from_fn(n, 3 * n, |i, j| {
                     beside[(i, j)].intersection(by_columns[(i, j)]).unwrap_or(Interval::ENTIRE)
                 });
