@@ -16,15 +16,15 @@ pub struct Curvature {
     of: Vec<Symmetric<Interval>>,
 }
 
-/// How far motions are off another, number by number: D z, and beside that.
+/// How far motions are off another: D z, and a little beside.
 pub struct Off<'a> {
-    /// D.
+    /// D, a row for each number.
     pub columns: &'a Dense<Interval>,
     /// Of a row, how far its product with z gets, from above.
     pub reach: &'a dyn Fn(&[Interval]) -> f64,
-    /// Beside that, from above.
+    /// What is beside D z, number by number, from above.
     pub beside: &'a [f64],
-    /// All together, from above.
+    /// Both together, number by number, from above.
     pub all: &'a [f64],
 }
 
@@ -51,7 +51,7 @@ impl Curvature {
         })
     }
 
-    /// The same by columns.
+    /// The same, where motions are off it by D z and a little beside: |Σ_k H_k (D z)_k| with the middles of second derivatives H, column by column, and what is beside those by the box.
     pub fn around_columns(&self, at: &Dense<Interval>, off: &Off<'_>) -> Dense<Interval> {
         Dense::from_fn(at.rows().len(), at.columns(), |i, j| {
             let along = |column: usize| {

@@ -53,7 +53,7 @@ impl Middle {
         let by = bends.coordinates(&seen.deviations);
         let of_ball = Dense::from_fn(seen.center.len(), ball, |i, j| by[(i, j)]);
         let across = of_ball.transposed();
-        // What is 0 is so for many columns: torques beside the law's are not seen by it.
+        // Without the columns of all z that are 0, as those of torques beside the law's are.
         let counts: Vec<_> = (0..sizes.most.len()).filter(|&k| sizes.most[k] > 0.0).collect();
         let of_others = Dense::from_fn(seen.center.len(), counts.len().max(1), |i, j| {
             counts.get(j).map_or(Interval::ZERO, |&k| by[(i, ball + k)] * Interval::point(sizes.most[k]))

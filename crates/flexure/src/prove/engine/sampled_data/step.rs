@@ -50,7 +50,7 @@ const TIGHTEST: f64 = 12.0;
 const LOOSER: f64 = 1.05;
 
 /// Of 1 − λ, what a firm grip leaves over, for checkers whose bounds are wider, and what it leaves of the rate.
-const OVER: f64 = 0.05;
+const OVER: f64 = 0.1;
 const RATE: f64 = 0.15;
 
 impl Recursion {
