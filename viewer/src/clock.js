@@ -8,11 +8,11 @@ export class Clock extends EventTarget {
     Object.assign(this, { begin, end, t: begin, playing: false, speed: 1 });
   }
 
-  /** Moves on by the wall time that passed; at the end the clock stops. */
+  /** Moves on by the wall time that passed, which the first frame has too little of: it is stamped before it is asked for. At the end the clock stops. */
   advance(wallSeconds) {
     if (!this.playing) return;
     // A tab that was in the background must not jump ahead.
-    this.t = Math.min(this.end, this.t + this.speed * Math.min(wallSeconds, 0.25));
+    this.t = Math.min(this.end, this.t + this.speed * Math.min(Math.max(wallSeconds, 0), 0.25));
     if (this.t >= this.end) this.play(false);
   }
 
