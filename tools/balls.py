@@ -433,7 +433,7 @@ def main(check, what, part):  # the files of the command line through check(data
         except ZeroDivisionError:
             code, said = 1, "not proved: something may be 0 that is divided by"
         except Exception as error:
-            code, said = 2, str(error) if isinstance(error, Unknown) else f"not a file of a {what}: {error!r:.300}"
+            code, said = 2, str(error) if isinstance(error, Unknown) else f"not a file of a {what}: {type(error).__name__}: {str(error):.200}"
         print(f"{path}: {said}, checked in {time.perf_counter() - start:.1f} s", flush=True)
         worst = max(worst, code)
     return worst
