@@ -51,7 +51,7 @@ const LOOSER: f64 = 1.05;
 
 /// Of 1 − λ, what a firm grip leaves over, for checkers whose bounds are wider, and what it leaves of the rate.
 const OVER: f64 = 0.1;
-const RATE: f64 = 0.15;
+const RATE: f64 = 0.5;
 
 impl Recursion {
     /// Of a tube that is held open by `torques` anyway; `exact` where readings are.
