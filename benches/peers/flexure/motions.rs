@@ -42,8 +42,8 @@ impl Motion {
 pub fn motion(name: &str) -> Result<Option<Motion>, Box<dyn Error>> {
     let (kind, method) = name.split_once('-').unwrap_or((name, ""));
     Ok(Some(match kind {
-        "plant2" => plant(two_link()?, method, Vector::ZERO, &TWO_LINK),
-        "plant7" => plant(panda()?, method, Vector([0.0, -0.6, 0.0, -1.8, 0.0, 1.5, 0.5]), &PANDA),
+        "plant2" => plant(two_link()?, method, Vector::ZERO, &TWO_LINK)?,
+        "plant7" => plant(panda()?, method, Vector([0.0, -0.6, 0.0, -1.8, 0.0, 1.5, 0.5]), &PANDA)?,
         "loop2" => closed("two-link-tanh-smooth")?,
         "loop7" => closed("panda-tanh-smooth")?,
         "loop" => closed(method)?,
@@ -62,13 +62,13 @@ struct Drive {
 const TWO_LINK: Drive = Drive { amplitude: 3.0, stiffness: 0.5 };
 const PANDA: Drive = Drive { amplitude: 20.0, stiffness: 200.0 };
 
-/// From rest, hanging in the springs. Methods: what runs use, a tight reference, midpoint steps of a millisecond.
+/// From rest, hanging in the springs. Methods: what runs use, the same with a tolerance, a tight reference, midpoint steps of a millisecond.
 fn plant<L, const N: usize>(
     robot: Fjr<f64, L, N>,
     method: &str,
     q_l: Vector<f64, N>,
     drive: &'static Drive,
-) -> Motion
+) -> Result<Motion, Box<dyn Error>>
 where
     L: Links<f64, N> + Copy + 'static,
 {
@@ -78,10 +78,11 @@ where
     let fresh = match method {
         "midpoint" => Stepper::Rough(Stepping::new(1e-3)),
         "tight" => Stepper::new(&plant, 1e-15, 1e-5),
-        _ => Stepper::new(&plant, TOLERANCE, Stepping::<N>::STEP),
+        "" => Stepper::new(&plant, TOLERANCE, Stepping::<N>::STEP),
+        tolerance => Stepper::new(&plant, tolerance.parse()?, Stepping::<N>::STEP),
     };
     let pieces: u32 = if method == "tight" { 10 } else { 1 };
-    Motion::of_one(SECOND, move |periods| {
+    Ok(Motion::of_one(SECOND, move |periods| {
         let (mut x, mut stepper, mut ledger) = (start, fresh.clone(), Ledger::default());
         for period in 0..periods {
             let t = 1e-3 * period as f64;
@@ -97,7 +98,7 @@ where
             }
         }
         Ok([x.q_l.0, x.q_m.0].concat())
-    })
+    }))
 }
 
 /// Periods before those that are timed: by then the arms have joined their references.

@@ -102,8 +102,8 @@ const CHATTER: f64 = 0.5;
 /// what encoders show.
 const LITTLE: f64 = 0.1;
 
-/// Part of the work that the searches are; the runs before and after them take the rest.
-const SEARCHES: f64 = 0.96;
+/// Part of the work that the searches are; the run before them takes the rest.
+const SEARCHES: f64 = 0.98;
 
 /// What is changed, and how far.
 type Search = (fn(f64) -> Change, edge::Way);
@@ -124,8 +124,10 @@ pub fn margins(scenario: &Scenario, progress: Progress<'_>) -> Result<Margins, P
     }
     let scenario = feasible::pinned(scenario)?;
     let criteria = Criteria::of(&scenario)?;
-    let (before, after) = (0.5 * (1.0 - SEARCHES), 0.5 * (1.0 + SEARCHES));
-    let nominal = measure_watched(&scenario, &criteria, &|fraction| progress(before * fraction))?;
+    let before = 1.0 - SEARCHES;
+    let nominal = || measure_watched(&scenario, &criteria, &|fraction| progress(before * fraction));
+    let (nominal, sampled) = rayon::join(nominal, || probe(&scenario));
+    let nominal = nominal?;
     let rms = nominal.divergence.is_none().then_some(nominal.summary.rms_e_l);
     let follows = nominal.summary.following.follows;
     let allowed = Allowed::beside(&nominal);
@@ -149,34 +151,23 @@ pub fn margins(scenario: &Scenario, progress: Progress<'_>) -> Result<Margins, P
         criteria: &criteria,
         allowed: &allowed,
         tell: &tell,
+        little: Little::of(change(0.0)),
         problems: None,
     });
-    let mut edges = vec![(Edge::Nowhere, 0); searches.len()];
+    let mut found = vec![Found::NOTHING; searches.len()];
     if follows {
-        for (edge, hunt) in edges.iter_mut().zip(in_turns(hunts.collect())) {
-            *edge = hunt.found()?;
+        for (found, hunt) in found.iter_mut().zip(in_turns(hunts.collect())) {
+            *found = hunt.found()?;
         }
     }
-    let mut runs = 1 + edges.iter().map(|(_, tried)| tried).sum::<usize>();
-    let edges: Vec<Edge> = edges.into_iter().map(|(edge, _)| edge).collect();
-    let mut broken_off = edges.iter().any(|edge| matches!(edge, Edge::Open { .. }));
+    let runs = 1 + found.iter().map(|found| found.runs).sum::<usize>();
+    let broken_off = found.iter().any(|found| found.broken_off);
+    let noisy = found.iter_mut().find_map(|found| found.noisy.take());
+    let edges: Vec<Edge> = found.into_iter().map(|found| found.edge).collect();
     let [noise, delay, stiffness_high, stiffness_low, gain_high, gain_low] =
         edges.try_into().expect("six searches");
-    let little = noise.holds().map(|holds| LITTLE * holds);
-    let noisy = little.map(|little| {
-        let changed = Change::Noise(little).of(&scenario);
-        measure_watched(&changed, &criteria, &|fraction| progress(after + (1.0 - after) * fraction))
-    });
-    let noisy = match noisy.transpose() {
-        Err(problems) if problems.is_interrupted() => {
-            broken_off = true;
-            None
-        }
-        noisy => noisy?,
-    };
-    runs += usize::from(noisy.is_some());
     let per_noise = |of: fn(&Run) -> f64| {
-        let (little, noisy) = little.zip(noisy.as_ref().filter(|run| run.divergence.is_none()))?;
+        let (little, noisy) = noisy.as_ref().filter(|(_, run)| run.divergence.is_none())?;
         let excess = of(noisy).powi(2) - of(&nominal).powi(2);
         (excess > 0.0).then(|| excess.sqrt() / little)
     };
@@ -201,7 +192,7 @@ pub fn margins(scenario: &Scenario, progress: Progress<'_>) -> Result<Margins, P
         runs,
         duration: scenario.duration,
         kinds: scenario.robot.kinds(),
-        sampled: if broken_off { None } else { probe(&scenario)? },
+        sampled: if broken_off { None } else { sampled? },
         broken_off,
     })
 }
@@ -216,28 +207,71 @@ struct Hunt<'a> {
     allowed: &'a Allowed,
     /// Told the number of the search and how far it is.
     tell: PartProgress<'a>,
+    little: Little,
     /// What ended it.
     problems: Option<Problems>,
 }
 
+/// The run with [`LITTLE`] of the noise that the loop bears, once that is known.
+enum Little {
+    /// Of other changes there is none.
+    None,
+    /// The edge is looked for.
+    Wanted,
+    /// It is on its way, with so much.
+    Asked(f64),
+    Run(f64, Box<Run>),
+}
+
+impl Little {
+    /// Before a search along changes such as `change`.
+    fn of(change: Change) -> Self {
+        if matches!(change, Change::Noise(_)) { Self::Wanted } else { Self::None }
+    }
+}
+
+/// What a search has found.
+#[derive(Clone)]
+struct Found {
+    edge: Edge,
+    /// Runs that it took.
+    runs: usize,
+    /// A little noise, and the run with it.
+    noisy: Option<(f64, Box<Run>)>,
+    broken_off: bool,
+}
+
+impl Found {
+    /// Of a loop that does not hold as it is.
+    const NOTHING: Self = Self { edge: Edge::Nowhere, runs: 0, noisy: None, broken_off: false };
+}
+
 impl Hunt<'_> {
-    /// The edge that it found, open if it was broken off, and how many changes were tried.
-    fn found(self) -> Result<(Edge, usize), Problems> {
-        match self.problems {
-            Some(problems) if !problems.is_interrupted() => Err(problems),
-            _ => Ok(self.search.edge()),
+    /// What it found: an open edge if it was broken off.
+    fn found(self) -> Result<Found, Problems> {
+        let broken_off = self.problems.is_some();
+        if let Some(problems) = self.problems.filter(|problems| !problems.is_interrupted()) {
+            return Err(problems);
         }
+        let (edge, tried) = self.search.edge();
+        let noisy = if let Little::Run(little, run) = self.little { Some((little, run)) } else { None };
+        Ok(Found { edge, runs: tried + usize::from(noisy.is_some()), noisy, broken_off })
     }
 }
 
 impl Asking for Hunt<'_> {
     fn ask(&mut self) -> Option<Scenario> {
-        let next = self.search.next().filter(|_| self.problems.is_none());
+        let mut next = self.search.next().map(|(x, _)| x);
+        if next.is_none() && matches!(self.little, Little::Wanted) {
+            next = self.search.edge().0.holds().map(|holds| LITTLE * holds);
+            self.little = next.map_or(Little::None, Little::Asked);
+        }
+        let next = next.filter(|_| self.problems.is_none());
         if next.is_none() {
             // One that is done sooner than it seemed counts as done.
             let _ = (self.tell)(self.part, 1.0);
         }
-        next.map(|(x, _)| (self.change)(x).of(self.scenario))
+        next.map(|x| (self.change)(x).of(self.scenario))
     }
 
     fn criteria(&self) -> &Criteria {
@@ -245,16 +279,15 @@ impl Asking for Hunt<'_> {
     }
 
     fn watch(&self, fraction: f64) -> ControlFlow<()> {
-        match self.search.next() {
-            Some((_, stage)) => (self.tell)(self.part, stage.fraction(fraction)),
-            None => ControlFlow::Continue(()),
-        }
+        let done = self.search.next().map_or(1.0, |(_, stage)| stage.fraction(fraction));
+        (self.tell)(self.part, done)
     }
 
     fn tell(&mut self, _: &Scenario, run: Result<Run, Problems>) {
-        match run {
-            Ok(run) => self.search.tell(self.allowed.holds(&run)),
-            Err(problems) => self.problems = Some(problems),
+        match (run, &self.little) {
+            (Err(problems), _) => self.problems = Some(problems),
+            (Ok(run), &Little::Asked(little)) => self.little = Little::Run(little, Box::new(run)),
+            (Ok(run), _) => self.search.tell(self.allowed.holds(&run)),
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::plant::{Plant, Sides};
 use crate::simulate::damped::error_of_defect;
 use crate::simulate::ledger::Ledger;
 use crate::simulate::local_error::{Torques, Values, estimate};
-use crate::simulate::newton::{Anchor, StageSolver, StepSolution};
+use crate::simulate::newton::{Anchor, Lengths, StageSolver, StepSolution};
 use crate::simulate::scheme::{Scheme, Stages};
 use crate::simulate::span::{EachAtStages, Span, ahead, damping_rate, half, weighted};
 
@@ -88,6 +88,7 @@ pub(crate) struct Collocation<const S: usize, const N: usize> {
     /// What stage values are multiplied by to have at 0 the polynomial through half as many points.
     half: Stages<S>,
     solver: Option<Box<StageSolver<S, N>>>,
+    lengths: Lengths<S, N>,
     /// Damping rates of the motors that it is for [1/s].
     rate: Vector<f64, N>,
     /// Length of a step in s, and what [`error_of_defect`] is for that length and half as many stages, a motor each.
@@ -115,6 +116,7 @@ where
             half: half(&scheme),
             scheme,
             solver: None,
+            lengths: Lengths::default(),
             rate: Vector::ZERO,
             of_coarser: (0.0, [0.0; N]),
         }
@@ -132,6 +134,7 @@ where
         let rate = &damping_rate(plant);
         if self.rate != *rate {
             (self.rate, self.solver, self.of_coarser.0) = (*rate, None, 0.0);
+            self.lengths.clear();
         }
         // Where a matrix from some way back does not lead on, one from here may.
         let here = Anchor { q: [x.q_l, x.q_m], h };
@@ -145,7 +148,7 @@ where
             }
             match &mut self.solver {
                 Some(solver) if solver.anchor == anchor => {}
-                Some(solver) => solver.move_to(&self.scheme, plant, anchor),
+                Some(solver) => solver.move_to(&self.scheme, plant, anchor, &mut self.lengths),
                 None => self.solver = Some(Box::new(StageSolver::new(&self.scheme, plant, anchor))),
             }
             let Some(solver) = self.solver.as_deref() else { break };

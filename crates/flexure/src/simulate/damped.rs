@@ -77,13 +77,17 @@ impl<const S: usize> Damped<S> {
         let moment = |m: usize, k: usize| {
             (0..=m).fold(0.0, |sum, r| {
                 let sign = if r % 2 == 0 { 1.0 } else { -1.0 };
-                sum + sign * factorial(m) / factorial(m - r) * phi[k + 1 + r]
+                sum + sign * FACTORIAL[m] / FACTORIAL[m - r] * phi[k + 1 + r]
             })
         };
         let p = &scheme.polynomials;
         let end = Reach::new(scheme, rate, 1.0);
-        let over = |i: usize, k: usize| (0..S).map(|m| p[(i, m)] * moment(m, k)).sum::<f64>();
-        let work_of_speed: Stages<S> = Vector::from_fn(|i| over(i, 0));
+        let over = |k: usize| {
+            let moments: Stages<S> = Vector::from_fn(|m| moment(m, k));
+            Vector::from_fn(|i| (0..S).map(|m| p[(i, m)] * moments[m]).sum::<f64>())
+        };
+        let work_of_speed: Stages<S> = over(0);
+        let work_of_powers: [Stages<S>; S] = std::array::from_fn(|k| over(k + 1).scaled(FACTORIAL[k]));
         let excess = Vector::from_fn(|i| work_of_speed[i] / scheme.weights[i] - stages[i].decay);
         Self {
             decay: Vector(stages.map(|reach| reach.decay)),
@@ -95,7 +99,7 @@ impl<const S: usize> Damped<S> {
             excess: if rate < WITHIN { Stages::ZERO } else { excess },
             work_of_speed,
             work: StageMap::new(&Matrix::from_fn(|i, j| {
-                (0..S).map(|k| p[(j, k)] * factorial(k) * over(i, k + 1)).sum()
+                (0..S).map(|k| p[(j, k)] * work_of_powers[k][i]).sum()
             })),
             error_of_defect: error_of_defect(scheme, rate),
         }
@@ -135,33 +139,70 @@ pub(crate) fn error_of_defect<const S: usize>(scheme: &Scheme<S>, rate: f64) -> 
     let phi = phi(rate);
     // The polynomial that is 1 at the start and 0 at the stages: its leading coefficient, then the others.
     let leading = scheme.nodes.iter().fold(1.0, |product, c| -product / c);
-    let power = |j: usize| scheme.nodes[j].powi(degree(S));
-    let rest = |m: usize| -leading * (0..S).map(|j| scheme.polynomials[(j, m)] * power(j)).sum::<f64>();
+    let powers: [f64; S] = std::array::from_fn(|j| powers(scheme.nodes[j])[S]);
+    let rest = |m: usize| -leading * (0..S).map(|j| scheme.polynomials[(j, m)] * powers[j]).sum::<f64>();
     let at_end =
-        (0..S).fold(leading * factorial(S) * phi[S + 1], |sum, m| sum + rest(m) * factorial(m) * phi[m + 1]);
+        (0..S).fold(leading * FACTORIAL[S] * phi[S + 1], |sum, m| sum + rest(m) * FACTORIAL[m] * phi[m + 1]);
     (at_end * phi[1]).abs()
 }
 
 impl<const S: usize> Reach<S> {
     fn new(scheme: &Scheme<S>, rate: f64, c: f64) -> Self {
-        let phi = phi(rate * c);
+        let (phi, powers) = (phi(rate * c), powers(c));
         // ∫₀ᶜ e^(−λh (c − s)) s^k ds = k! c^(k+1) φ_(k+1)(−λh c), and once more.
         let integral = |times: usize| {
-            let weights: Stages<S> = Vector::from_fn(|j| {
-                let power = |k: usize| factorial(k) * c.powi(degree(k + times)) * phi[k + times];
-                (0..S).map(|k| scheme.polynomials[(j, k)] * power(k)).sum()
-            });
+            let of_power: Stages<S> = Vector::from_fn(|k| FACTORIAL[k] * powers[k + times] * phi[k + times]);
+            let weights = scheme.polynomials * of_power;
             // What f does that is constant is known without the cancellations.
-            weights.scaled(c.powi(degree(times)) * phi[times] / weights.iter().sum::<f64>())
+            weights.scaled(powers[times] * phi[times] / weights.iter().sum::<f64>())
         };
         Self { decay: phi[0], drift: c * phi[1], once: integral(1), twice: integral(2) }
     }
 }
 
-#[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "a few stages")]
-fn degree(n: usize) -> i32 {
-    n as i32
+/// 1, c, c², …
+fn powers(c: f64) -> [f64; COUNT] {
+    let mut powers = [1.0; COUNT];
+    for k in 1..COUNT {
+        powers[k] = powers[k - 1] * c;
+    }
+    powers
 }
+
+/// 0!, 1!, …
+const FACTORIAL: [f64; COUNT] = {
+    let (mut each, mut k) = ([1.0; COUNT], 1);
+    while k < COUNT {
+        each[k] = factorial(k);
+        k += 1;
+    }
+    each
+};
+
+/// What they are divided by to be 1.
+const INVERSE_FACTORIAL: [f64; COUNT] = {
+    let (mut each, mut k) = ([1.0; COUNT], 1);
+    while k < COUNT {
+        each[k] = 1.0 / FACTORIAL[k];
+        k += 1;
+    }
+    each
+};
+
+/// Terms of the series of the last φ_k(−x): those after so many are less than a rounding of the sum for x < 4, after [`FEW`] for x < 1.
+const TERMS: usize = 26;
+
+const FEW: usize = 16;
+
+/// Their coefficients 1 / (k + j)!, but for signs.
+const OF_LAST: [f64; TERMS] = {
+    let (mut each, mut j) = ([INVERSE_FACTORIAL[COUNT - 1]; TERMS], 1);
+    while j < TERMS {
+        each[j] = each[j - 1] / (COUNT - 1 + j) as f64;
+        j += 1;
+    }
+    each
+};
 
 /// φ_k(−x) for x ≥ 0.
 fn phi(x: f64) -> Phi {
@@ -169,18 +210,15 @@ fn phi(x: f64) -> Phi {
     if x < 4.0 {
         // The last one from its series, the others from φ_k = 1/k! − x φ_(k+1), which shrinks errors here.
         let last = COUNT - 1;
-        let mut term = 1.0 / factorial(last);
-        for j in 1..40 {
-            phi[last] += term;
-            term *= -x / (last + j) as f64;
-        }
+        let terms = if x < 1.0 { &OF_LAST[..FEW] } else { &OF_LAST };
+        phi[last] = terms.iter().rev().fold(0.0, |sum, coefficient| coefficient - x * sum);
         for k in (0..last).rev() {
-            phi[k] = 1.0 / factorial(k) - x * phi[k + 1];
+            phi[k] = INVERSE_FACTORIAL[k] - x * phi[k + 1];
         }
     } else {
         phi[0] = Scalar::exp(-x);
         for k in 1..COUNT {
-            phi[k] = (1.0 / factorial(k - 1) - phi[k - 1]) / x;
+            phi[k] = (INVERSE_FACTORIAL[k - 1] - phi[k - 1]) / x;
         }
     }
     phi

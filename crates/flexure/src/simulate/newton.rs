@@ -62,19 +62,58 @@ impl<const S: usize, const N: usize> StageSolver<S, N> {
         Self::of(scheme, plant, anchor, damped_motors(scheme, plant, anchor.h), inverse)
     }
 
-    /// Makes the matrix anew at another anchor, of the same plant but for pushes.
+    /// Makes the matrix anew at another anchor, of the same plant but for pushes. Coefficients of motors for lengths that come back are in
+    /// `lengths`.
     pub(crate) fn move_to<L: Links<f64, N>>(
         &mut self,
         scheme: &Scheme<S>,
         plant: &Plant<L, N>,
         anchor: Anchor<N>,
+        lengths: &mut Lengths<S, N>,
     ) {
         #[expect(clippy::float_cmp, reason = "coefficients of another length are others")]
         if self.anchor.h != anchor.h {
+            lengths.keep(self.anchor.h, &self.damped);
             self.anchor.h = anchor.h;
-            self.damped = damped_motors(scheme, plant, anchor.h);
+            self.damped = lengths.of(anchor.h).unwrap_or_else(|| damped_motors(scheme, plant, anchor.h));
         }
         self.renew(scheme, plant, anchor.q, inverse);
+    }
+}
+
+/// Lengths of steps in s, with how each motor moves on its own in them: those of the last few. A drive that is late by a part of a period has
+/// two of them a period.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Lengths<const S: usize, const N: usize> {
+    known: Vec<(f64, [Damped<S>; N])>,
+    /// The place of the one that has been there longest.
+    oldest: usize,
+}
+
+/// How many are kept.
+const LENGTHS: usize = 4;
+
+impl<const S: usize, const N: usize> Lengths<S, N> {
+    fn of(&self, h: f64) -> Option<[Damped<S>; N]> {
+        self.known.iter().find(|(of, _)| of.to_bits() == h.to_bits()).map(|(_, damped)| *damped)
+    }
+
+    fn keep(&mut self, h: f64, damped: &[Damped<S>; N]) {
+        if self.of(h).is_some() {
+            return;
+        }
+        if self.known.len() < LENGTHS {
+            self.known.push((h, *damped));
+        } else {
+            self.known[self.oldest] = (h, *damped);
+            self.oldest = (self.oldest + 1) % LENGTHS;
+        }
+    }
+
+    /// Motors are others now.
+    pub(crate) fn clear(&mut self) {
+        self.known.clear();
+        self.oldest = 0;
     }
 }
 
