@@ -74,12 +74,8 @@ impl<const S: usize> Damped<S> {
         }
         let phi = phi(rate);
         // ∫₀¹ s^m s^k φ_k(−λ h s) ds, by parts.
-        let moment = |m: usize, k: usize| {
-            (0..=m).fold(0.0, |sum, r| {
-                let sign = if r % 2 == 0 { 1.0 } else { -1.0 };
-                sum + sign * FACTORIAL[m] / FACTORIAL[m - r] * phi[k + 1 + r]
-            })
-        };
+        let moment =
+            |m: usize, k: usize| (0..=m).rev().fold(0.0, |sum, r| phi[k + 1 + r] - (m - r) as f64 * sum);
         let p = &scheme.polynomials;
         let end = Reach::new(scheme, rate, 1.0);
         let over = |k: usize| {
