@@ -32,14 +32,16 @@ fn time(name: &str, file: &str, out: &str, milliseconds: u64) -> Result<(), Box<
     let (ns, results) = match work(name)? {
         Work::Call(mut call) => {
             let inputs = numbers(&fs::read(file)?);
-            let lines = inputs.chunks_exact(call.inputs);
-            let mut results = vec![0.0; lines.len() * call.outputs];
+            let lines = inputs.len() / call.inputs;
+            let mut results = vec![0.0; lines * call.outputs];
+            let (of_inputs, of_outputs) = (call.inputs * call.lines, call.outputs * call.lines);
             let mut pass = || {
-                for (line, result) in lines.clone().zip(results.chunks_exact_mut(call.outputs)) {
+                for (line, result) in inputs.chunks_exact(of_inputs).zip(results.chunks_exact_mut(of_outputs))
+                {
                     (call.run)(line, result);
                 }
             };
-            (clock::least(milliseconds, &mut pass) / lines.len() as f64, results)
+            (clock::least(milliseconds, &mut pass) / lines as f64, results)
         }
         Work::Motion(mut motion) => {
             let result = motion.run(motions::SECOND)?;
@@ -61,8 +63,8 @@ fn repeat(name: &str, times: usize) -> Result<(), Box<dyn Error>> {
         Work::Call(mut call) => {
             // As many inputs however often: what is before the work must not grow with it.
             let inputs: Vec<f64> = (0..16 * call.inputs).map(|i| (i as f64).sin()).collect();
-            let mut result = vec![0.0; call.outputs];
-            for line in inputs.chunks_exact(call.inputs).cycle().take(times) {
+            let mut result = vec![0.0; call.outputs * call.lines];
+            for line in inputs.chunks_exact(call.inputs * call.lines).cycle().take(times) {
                 (call.run)(line, &mut result);
             }
             std::hint::black_box(&result);

@@ -4,7 +4,8 @@ use std::error::Error;
 
 use flexure::Scenario;
 use flexure::plant::Plant;
-use flexure::simulate::{Batch, Ledger, Loop, Stepper, Stepping, TOLERANCE};
+use flexure::scenario::Integration;
+use flexure::simulate::{Batch, Ledger, Loop, Method, Observed, Stepper, Stepping, TOLERANCE};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{self, Fjr, Links};
 
@@ -44,11 +45,11 @@ pub fn motion(name: &str) -> Result<Option<Motion>, Box<dyn Error>> {
     Ok(Some(match kind {
         "plant2" => plant(two_link()?, method, Vector::ZERO, &TWO_LINK)?,
         "plant7" => plant(panda()?, method, Vector([0.0, -0.6, 0.0, -1.8, 0.0, 1.5, 0.5]), &PANDA)?,
-        "loop2" => closed("two-link-tanh-smooth")?,
-        "loop7" => closed("panda-tanh-smooth")?,
-        "loop" => closed(method)?,
-        "batch2" => batch("two-link-tanh-smooth")?,
-        "batch7" => batch("panda-tanh-smooth")?,
+        "loop2" => closed(&scenario("two-link-tanh-smooth", method)?)?,
+        "loop7" => closed(&scenario("panda-tanh-smooth", method)?)?,
+        "loop" => closed(&scenario(method, "")?)?,
+        "batch2" => batch(&scenario("two-link-tanh-smooth", method)?)?,
+        "batch7" => batch(&scenario("panda-tanh-smooth", method)?)?,
         _ => return Ok(None),
     }))
 }
@@ -75,12 +76,13 @@ where
     let plant = Plant::from(robot);
     let hold = robot.links.gravity_torque(&q_l);
     let start = model::Motion { q_m: robot.motors_at_rest(&q_l), ..model::Motion::at_rest(q_l) };
-    let fresh = match method {
-        "midpoint" => Stepper::Rough(Stepping::new(1e-3)),
-        "tight" => Stepper::new(&plant, 1e-15, 1e-5),
-        "" => Stepper::new(&plant, TOLERANCE, Stepping::<N>::STEP),
-        tolerance => Stepper::new(&plant, tolerance.parse()?, Stepping::<N>::STEP),
+    let by = match method {
+        "midpoint" => Method::Midpoint,
+        "tight" => Method::Collocation { tolerance: 1e-15 },
+        "" => Method::Collocation { tolerance: TOLERANCE },
+        tolerance => Method::Collocation { tolerance: tolerance.parse()? },
     };
+    let fresh = Stepper::new(&plant, by, Stepping::<N>::STEP);
     let pieces: u32 = if method == "tight" { 10 } else { 1 };
     Ok(Motion::of_one(SECOND, move |periods| {
         let (mut x, mut stepper, mut ledger) = (start, fresh.clone(), Ledger::default());
@@ -104,9 +106,21 @@ where
 /// Periods before those that are timed: by then the arms have joined their references.
 const JOINED: usize = 3000;
 
+/// A scenario whose plant is moved as runs do it, tightly, or by the midpoint rule.
+fn scenario(name: &str, method: &str) -> Result<Scenario, Box<dyn Error>> {
+    let mut scenario = Scenario::load(name)?;
+    match method {
+        "" => {}
+        "tight" => scenario.integration_tolerance = 1e-13,
+        "midpoint" => scenario.integration = Integration::Midpoint,
+        _ => return Err(format!("no method {method}").into()),
+    }
+    Ok(scenario)
+}
+
 /// The loop of a scenario, as programs hold it; its periods, a millisecond or not.
-fn closed(scenario: &str) -> Result<Motion, Box<dyn Error>> {
-    let mut held: Box<dyn Loop> = Scenario::load(scenario)?.open()?;
+fn closed(scenario: &Scenario) -> Result<Motion, Box<dyn Error>> {
+    let mut held: Box<dyn Loop> = scenario.open()?;
     for _ in 0..JOINED {
         held.step()?;
     }
@@ -116,23 +130,30 @@ fn closed(scenario: &str) -> Result<Motion, Box<dyn Error>> {
         for _ in 0..periods {
             held.step()?;
         }
-        Ok(Vec::new())
+        positions(&*held)
     }))
+}
+
+/// Where links and motors are.
+fn positions(held: &dyn Loop) -> Reached {
+    let mut observed = Observed::new(held.joints());
+    held.observe(&mut observed)?;
+    observed.motion.truncate(2 * held.joints());
+    Ok(observed.motion)
 }
 
 /// Loops that are moved together in [`batch`].
 const LOOPS: usize = 16;
 
 /// Many loops of a scenario, side by side in the registers of one core; periods go on and on.
-fn batch(scenario: &str) -> Result<Motion, Box<dyn Error>> {
-    let scenario = Scenario::load(scenario)?;
-    let mut batch = Batch::open(&[&scenario; LOOPS])?;
+fn batch(scenario: &Scenario) -> Result<Motion, Box<dyn Error>> {
+    let mut batch = Batch::open(&[scenario; LOOPS])?;
     batch.steps(JOINED);
     let on = move |periods| {
         batch.steps(periods);
         match (0..LOOPS).find_map(|place| batch.divergence(place)) {
             Some(divergence) => Err(divergence.into()),
-            None => Ok(Vec::new()),
+            None => positions(batch.held(0)),
         }
     };
     Ok(Motion { on: Box::new(on), robots: LOOPS, pass: PASS })

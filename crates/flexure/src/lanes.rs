@@ -4,7 +4,7 @@ use std::cell::{Cell, RefCell};
 
 use flexure_core::linalg::Vector;
 use flexure_core::model::Motion;
-use flexure_core::scalar::Lanes;
+use flexure_core::scalar::{Jet, Lanes};
 
 /// How many numbers fit a register of the processor that this is compiled for: x86-64 has at least SSE2, aarch64 NEON.
 pub(crate) const WIDTH: usize = if cfg!(target_feature = "avx512f") {
@@ -59,6 +59,14 @@ pub(crate) fn motion<const N: usize>(motions: &Each<&Motion<f64, N>>) -> Motion<
         v_l: vector(&motions.map(|x| &x.v_l)),
         v_m: vector(&motions.map(|x| &x.v_m)),
     }
+}
+
+/// Series side by side.
+pub(crate) fn series<const K: usize, const N: usize>(
+    series: &Each<&Vector<Jet<f64, K>, N>>,
+) -> Vector<Jet<Several, K>, N> {
+    let number = |i: usize, k: usize| Several::from_array(series.map(|series| series[i].coefficient(k)));
+    Vector::from_fn(|i| Jet::from_fn(|k| number(i, k)))
 }
 
 /// The vector of each lane.

@@ -1,6 +1,7 @@
 //! Whether the parts of a real loop can be meant together.
 
 use crate::estimators::{Encoders, Estimator};
+use crate::files::field::Field;
 use crate::files::table::Table;
 use crate::imperfections::document::{Context, Found};
 use crate::imperfections::{
@@ -100,6 +101,18 @@ impl<'a> Loop<'a> {
             );
             field.error("contradiction", message, HELD);
         }
+        if let (Some(field), Some(hold)) = (self.midpoint(), self.root.get("hold")) {
+            let message = format!(
+                "integration is \"midpoint\", but hold is \"continuous\" in line {}: steps of one length do not follow a stiff law",
+                hold.line()
+            );
+            field.error("contradiction", message, "remove one of them");
+        }
+    }
+
+    /// Where the file asks for steps of one length.
+    fn midpoint(&self) -> Option<Field<'_>> {
+        self.root.get("integration").filter(|field| field.text() == Some("midpoint"))
     }
 
     /// One source of velocities; what is measured of them is used.
@@ -194,6 +207,14 @@ impl<'a> Loop<'a> {
                 message,
                 "smooth robots are integrated to it: those without friction, play and hysteresis",
             );
+        } else if let (Some(midpoint), Some(field)) =
+            (self.midpoint(), self.root.get("integration_tolerance"))
+        {
+            let message = format!(
+                "integration is \"midpoint\" in line {}: steps of 1 ms, whatever integration_tolerance is",
+                midpoint.line()
+            );
+            field.warn("unused", message, "remove one of them");
         }
     }
 

@@ -64,6 +64,8 @@ pub struct Scenario {
     pub control_period: f64,
     /// What the torque does between them.
     pub hold: Hold,
+    /// How the motion of smooth plants is computed.
+    pub integration: Integration,
     /// Tolerated local error of the steps in which the motion is integrated, relative to the speeds of the joints; without effect on
     /// plants with dry friction, play or hysteresis, whose steps are of one length.
     pub integration_tolerance: f64,
@@ -207,6 +209,17 @@ pub enum Hold {
     Continuous,
 }
 
+/// How the motion of smooth plants is computed. Plants with dry friction, play or hysteresis are stepped by the midpoint rule at 0.1 ms
+/// whatever it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Integration {
+    /// Collocation of order 4 or 8, to a tolerance.
+    #[default]
+    Collocation,
+    /// Steps of the midpoint rule of at most 1 ms: always the same work, whatever the error.
+    Midpoint,
+}
+
 /// Reads a scenario from `text`; `name` stands for the file in messages, relative paths in it start from `folder`
 /// and stay there or below.
 ///
@@ -221,6 +234,7 @@ const FORM: Form = Form {
     required: &["robot", "duration", "control_period", "reference", "controller"],
     optional: &[
         "hold",
+        "integration",
         "integration_tolerance",
         "initial",
         "plant",
@@ -261,6 +275,9 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base, of_robot: &[Change])
         field.choice(&[("zero-order", Hold::ZeroOrder), ("continuous", Hold::Continuous)])
     });
     let hold = hold.map(Option::unwrap_or_default);
+    let integration = root.optional("integration", |field| {
+        field.choice(&[("collocation", Integration::Collocation), ("midpoint", Integration::Midpoint)])
+    });
     let tolerance = root.optional("integration_tolerance", integration_tolerance);
     let mut assumed = robot.as_ref().map(Robot::assumptions).unwrap_or_default();
     let reference_field = root.required("reference", "a table with the kind");
@@ -296,6 +313,7 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base, of_robot: &[Change])
         duration,
         control_period,
         hold: hold?,
+        integration: integration?.unwrap_or_default(),
         integration_tolerance: tolerance?.unwrap_or(INTEGRATION_TOLERANCE),
         initial: initial?,
         reference,
@@ -321,6 +339,7 @@ fn normal(root: &Table<'_>) -> Normal {
     let normal = root.normal().without(&["robot", "sources"]);
     normal
         .without_default("hold", &Normal::Text("zero-order".to_owned()))
+        .without_default("integration", &Normal::Text("collocation".to_owned()))
         .without_default("integration_tolerance", &Normal::number(INTEGRATION_TOLERANCE))
         .without_default("seed", &Normal::number(0.0))
 }

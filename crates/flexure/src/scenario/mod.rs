@@ -26,7 +26,7 @@ mod plant;
 pub use accept::Accept;
 pub use any::{Checked, check};
 pub(crate) use document::INTEGRATION_TOLERANCE;
-pub use document::{Hold, Scenario, scenario_from_text};
+pub use document::{Hold, Integration, Scenario, scenario_from_text};
 pub use draft::draft;
 pub use drafts::Drafts;
 pub use guard::{Believed, Collision, GuardSettings, Reaction, Rejoin};

@@ -17,6 +17,7 @@ use crate::simulate::feedback::Feedback;
 use crate::simulate::guard_settings::{guarded, watchdog};
 use crate::simulate::signals::Columns;
 use crate::simulate::simulation::{Hold, Timing};
+use crate::simulate::stepper::Method;
 use crate::simulate::stepping::Stepping;
 
 /// Tolerated local error of the integrator of smooth plants, relative to the joint speeds, where a scenario says nothing else.
@@ -33,8 +34,18 @@ pub(crate) fn timing(scenario: &Scenario) -> Timing {
             scenario::Hold::ZeroOrder => Hold::ZeroOrder,
             scenario::Hold::Continuous => Hold::Continuous,
         },
-        tolerance: scenario.integration_tolerance,
+        method: method(scenario),
         longest_step: LONGEST_STEP,
+    }
+}
+
+/// How its plant is moved if it is smooth.
+pub(crate) fn method(scenario: &Scenario) -> Method {
+    match scenario.integration {
+        scenario::Integration::Collocation => {
+            Method::Collocation { tolerance: scenario.integration_tolerance }
+        }
+        scenario::Integration::Midpoint => Method::Midpoint,
     }
 }
 

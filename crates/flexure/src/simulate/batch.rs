@@ -85,6 +85,7 @@ impl Batch {
                 });
                 register.step(going);
             }
+            register.settle();
         };
         // On one thread a pool only hands over, which takes as long as a hundred periods.
         if self.registers.len() == 1 || rayon::current_num_threads() == 1 {

@@ -149,6 +149,17 @@ where
         }
     }
 
+    /// Whether nothing stands between the law and the robot: the law sees how it moves, and what it asks for acts at once.
+    pub(crate) fn is_ideal(&self) -> bool {
+        self.sensors.are_ideal()
+            && self.estimator.is_none()
+            && self.disturbance.is_none()
+            && self.guard.is_none()
+            && self.computer.is_in_time()
+            && self.watchdog.is_none()
+            && self.actuator.is_ideal()
+    }
+
     /// Starts estimator and disturbance observer at the motion `x`, held by the motor torque `applied` [N m] until now. Sensors,
     /// guard and drive start when they are made.
     pub fn start(&mut self, x: &Motion<f64, N>, applied: Vector<f64, N>) {

@@ -49,10 +49,10 @@ impl<'a> Course<'a> {
         self.left > 0 && self.divergence.is_none() && self.broken_off.is_none()
     }
 
-    /// Takes in the instant that the loop has come to, with the contraction rate there [1/s], NaN for none; gives the fraction of the run
-    /// that is done.
-    pub(super) fn record(&mut self, held: &dyn Loop, rate: f64) -> f64 {
-        held.observe(&mut self.observed).expect("made for it");
+    /// Takes in the instant that the loop has come to, which is observed by `observe`, with the contraction rate there [1/s], NaN for none;
+    /// gives the fraction of the run that is done.
+    pub(super) fn record(&mut self, observe: impl FnOnce(&mut Observed), rate: f64) -> f64 {
+        observe(&mut self.observed);
         self.figures.record(&self.observed, rate);
         self.watch.record(&self.observed);
         self.left -= 1;

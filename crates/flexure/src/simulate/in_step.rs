@@ -4,12 +4,14 @@
 //! guard and drive, which decide and draw, are each loop's own, and so are robots with dry friction, play, hysteresis or coupled rotors. A lane never looks at its neighbours: what a loop comes to does not depend on which others
 //! go beside it.
 
+mod gliding;
 mod plants;
 
 use std::array;
 
 use flexure_core::linalg::Vector;
 use flexure_core::model::Fjr;
+use flexure_core::reference::Reference;
 use flexure_core::scalar::Jet;
 
 use crate::files::Problems;
@@ -19,23 +21,31 @@ use crate::robot::links::{FromFile, SideBySide};
 use crate::scenario::{self, Scenario};
 use crate::simulate::controller::Sensed;
 use crate::simulate::held::Held;
+use crate::simulate::in_step::gliding::{Gliding, may_glide};
 use crate::simulate::in_step::plants::{Gait, Plants, gait};
-use crate::simulate::interface::Loop;
+use crate::simulate::interface::{Loop, Observed};
 use crate::simulate::simulation::{Divergence, Kept, Simulation};
+use crate::simulate::strides::Strode;
 
 /// Loops that go in step, their joint count hidden.
 pub(crate) trait InStep: Send + Sync {
     /// How many loops there are, at most [`WIDTH`].
     fn lanes(&self) -> usize;
 
-    /// The loop in a lane.
+    /// The loop in a lane, as it was when the group was last [settled](Self::settle).
     fn lane(&self, lane: usize) -> &dyn Loop;
+
+    /// Writes what is observed of the loop in a lane, at the instant that it has come to, into `observed`, which was made for it.
+    fn observe(&self, lane: usize, observed: &mut Observed);
 
     /// How a loop diverged, if it did: it stays where it is.
     fn divergence(&self, lane: usize) -> Option<Divergence>;
 
     /// Moves the loops in the lanes that are `going` on to their next control instant.
     fn step(&mut self, going: Each<bool>);
+
+    /// Has the loops know what they have come to: steps may keep that in lanes.
+    fn settle(&mut self);
 }
 
 /// Whether the loops of two scenarios may go in step, as far as their files say.
@@ -47,6 +57,7 @@ pub(crate) fn may_go_together(a: &Scenario, b: &Scenario) -> bool {
         && a.robot.links.what() == b.robot.links.what()
         && a.robot.joint_count() == b.robot.joint_count()
         && a.control_period.to_bits() == b.control_period.to_bits()
+        && a.integration == b.integration
         && a.integration_tolerance.to_bits() == b.integration_tolerance.to_bits()
 }
 
@@ -82,7 +93,7 @@ pub(super) fn grouped<K, L, const N: usize>(keys: Vec<K>, loops: Vec<Held<L, N>>
 where
     L: FromFile<f64, N> + SideBySide<N> + Clone + Send + Sync + 'static,
 {
-    let mut parts: Vec<(Gait, Vec<K>, Vec<Held<L, N>>)> = Vec::new();
+    let mut parts: Vec<(_, Vec<K>, Vec<_>)> = Vec::new();
     for (key, held) in keys.into_iter().zip(loops) {
         let gait = gait(&held);
         match parts.iter_mut().find(|(of, ..)| *of == gait) {
@@ -119,11 +130,15 @@ struct Group<L: SideBySide<N>, const N: usize> {
     plants: Option<Plants<L, N>>,
     /// Whether all follow the same reference.
     one_path: bool,
+    /// Whether they may stay in lanes at all.
+    may_glide: bool,
+    /// The loops while they do: they themselves know nothing of it until they are settled.
+    gliding: Option<Gliding<N>>,
 }
 
 impl<L: FromFile<f64, N> + SideBySide<N> + Clone, const N: usize> Group<L, N> {
     /// The loops, if they are of one structure; else they are given back.
-    fn new(loops: Vec<Held<L, N>>, gait: Gait) -> Result<Self, Vec<Held<L, N>>> {
+    fn new(loops: Vec<Held<L, N>>, gait: Option<Gait>) -> Result<Self, Vec<Held<L, N>>> {
         let lane = |lane: usize| loops.get(lane).unwrap_or(&loops[0]);
         let each: Each<&Held<L, N>> = array::from_fn(lane);
         let models = robots(&each.map(Held::robot));
@@ -135,7 +150,10 @@ impl<L: FromFile<f64, N> + SideBySide<N> + Clone, const N: usize> Group<L, N> {
             Some(gait) => Plants::new(&each, gait).map(Some),
         };
         match (models, laws, plants) {
-            (Some(models), Some(laws), Some(plants)) => Ok(Self { loops, models, laws, plants, one_path }),
+            (Some(models), Some(laws), Some(plants)) => {
+                let may_glide = plants.is_some() && laws.memory().is_empty() && loops.iter().all(may_glide);
+                Ok(Self { loops, models, laws, plants, one_path, may_glide, gliding: None })
+            }
             _ => Err(loops),
         }
     }
@@ -178,11 +196,31 @@ where
         self.loops[lane].simulation.divergence
     }
 
+    fn observe(&self, lane: usize, observed: &mut Observed) {
+        let held = &self.loops[lane];
+        match &self.gliding {
+            Some(gliding) if gliding.going[lane] => gliding.observe(lane, held.joints(), observed),
+            _ => held.observe(observed).expect("made for it"),
+        }
+    }
+
+    fn settle(&mut self) {
+        let (Some(gliding), Some(plants)) = (self.gliding.take(), &mut self.plants) else { return };
+        for (lane, held) in self.loops.iter_mut().enumerate().filter(|(lane, _)| gliding.going[*lane]) {
+            gliding.put_back(held, lane);
+            plants.strode(held, lane, gliding.periods);
+        }
+    }
+
     fn step(&mut self, going: Each<bool>) {
+        let strode = match self.glide(going) {
+            Glided::On => return,
+            Glided::Not(strode) => strode,
+        };
         let kept: Each<Option<Kept<N>>> = array::from_fn(|lane| {
             going[lane].then(|| self.loops.get(lane)).flatten().map(|held| held.simulation.kept())
         });
-        let mut ended: Each<Option<Divergence>> = self.advanced(going);
+        let mut ended: Each<Option<Divergence>> = self.advanced(going, strode);
         let arriving = array::from_fn(|lane| kept[lane].is_some() && ended[lane].is_none());
         let sensed = self.sensed(arriving);
         let torques = self.torques(&sensed);
@@ -210,14 +248,58 @@ where
     }
 }
 
+/// What became of an attempt to move loops on in lanes.
+enum Glided<const N: usize> {
+    /// They have moved.
+    On,
+    /// They are settled where they were; with what strides made of the period, if that was tried.
+    Not(Option<Strode<N, WIDTH>>),
+}
+
 impl<L, const N: usize> Group<L, N>
 where
     L: FromFile<f64, N> + SideBySide<N> + Clone + Send + Sync,
 {
-    /// Moves the robots over the control period after their last instant; the loops that diverged on the way.
-    fn advanced(&mut self, going: Each<bool>) -> Each<Option<Divergence>> {
+    /// Moves the loops that are `going` on in lanes, where that can be.
+    fn glide(&mut self, going: Each<bool>) -> Glided<N> {
+        if self.gliding.as_ref().is_some_and(|gliding| gliding.going != going) {
+            self.settle();
+        }
+        let Some(plants) = self.plants.as_mut().filter(|_| self.may_glide) else { return Glided::Not(None) };
+        if self.gliding.is_none() {
+            let first = going.iter().zip(&self.loops).find(|(going, _)| **going);
+            let last = first.and_then(|(_, held)| held.simulation.last_tick());
+            if last.is_some_and(|tick| plants.may_stride(tick.k, going)) {
+                self.gliding = Gliding::of(&self.loops, going);
+            }
+        }
+        let Some(gliding) = &mut self.gliding else { return Glided::Not(None) };
+        let strode = plants.stride(&gliding.tick, &gliding.motion, &gliding.u_m);
+        if (0..WIDTH).all(|lane| !going[lane] || strode.trusted[lane]) {
+            let next = gliding.next();
+            let path = |held: &Held<L, N>| held.simulation.controller().reference.at(next.t);
+            let q_ld = if self.one_path {
+                path(&self.loops[0]).map(|jet| Jet::from_fn(|k| Several::splat(jet.coefficient(k))))
+            } else {
+                let each: Each<_> =
+                    array::from_fn(|lane| path(self.loops.get(lane).unwrap_or(&self.loops[0])));
+                lanes::series(&each.each_ref())
+            };
+            let energy = plants.total_energy(&strode.end);
+            let u_m = self.laws.static_torque(&self.models, &strode.end, &q_ld);
+            if u_m.is_some_and(|u_m| gliding.arrive(&strode.end, &strode.work, energy, &q_ld, &u_m)) {
+                return Glided::On;
+            }
+        }
+        self.settle();
+        Glided::Not(Some(strode))
+    }
+
+    /// Moves the robots over the control period after their last instant, as strides did if they have been tried; the loops that diverged
+    /// on the way.
+    fn advanced(&mut self, going: Each<bool>, strode: Option<Strode<N, WIDTH>>) -> Each<Option<Divergence>> {
         if let Some(plants) = &mut self.plants {
-            return plants.advance(&mut self.loops, going);
+            return plants.advance(&mut self.loops, going, strode);
         }
         let mut ended = [None; WIDTH];
         for (lane, held) in self.loops.iter_mut().enumerate().filter(|(lane, _)| going[*lane]) {
@@ -249,9 +331,7 @@ where
         let filling = sensed.iter().flatten().next()?;
         let sensed = sensed.each_ref().map(|sensed| sensed.as_ref().unwrap_or(filling));
         let x = lanes::motion(&sensed.map(|sensed| &sensed.seen));
-        let q_ld = Vector::from_fn(|i| {
-            Jet::from_fn(|k| Several::from_array(sensed.map(|sensed| sensed.reference[i].coefficient(k))))
-        });
+        let q_ld = lanes::series(&sensed.map(|sensed| &sensed.reference));
         self.laws.static_torque(&self.models, &x, &q_ld).map(|torque| lanes::apart(&torque))
     }
 }

@@ -151,7 +151,7 @@ fn simulated(
             Some(reader) => reader.read(&*held),
             None => (f64::NAN, ControlFlow::Continue(())),
         };
-        let done = course.record(&*held, rate);
+        let done = course.record(|observed| held.observe(observed).expect("made for it"), rate);
         if progress(done).is_break() || taken.is_break() {
             course.break_off();
         }

@@ -11,7 +11,7 @@ use crate::simulate::controller::{Action, Controller};
 use crate::simulate::feedback::Feedback;
 use crate::simulate::gauss::StepFailure;
 use crate::simulate::ledger::Ledger;
-use crate::simulate::stepper::Stepper;
+use crate::simulate::stepper::{Method, Stepper};
 
 /// How the torque behaves between control instants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,9 +29,9 @@ pub struct Timing {
     pub period: f64,
     /// What the torque does between control instants.
     pub hold: Hold,
-    /// Tolerated local error of the integrator of smooth plants, relative to the joint speeds.
-    pub tolerance: f64,
-    /// Longest step of the integrator of other plants in s.
+    /// How smooth plants are moved.
+    pub method: Method,
+    /// Longest step of other plants in s.
     pub longest_step: f64,
 }
 
@@ -92,7 +92,7 @@ impl Cause {
 }
 
 /// A position in rad or speed [rad/s] beyond this is a diverged loop, not a robot.
-const BEYOND: f64 = 1e6;
+pub(crate) const BEYOND: f64 = 1e6;
 
 /// A controller on a plant, moved from one control instant to the next.
 pub struct Simulation<L, R, F, E, const N: usize> {
@@ -119,15 +119,15 @@ pub(crate) struct Happened<const N: usize> {
     pub(crate) residual: f64,
 }
 
-/// The energy balance of a run, all in J.
+/// The energy balance of a run, all in J. Of several, if `T` is lanes.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Balance {
+pub(crate) struct Balance<T = f64> {
     /// Energy at the start.
-    pub(crate) start: f64,
+    pub(crate) start: T,
     /// Largest residual so far.
-    pub(crate) worst: f64,
+    pub(crate) worst: T,
     /// Energy that went through the robot.
-    pub(crate) scale: f64,
+    pub(crate) scale: T,
 }
 
 impl<L, R, F, E, const N: usize> Simulation<L, R, F, E, N>
@@ -145,7 +145,7 @@ where
         pushes: Vec<Push<N>>,
         controller: Controller<L, R, F, E, N>,
     ) -> Self {
-        let stepper = Stepper::new(&plant, timing.tolerance, timing.longest_step);
+        let stepper = Stepper::new(&plant, timing.method, timing.longest_step);
         let world = World { plant, pushes, stepper, ledger: Ledger::default() };
         let start = world.energy(&x);
         let balance = Balance { start, worst: 0.0, scale: start.abs() };
@@ -213,9 +213,9 @@ where
         Ok(())
     }
 
-    /// The number of the last control instant; none before the first.
-    pub(crate) fn last_tick(&self) -> Option<u64> {
-        self.last.as_ref().map(|last| last.tick.k)
+    /// The last control instant; none before the first.
+    pub(crate) fn last_tick(&self) -> Option<Tick> {
+        self.last.as_ref().map(|last| last.tick)
     }
 
     /// The motor torque until the next instant [N m], if it is one from beginning to end and no push begins or ends meanwhile; none before the

@@ -6,26 +6,38 @@ use flexure_core::model::{Links, Motion};
 use crate::plant::Plant;
 use crate::simulate::gauss::{Integrator, StepFailure};
 use crate::simulate::ledger::Ledger;
+use crate::simulate::midpoint;
 use crate::simulate::stepping::Stepping;
+
+/// How smooth plants are moved. Those with dry friction, play or hysteresis are moved in short steps of the midpoint rule anyway.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Method {
+    /// Collocation in steps as long as their error allows.
+    Collocation {
+        /// Tolerated local error of a step, relative to the speeds of the joints.
+        tolerance: f64,
+    },
+    /// The midpoint rule in steps of at most 1 ms, whatever their error.
+    Midpoint,
+}
 
 /// Moves a plant, by the method that suits it, and keeps what the plant remembers.
 #[derive(Clone, Debug)]
 #[expect(clippy::large_enum_variant, reason = "one a run")]
 pub enum Stepper<const N: usize> {
-    /// Of high order, for smooth plants.
+    /// Of high order, for smooth plants that are moved by collocation.
     Smooth(Integrator<N>),
-    /// In short steps, for plants with dry friction, play or hysteresis.
+    /// In equal steps of the midpoint rule, for all others.
     Rough(Stepping<N>),
 }
 
 impl<const N: usize> Stepper<N> {
-    /// For `plant`: with the tolerated local error relative to the joint speeds if it is smooth, in steps of at most
-    /// `longest` s if not.
-    pub fn new<L>(plant: &Plant<L, N>, tolerance: f64, longest: f64) -> Self {
-        if plant.is_smooth() {
-            Self::Smooth(Integrator::new(tolerance))
-        } else {
-            Self::Rough(Stepping::new(longest))
+    /// For `plant`: by `method` if it is smooth, in steps of at most `longest` s if not.
+    pub fn new<L>(plant: &Plant<L, N>, method: Method, longest: f64) -> Self {
+        match method {
+            _ if !plant.is_smooth() => Self::Rough(Stepping::new(longest)),
+            Method::Collocation { tolerance } => Self::Smooth(Integrator::new(tolerance)),
+            Method::Midpoint => Self::Rough(Stepping::new(midpoint::LONGEST)),
         }
     }
 

@@ -236,17 +236,10 @@ where
             solver.damped[k].error_of_defect
         });
         strode.work.add(&span.work(&solution, &end, &u_m.0.map(|u| Vector([u; S]))));
-        let sum = [&end.q_l, &end.q_m, &end.v_l, &end.v_m]
-            .iter()
-            .flat_map(|v| v.iter())
-            .fold(Lanes::ZERO, |sum: Lanes<f64, W>, x| sum + x);
-        let each = [before, size, error, sum].map(Lanes::to_array);
+        let (each, finite) = ([before, size, error].map(Lanes::to_array), finite(&end));
         strode.trusted = array::from_fn(|w| {
-            let [before, size, error, sum] = each.map(|lanes| lanes[w]);
-            strode.trusted[w]
-                && is_solved(before, size, accuracy)
-                && error <= self.tolerance
-                && sum.is_finite()
+            let [before, size, error] = each.map(|lanes| lanes[w]);
+            strode.trusted[w] && is_solved(before, size, accuracy) && error <= self.tolerance && finite[w]
         });
         (strode.end, strode.error) = (end, strode.error.max(error));
         (self.past, self.last) = (solution, h);
@@ -313,8 +306,17 @@ fn inverse<const S: usize, T: Scalar>(a: &Block<S, T>) -> Block<S, T> {
     inverse
 }
 
+/// Whether the motion of each lane is of finite numbers.
+pub(crate) fn finite<const N: usize, const W: usize>(x: &Motion<Lanes<f64, W>, N>) -> [bool; W]
+where
+    f64: Lane<W>,
+{
+    let numbers = [&x.q_l, &x.q_m, &x.v_l, &x.v_m].into_iter().flat_map(Vector::iter);
+    numbers.fold(Lanes::ZERO, |sum: Lanes<f64, W>, x| sum + x).to_array().map(f64::is_finite)
+}
+
 /// The number of one lane.
-fn put<const W: usize>(lanes: &mut Lanes<f64, W>, lane: usize, value: f64)
+pub(crate) fn put<const W: usize>(lanes: &mut Lanes<f64, W>, lane: usize, value: f64)
 where
     f64: Lane<W>,
 {

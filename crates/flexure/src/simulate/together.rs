@@ -81,11 +81,17 @@ fn moved(
         for (lane, course) in courses.iter_mut().enumerate().filter(|(lane, _)| going[*lane]) {
             if let Some(divergence) = loops.divergence(lane) {
                 course.diverge(divergence);
-            } else if progress(places[lane], course.record(loops.lane(lane), f64::NAN)).is_break() {
+            } else if progress(
+                places[lane],
+                course.record(|observed| loops.observe(lane, observed), f64::NAN),
+            )
+            .is_break()
+            {
                 course.break_off();
             }
         }
     }
+    loops.settle();
     let finished = |(lane, course): (usize, Course<'_>)| {
         let run = course.run(loops.lane(lane));
         if run.broken_off.is_some() { Err(Problems::interrupted()) } else { Ok(run) }

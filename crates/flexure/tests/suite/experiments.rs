@@ -14,7 +14,7 @@ use flexure::scenario::{Hold, Scenario};
 use flexure::simulate;
 use flexure::simulate::Run;
 use flexure::simulate::run;
-use flexure::simulate::{Controller, Simulation, Timing};
+use flexure::simulate::{Controller, Method, Simulation, Timing};
 
 fn simulate(change: impl Fn(&mut Scenario), name: &str) -> Run {
     let mut scenario = load_scenario(name).expect("built in");
@@ -201,7 +201,7 @@ fn seven_joints_with_gravity_off_by(factor: f64) -> f64 {
     let timing = Timing {
         period: 1e-3,
         hold: simulate::Hold::ZeroOrder,
-        tolerance: flexure::simulate::TOLERANCE,
+        method: Method::Collocation { tolerance: flexure::simulate::TOLERANCE },
         longest_step: 1e-3,
     };
     let controller = Controller::ideal(model, reference, torque);

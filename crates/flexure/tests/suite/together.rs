@@ -6,7 +6,7 @@ use flexure::Problems;
 use flexure::files::{Change, Reading, SCENARIOS};
 use flexure::laws::Controller;
 use flexure::scenario::{Scenario, load_scenario_with};
-use flexure::simulate::{Criteria, Run, SIDE_BY_SIDE, measure, measure_together};
+use flexure::simulate::{Batch, Criteria, Run, SIDE_BY_SIDE, measure, measure_together};
 
 /// The built-in scenario of this name, shortened, with changes.
 fn scenario(name: &str, changes: &[&str]) -> Scenario {
@@ -90,24 +90,100 @@ fn each_run_is_that_of_its_loop_alone() {
     }
 }
 
+/// Loops that are moved by the midpoint rule: as alone, by figures as above, and near what collocation makes of them, to what the rule makes of
+/// steps of a millisecond, largest while they start off their reference. Steps are one a period, two in one of 2 ms.
+#[test]
+fn steps_of_the_midpoint_rule_are_those_of_the_loop_alone() {
+    for (name, error) in
+        [("two-link-tanh-smooth", 1e-4), ("pendulum-tanh", 1e-3), ("panda-tanh-smooth", 1e-4)]
+    {
+        let exact = measure(&scenario(name, &[])).expect("it runs");
+        let own = scenario(name, &["integration = 'midpoint'"]);
+        let noisy = scenario(name, &["integration = 'midpoint'", "seed = 1"]);
+        let alone = measure(&own).expect("it runs");
+        assert!(alone.summary.following.follows, "{name}");
+        assert!((alone.summary.steps as f64 - own.duration / own.control_period).abs() < 1.5, "{name}");
+        for run in together(&[&noisy, &own]) {
+            let run = run.unwrap_or_else(|problems| panic!("{name}: {problems}"));
+            assert_eq!(run.summary.steps, alone.summary.steps, "{name}");
+            for ((what, value), (_, expected)) in figures(&run).into_iter().zip(figures(&alone)) {
+                let near = (value - expected).abs() <= 1e-6 * expected.abs() + 1e-8;
+                assert!(near, "{name}, {what}: {value} together, {expected} alone");
+            }
+            let off = (run.summary.rms_e_l - exact.summary.rms_e_l).abs();
+            assert!(off > 0.0 && off < error * exact.summary.rms_e_l, "{name}: {off} rad");
+        }
+    }
+}
+
 /// A loop comes to the same bits whatever is beside it, and wherever: others of its kind, other robots and laws, loops that diverge, that
 /// are shorter, nothing at all.
 #[test]
 fn neighbours_do_not_matter() {
-    for name in ["task-encoder", "two-link-everything", "task-friction", "task-push", "panda-tanh-smooth"] {
-        let own = scenario(name, &[]);
+    let midpoint = ["integration = 'midpoint'"];
+    for (name, changes) in [
+        ("task-encoder", &[][..]),
+        ("two-link-everything", &[]),
+        ("task-friction", &[]),
+        ("task-push", &[]),
+        ("panda-tanh-smooth", &[]),
+        ("panda-tanh-smooth", &midpoint),
+        ("two-link-hardware", &midpoint),
+    ] {
+        let with = |more: &[&str]| scenario(name, &[changes, more].concat());
+        let own = with(&[]);
         let alone = together(&[&own]).remove(0).expect("it runs");
-        let wild = wild(scenario(name, &[]));
-        let short = scenario(name, &["duration = 0.4"]);
+        let wild = wild(with(&[]));
+        let short = with(&["duration = 0.4"]);
         let other = scenario("pendulum-tanh", &[]);
-        let linear = scenario(name, &["controller.phi = 'linear'"]);
+        let linear = with(&["controller.phi = 'linear'"]);
         let mut all = vec![&wild, &other, &linear, &short, &own];
         for _ in 0..=SIDE_BY_SIDE {
             all.rotate_left(1);
             for (run, one) in together(&all).into_iter().zip(&all) {
                 if std::ptr::eq(*one, &raw const own) {
-                    assert_eq!(bits(&run.expect("it runs")), bits(&alone), "{name}");
+                    assert_eq!(bits(&run.expect("it runs")), bits(&alone), "{name} {changes:?}");
                 }
+            }
+        }
+    }
+}
+
+/// Loops with nothing between law and robot stay in lanes, where their books are kept together; a push that never comes keeps them from it. Every
+/// number that a loop shows is the same, to the bit, and so is its state, however many periods it is asked for at once and whatever
+/// diverges beside it.
+#[test]
+fn what_stays_in_lanes_comes_to_what_each_loop_books() {
+    let push = "imperfection = [{ kind = 'push', torque = [1.0, 1.0], from = 50.0, duration = 1.0 }]";
+    for changes in [
+        &[][..],
+        &["controller.phi = 'linear'"],
+        &["reference.amplitude = [0.4, 1.0]"],
+        &["integration = 'midpoint'"],
+    ] {
+        let own = scenario("two-link-tanh-smooth", changes);
+        let pushed = scenario("two-link-tanh-smooth", &[changes, &[push]].concat());
+        let (soft, wild) = (soft(own.clone()), wild(own.clone()));
+        let counts: [&[usize]; 3] = [&[200], &[1, 2, 197], &[50, 50, 50, 50]];
+        let ends = |loops: &[&Scenario], counts: &[usize]| {
+            let mut batch = Batch::open(loops).expect("loops");
+            for count in counts {
+                batch.steps(*count);
+            }
+            let end = |place: usize| {
+                let held = batch.held(place);
+                let mut values = vec![0.0; held.signals().len()];
+                held.read(&mut values).expect("a number for each signal");
+                values.extend([held.energy_drift(), held.steps() as f64]);
+                values.into_iter().map(f64::to_bits).collect::<Vec<u64>>()
+            };
+            (0..loops.len()).map(end).collect::<Vec<_>>()
+        };
+        let booked = ends(&[&pushed], &[200]);
+        for counts in counts {
+            assert_eq!(ends(&[&own], counts), booked, "{changes:?}, {counts:?}");
+            for beside in [&soft, &wild, &pushed] {
+                assert_eq!(ends(&[beside, &own], counts)[1], booked[0], "{changes:?}, {counts:?}");
             }
         }
     }

@@ -49,6 +49,11 @@ impl Actuator {
         self.late.start(torque);
     }
 
+    /// Whether the torque of each command acts at once, as it is.
+    pub(crate) fn is_ideal(&self) -> bool {
+        self.stages.is_empty() && self.late.is_none()
+    }
+
     /// Motor torque over the control period that begins now, when `torque` [N m] is commanded. Nothing is allocated.
     ///
     /// # Panics

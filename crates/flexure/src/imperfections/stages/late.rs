@@ -34,6 +34,11 @@ impl Late {
         Self { joints, offset, ring: vec![0.0; waiting * joints], oldest: 0 }
     }
 
+    /// Whether no torque comes late.
+    pub fn is_none(&self) -> bool {
+        self.ring.is_empty() && self.offset == 0.0
+    }
+
     /// Starts with the torque [N m] that acts until the first command arrives.
     pub fn start(&mut self, torque: &[f64]) {
         for waiting in self.ring.chunks_exact_mut(self.joints.max(1)) {

@@ -71,6 +71,11 @@ impl Sensors {
         Self { joints, stages, missing }
     }
 
+    /// Whether they read how the robot moves, as it is.
+    pub(crate) fn are_ideal(&self) -> bool {
+        self.stages.is_empty() && self.missing == [false; 2]
+    }
+
     /// What is read while the robot is at `motion`. Joints beyond those of the robot are read as they are: at rest. Nothing is
     /// allocated.
     ///

@@ -3,34 +3,50 @@
 use std::array;
 
 use flexure_core::linalg::Vector;
-use flexure_core::model::Motion;
+use flexure_core::model::{Links, Motion};
+use flexure_core::scalar::Scalar;
 
 use crate::estimators::AnyEstimator;
+use crate::imperfections::stages::Tick;
 use crate::lanes::{self, Each, Several, WIDTH};
 use crate::plant::Plant;
 use crate::references::AnyReference;
 use crate::robot::links::SideBySide;
-use crate::simulate::gauss::{Integrator, Order};
+use crate::simulate::gauss::{Order, steps_in};
 use crate::simulate::held::Held;
+use crate::simulate::midpoint::{self, Midpoint};
 use crate::simulate::own_law::HeldLaw;
-use crate::simulate::simulation::{Divergence, Simulation};
-use crate::simulate::stepper::Stepper;
-use crate::simulate::strides::{Effort, Strides, Strode, likely, replace, taken};
+use crate::simulate::simulation::{Divergence, Simulation, World};
+use crate::simulate::stepper::{Method, Stepper};
+use crate::simulate::strides::{Effort, Strides, Strode, finite, likely, put, replace, taken};
 
-/// By which strides a plant is moved; none if each period is one for its integrator.
-pub(super) type Gait = Option<(Order, Effort)>;
-
-/// The gait of a loop at its start.
-pub(super) fn gait<L: SideBySide<N>, const N: usize>(held: &Held<L, N>) -> Gait {
-    let (simulation, plant) = (&held.simulation, held.simulation.plant());
-    let moves = plant.is_smooth() && plant.rotor_coupling.is_none();
-    moves.then(|| likely(plant, &simulation.motion, simulation.timing.period, simulation.timing.tolerance))?
+/// How plants are moved side by side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Gait {
+    /// By strides of an order, with the tolerated local error.
+    Strides(Order, Effort, f64),
+    /// By steps of the midpoint rule.
+    Midpoint,
 }
 
-/// Plants side by side, moved by strides; what these do not resolve, each by its own integrator.
+/// The gait of a loop at its start; none if each period is one for its stepper.
+pub(super) fn gait<L: SideBySide<N>, const N: usize>(held: &Held<L, N>) -> Option<Gait> {
+    let Simulation { motion, timing, world: World { plant, .. }, .. } = &held.simulation;
+    if !plant.is_smooth() || plant.rotor_coupling.is_some() {
+        return None;
+    }
+    match timing.method {
+        Method::Midpoint => Some(Gait::Midpoint),
+        Method::Collocation { tolerance } => likely(plant, motion, timing.period, tolerance)
+            .map(|(order, effort)| Gait::Strides(order, effort, tolerance)),
+    }
+}
+
+/// Plants side by side, moved by steps of fixed work; what these do not resolve, each by its own stepper.
 pub(super) struct Plants<L: SideBySide<N>, const N: usize> {
     robots: Plant<L::Several, N, Several>,
-    strides: Gauss<N>,
+    steps: Steps<N>,
+    /// Steps a period.
     parts: u32,
     lanes: Each<Rider>,
     /// Total energy in J at the last instant.
@@ -59,44 +75,92 @@ const REST: u64 = 50;
 /// Strides have a new iteration matrix whenever the number of the instant is a multiple of this, and rests end there.
 const RENEWED: u64 = 10;
 
-/// Strides of either order.
-enum Gauss<const N: usize> {
+/// Steps of fixed work: the midpoint rule, or strides of either order.
+enum Steps<const N: usize> {
+    Midpoint(Midpoint<N, Several>),
     Four(Box<Strides<2, N, WIDTH>>),
     Eight(Box<Strides<4, N, WIDTH>>),
 }
 
 impl<L: SideBySide<N>, const N: usize> Plants<L, N> {
-    /// Those of `loops`, one for each lane, which have this gait; none if their links are not of one structure.
-    pub(super) fn new(loops: &Each<&Held<L, N>>, (order, effort): (Order, Effort)) -> Option<Self> {
+    /// Those of `loops`, one for each lane, which have this `gait`; none if their links are not of one structure.
+    pub(super) fn new(loops: &Each<&Held<L, N>>, gait: Gait) -> Option<Self> {
+        let (steps, parts) = match gait {
+            Gait::Midpoint => {
+                let parts = steps_in(loops[0].simulation.timing.period, midpoint::LONGEST);
+                (Steps::Midpoint(Midpoint::new()), parts)
+            }
+            Gait::Strides(Order::Four, effort, tolerance) => {
+                (Steps::Four(Box::new(Strides::new(tolerance, effort))), effort.parts)
+            }
+            Gait::Strides(Order::Eight, effort, tolerance) => {
+                (Steps::Eight(Box::new(Strides::new(tolerance, effort))), effort.parts)
+            }
+        };
         let plants = loops.map(|held| held.simulation.plant());
         let links = L::side_by_side(&plants.map(|plant| &plant.robot.links))?;
-        let tolerance = loops[0].simulation.timing.tolerance;
-        Some(Self {
-            robots: Plant::together(links, plants)?,
-            strides: match order {
-                Order::Four => Gauss::Four(Box::new(Strides::new(tolerance, effort))),
-                Order::Eight => Gauss::Eight(Box::new(Strides::new(tolerance, effort))),
-            },
-            parts: effort.parts,
-            lanes: [Rider::default(); WIDTH],
-            energy: [0.0; WIDTH],
-        })
+        let robots = Plant::together(links, plants)?;
+        Some(Self { robots, steps, parts, lanes: [Rider::default(); WIDTH], energy: [0.0; WIDTH] })
     }
 
-    /// Moves the robots of the loops that are `going` over the control period after their last instant; the loops that diverged on the way.
+    /// Whether strides may take all of the loops that are `going` over the period after the instant `k`.
+    pub(super) fn may_stride(&self, k: u64, going: Each<bool>) -> bool {
+        self.lanes.iter().zip(going).all(|(rider, going)| !going || (!rider.pieced && k >= rider.rests))
+    }
+
+    /// Where strides lead the robots that move as `x` at an instant, over the period that begins there, under the torque `u_m` [N m].
+    pub(super) fn stride(
+        &mut self,
+        tick: &Tick,
+        x: &Motion<Several, N>,
+        u_m: &Vector<Several, N>,
+    ) -> Strode<N, WIDTH> {
+        if tick.k.is_multiple_of(RENEWED) {
+            self.steps.renew();
+        }
+        self.steps.advance(&self.robots, x, u_m, tick.period)
+    }
+
+    /// Total energy in J.
+    pub(super) fn total_energy(&self, x: &Motion<Several, N>) -> Several {
+        self.robots.total_energy(x)
+    }
+
+    /// Books that strides took the loop in a lane over so many `periods`, the last ones.
+    pub(super) fn strode(&mut self, held: &mut Held<L, N>, lane: usize, periods: u32) {
+        if periods == 0 {
+            return;
+        }
+        let more = u64::from(periods) * u64::from(self.parts);
+        match (&mut held.simulation.world.stepper, &self.steps) {
+            (Stepper::Smooth(integrator), _) => integrator.steps += more,
+            (Stepper::Rough(stepping), Steps::Midpoint(midpoint)) => {
+                stepping.steps += more;
+                stepping.last = midpoint.last.map(|a| a.map(|a| a.to_array()[lane]));
+            }
+            (Stepper::Rough(_), _) => {}
+        }
+        let rider = &mut self.lanes[lane];
+        (rider.strode, rider.failed) = (true, rider.failed.saturating_sub(periods));
+    }
+
+    /// Moves the robots of the loops that are `going` over the control period after their last instant, to where they `strode` if that has
+    /// been tried; the loops that diverged on the way.
     pub(super) fn advance(
         &mut self,
         loops: &mut [Held<L, N>],
         going: Each<bool>,
+        strode: Option<Strode<N, WIDTH>>,
     ) -> Each<Option<Divergence>> {
         let mut ended = [None; WIDTH];
         // All loops are at the same instant.
-        let Some(k) =
+        let Some(tick) =
             loops.iter().zip(going).find_map(|(held, going)| held.simulation.last_tick().filter(|_| going))
         else {
             self.energy = self.robots.total_energy(&motions(loops)).to_array();
             return ended;
         };
+        let k = tick.k;
         let mut torques: Each<Option<Vector<f64, N>>> = [None; WIDTH];
         for (lane, held) in loops.iter().enumerate().filter(|(lane, _)| going[*lane]) {
             let rider = &mut self.lanes[lane];
@@ -105,15 +169,13 @@ impl<L: SideBySide<N>, const N: usize> Plants<L, N> {
         }
         let mut end = motions(loops);
         // What leads on begins with the first period, whoever needs it.
-        let strode = (k == 0 || torques.iter().any(Option::is_some)).then(|| {
-            if k.is_multiple_of(RENEWED) {
-                self.strides.renew();
-            }
-            let pushed: Each<Vector<f64, N>> = array::from_fn(|lane| one(loops, lane).pushed());
-            self.robots.external = lanes::vector(&pushed.each_ref());
-            let u_m = torques.map(|torque| torque.unwrap_or(Vector::ZERO));
-            let u_m = lanes::vector(&u_m.each_ref());
-            self.strides.advance(&self.robots, &end, &u_m, loops[0].simulation.timing.period)
+        let strode = strode.or_else(|| {
+            (k == 0 || torques.iter().any(Option::is_some)).then(|| {
+                let pushed: Each<Vector<f64, N>> = array::from_fn(|lane| one(loops, lane).pushed());
+                self.robots.external = lanes::vector(&pushed.each_ref());
+                let u_m = torques.map(|torque| torque.unwrap_or(Vector::ZERO));
+                self.stride(&tick, &end, &lanes::vector(&u_m.each_ref()))
+            })
         });
         if let Some(strode) = &strode {
             end = strode.end;
@@ -124,10 +186,7 @@ impl<L: SideBySide<N>, const N: usize> Plants<L, N> {
             if let Some(strode) = strode.filter(|strode| strode.trusted[lane]) {
                 simulation.motion = taken(&strode.end, lane);
                 simulation.world.ledger.add(&strode.work.of(lane));
-                if let Stepper::Smooth(integrator) = &mut simulation.world.stepper {
-                    integrator.steps += u64::from(self.parts);
-                }
-                (rider.strode, rider.failed) = (true, rider.failed.saturating_sub(1));
+                self.strode(&mut loops[lane], lane, 1);
                 continue;
             }
             rider.failed += u32::from(strode.is_some());
@@ -139,9 +198,7 @@ impl<L: SideBySide<N>, const N: usize> Plants<L, N> {
                 integrator.forget();
             }
             ended[lane] = simulation.advance().err();
-            if let Stepper::Smooth(integrator) = &simulation.world.stepper {
-                self.strides.resume(lane, integrator);
-            }
+            self.steps.resume(lane, &simulation.world.stepper);
             replace(&mut end, lane, &simulation.motion);
         }
         self.energy = self.robots.total_energy(&end).to_array();
@@ -163,15 +220,16 @@ fn motions<L: SideBySide<N>, const N: usize>(loops: &[Held<L, N>]) -> Motion<Sev
     lanes::motion(&each)
 }
 
-impl<const N: usize> Gauss<N> {
+impl<const N: usize> Steps<N> {
     fn renew(&mut self) {
         match self {
+            Self::Midpoint(_) => {}
             Self::Four(strides) => strides.renew(),
             Self::Eight(strides) => strides.renew(),
         }
     }
 
-    fn advance<L: flexure_core::model::Links<Several, N>>(
+    fn advance<L: Links<Several, N>>(
         &mut self,
         plants: &Plant<L, N, Several>,
         x: &Motion<Several, N>,
@@ -179,15 +237,28 @@ impl<const N: usize> Gauss<N> {
         interval: f64,
     ) -> Strode<N, WIDTH> {
         match self {
+            Self::Midpoint(midpoint) => {
+                let (end, work) = midpoint.advance(plants, x, u_m, interval);
+                Strode { end, work, trusted: finite(&end), error: Several::ZERO }
+            }
             Self::Four(strides) => strides.advance(plants, x, u_m, interval),
             Self::Eight(strides) => strides.advance(plants, x, u_m, interval),
         }
     }
 
-    fn resume(&mut self, lane: usize, integrator: &Integrator<N>) {
-        match self {
-            Self::Four(strides) => strides.resume(lane, integrator),
-            Self::Eight(strides) => strides.resume(lane, integrator),
+    /// The loop in a lane has been moved by its own stepper: what that leads on to, these lead on to.
+    fn resume(&mut self, lane: usize, stepper: &Stepper<N>) {
+        match (self, stepper) {
+            (Self::Midpoint(midpoint), Stepper::Rough(stepping)) => {
+                for (lanes, one) in midpoint.last.iter_mut().zip(&stepping.last) {
+                    for (lanes, one) in lanes.0.iter_mut().zip(one.iter()) {
+                        put(lanes, lane, one);
+                    }
+                }
+            }
+            (Self::Four(strides), Stepper::Smooth(integrator)) => strides.resume(lane, integrator),
+            (Self::Eight(strides), Stepper::Smooth(integrator)) => strides.resume(lane, integrator),
+            _ => {}
         }
     }
 }

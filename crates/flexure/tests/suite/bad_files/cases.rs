@@ -213,6 +213,13 @@ pub const SCENARIO_CASES: &[Case] = &[
         "-1e-7",
         "integration_tolerance is -1e-7, must be > 0",
     ),
+    ("period = 0.001", "period = 0.001\nintegration = \"euler\"", "\"euler\"", "integration is 'euler'"),
+    (
+        "period = 0.001",
+        "period = 0.001\nintegration = \"midpoint\"\nhold = \"continuous\"",
+        "\"midpoint\"",
+        "integration is \"midpoint\", but hold is \"continuous\" in line",
+    ),
     ("period = 0.001", "period = 0.001\nhold = \"first-order\"", "\"first-order\"", "hold is 'first-order'"),
     (
         "[0.0, 0.0]",
