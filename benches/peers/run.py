@@ -105,6 +105,10 @@ def is_loop(row):
     return row.key.split("-")[0] in LOOPS
 
 
+def is_in_lanes(work):
+    return work.endswith("-lanes") or work.startswith("batch")
+
+
 def doubles(path):
     data = Path(path).read_bytes()
     return struct.unpack(f"{len(data) // 8}d", data)
@@ -139,6 +143,18 @@ def flexure_program():
     )
     target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
     return (target / "release" / "examples" / "peers").resolve()
+
+
+def wide_program():
+    """Flexure's program for the processor's registers of eight numbers, as `tools/package.sh` builds it; none if it has none."""
+    flags = next((line.split() for line in open("/proc/cpuinfo") if line.startswith("flags")), [])
+    if not {"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"} <= set(flags):
+        return None
+    target = FOLDER / "x86-64-v4"
+    command = ["cargo", "build", "--quiet", "--release", "--locked", "-p", "flexure", "--example", "peers", "--target-dir", target]
+    flags = "-C target-cpu=x86-64-v4 -C llvm-args=-slp-max-reg-size=128"
+    subprocess.run(command, cwd=ROOT, check=True, env={**os.environ, "RUSTFLAGS": flags})
+    return target / "release" / "examples" / "peers"
 
 
 def fresh(program, *sources):
@@ -199,8 +215,9 @@ def side(name, out, *command):
     return Side(name, [*map(str, command), str(out)], out)
 
 
-def call_row(work, flexure, python, packages):
+def call_row(work, flexure, python, packages, what=""):
     title, _, peers, limit = CALLS[work]
+    title += what
     # A peer does the same, one state at a time.
     same, made = work.removesuffix("-lanes"), []
     for peer in peers:
@@ -223,11 +240,12 @@ def motion(flexure, work):
     return side("Flexure", f"{work}.flexure", flexure, "time", work, "-")
 
 
-def motion_rows(work, flexure, packages):
+def motion_rows(work, flexure, packages, what=""):
     """A row for each method of Flexure beside all of MuJoCo's; times with errors after a second."""
     rows = []
     loop = work in LOOPS
     title, plant, robot = LOOPS[work] if loop else (PLANTS[work][0], work, PLANTS[work][1])
+    title += what
     mujoco = mujoco_program(packages)
 
     def peer(integrator, step):
@@ -354,8 +372,15 @@ def main():
     files(flexure)
     rounds, milliseconds = (1, 10) if options.quick else (7, 60)
     rows = []
-    for work in options.rows or [*CALLS, *PLANTS, *LOOPS]:
-        made = [call_row(work, flexure, python, packages)] if work in CALLS else motion_rows(work, flexure, packages)
+    works = options.rows or [*CALLS, *PLANTS, *LOOPS]
+    wide = wide_program() if any(map(is_in_lanes, works)) else None
+    for work in works:
+        made = []
+        for program, what in [(flexure, ""), (wide, ", AVX-512")][: 2 if wide and is_in_lanes(work) else 1]:
+            if work in CALLS:
+                made.append(call_row(work, program, python, packages, what))
+            else:
+                made += motion_rows(work, program, packages, what)
         for row in made:
             measure(row, rounds, milliseconds)
             rows.append(row)

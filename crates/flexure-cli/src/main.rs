@@ -18,6 +18,7 @@ use commands::print;
 use failure::Failure;
 
 fn main() -> ExitCode {
+    hand_over();
     if let Some(lacking) = processor::lacking() {
         eprintln!(
             "flexure: this processor has no {lacking}, which the program was built for; build it where it is to run, with \
@@ -27,6 +28,34 @@ fn main() -> ExitCode {
     }
     answered()
 }
+
+/// The largest set of instructions that may be taken, by the name that compilers have for it; to compare builds of this program.
+const AT_MOST: &str = "FLEXURE_INSTRUCTIONS";
+
+/// Has the build of this program for the most of what this processor can do go on in its place, if one lies beside it (`tools/package.sh`).
+#[cfg(unix)]
+fn hand_over() {
+    use std::env;
+    use std::os::unix::process::CommandExt as _;
+    use std::process::Command;
+
+    let at_most = env::var(AT_MOST).ok();
+    let better = env::current_exe().ok().and_then(|own| processor::better(&own, at_most.as_deref()));
+    if let Some(program) = better {
+        let mut arguments = env::args_os();
+        let name = arguments.next().unwrap_or_else(|| "flexure".into());
+        let error = Command::new(&program).arg0(name).args(arguments).exec();
+        eprintln!(
+            "flexure: {} does not run ({error}); this one, for {}, goes on",
+            program.display(),
+            processor::BUILT_FOR
+        );
+    }
+}
+
+/// Elsewhere there is one build.
+#[cfg(not(unix))]
+fn hand_over() {}
 
 /// Everything else: not a part of [`main`], so that nothing of it comes before the question there.
 #[inline(never)]

@@ -1,4 +1,6 @@
-//! Whether this processor has the instructions that the program was built with.
+//! Which instructions this processor has: whether those that the program was built with, and which of several builds of it is the fastest here.
+
+use std::path::{Path, PathBuf};
 
 /// An instruction set of the build that this processor lacks; none if it has all of them. To be asked before anything else: instructions that
 /// are lacking end a program without a word.
@@ -30,6 +32,99 @@ fn among(ecx: u32, ebx: u32) -> Option<&'static str> {
     let found =
         needed.into_iter().find(|(_, is_built, register, bit)| *is_built && (register >> bit) & 1 == 0);
     found.map(|(name, ..)| name)
+}
+
+/// Sets of instructions that programs are built for beyond what every processor of the kind has, the smallest first, by the name that compilers
+/// have for them; and whether this processor and its operating system have them.
+#[cfg(target_arch = "x86_64")]
+fn sets() -> Vec<(&'static str, bool)> {
+    let three = is_x86_feature_detected!("avx2")
+        && is_x86_feature_detected!("fma")
+        && is_x86_feature_detected!("bmi1")
+        && is_x86_feature_detected!("bmi2")
+        && is_x86_feature_detected!("f16c")
+        && is_x86_feature_detected!("lzcnt")
+        && is_x86_feature_detected!("movbe");
+    let four = three
+        && is_x86_feature_detected!("avx512f")
+        && is_x86_feature_detected!("avx512bw")
+        && is_x86_feature_detected!("avx512cd")
+        && is_x86_feature_detected!("avx512dq")
+        && is_x86_feature_detected!("avx512vl");
+    vec![("x86-64-v3", three), ("x86-64-v4", four)]
+}
+
+/// Elsewhere there is one set for all.
+#[cfg(not(target_arch = "x86_64"))]
+fn sets() -> Vec<(&'static str, bool)> {
+    Vec::new()
+}
+
+/// The name of the set that this program was built for.
+pub const BUILT_FOR: &str = if cfg!(not(target_arch = "x86_64")) {
+    std::env::consts::ARCH
+} else if cfg!(target_feature = "avx512f") {
+    "x86-64-v4"
+} else if cfg!(target_feature = "avx2") {
+    "x86-64-v3"
+} else {
+    "x86-64"
+};
+
+/// The build of this `program` for the largest set of instructions that this processor has: the file beside it with the name of the set at its
+/// end, as `flexure-x86-64-v4`. None if this one is it. `at_most` is the name of the largest set that may be taken.
+pub fn better(program: &Path, at_most: Option<&str>) -> Option<PathBuf> {
+    let stem = program.file_stem()?.to_str()?;
+    let file = |set: &str| {
+        let name = match program.extension().and_then(|extension| extension.to_str()) {
+            Some(extension) => format!("{stem}-{set}.{extension}"),
+            None => format!("{stem}-{set}"),
+        };
+        program.with_file_name(name)
+    };
+    chosen(&sets(), BUILT_FOR, at_most, |set| file(set).is_file()).map(file)
+}
+
+/// The last of `sets` that is had, larger than the `own`, no larger than `at_most`, and that there is a build for.
+fn chosen<'a>(
+    sets: &[(&'a str, bool)],
+    own: &str,
+    at_most: Option<&str>,
+    is_there: impl Fn(&str) -> bool,
+) -> Option<&'a str> {
+    let place = |name: &str| sets.iter().position(|(set, _)| *set == name).map_or(0, |place| place + 1);
+    let allowed = at_most.map_or(sets.len(), place);
+    let larger = sets.iter().take(allowed).skip(place(own));
+    larger.rev().find(|(set, has)| *has && is_there(set)).map(|(set, _)| *set)
+}
+
+#[cfg(test)]
+mod choices {
+    use super::{BUILT_FOR, chosen};
+
+    const ALL: [(&str, bool); 2] = [("x86-64-v3", true), ("x86-64-v4", true)];
+    const SOME: [(&str, bool); 2] = [("x86-64-v3", true), ("x86-64-v4", false)];
+
+    #[test]
+    fn the_largest_set_that_is_had_and_built_for_is_chosen() {
+        let all = |_: &str| true;
+        assert_eq!(chosen(&ALL, "x86-64", None, all), Some("x86-64-v4"));
+        assert_eq!(chosen(&SOME, "x86-64", None, all), Some("x86-64-v3"));
+        assert_eq!(chosen(&SOME, "x86-64-v3", None, all), None);
+        assert_eq!(chosen(&ALL, "x86-64-v4", None, all), None);
+        assert_eq!(chosen(&ALL, "x86-64", None, |set| set == "x86-64-v3"), Some("x86-64-v3"));
+        assert_eq!(chosen(&ALL, "x86-64", None, |_| false), None);
+        assert_eq!(chosen(&[], BUILT_FOR, None, all), None);
+    }
+
+    #[test]
+    fn no_larger_set_is_chosen_than_was_asked_for() {
+        let all = |_: &str| true;
+        assert_eq!(chosen(&ALL, "x86-64", Some("x86-64-v3"), all), Some("x86-64-v3"));
+        assert_eq!(chosen(&ALL, "x86-64", Some("x86-64"), all), None);
+        assert_eq!(chosen(&ALL, "x86-64-v3", Some("x86-64-v3"), all), None);
+        assert_eq!(chosen(&ALL, "x86-64-v4", Some("x86-64"), all), None);
+    }
 }
 
 #[cfg(all(test, target_arch = "x86_64"))]

@@ -20,6 +20,7 @@ mod outside;
 mod pages;
 mod pinocchio;
 mod pipes;
+mod processor;
 mod public_robots;
 mod pypi;
 mod python;

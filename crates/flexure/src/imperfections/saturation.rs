@@ -48,6 +48,10 @@ impl Actuating for Saturation {
             *torque = torque.clamp(-limit, *limit);
         }
     }
+
+    fn limits(&self) -> Option<&[f64]> {
+        Some(&self.limit)
+    }
 }
 
 /// Nothing.

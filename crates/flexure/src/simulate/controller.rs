@@ -149,15 +149,16 @@ where
         }
     }
 
-    /// Whether nothing stands between the law and the robot: the law sees how it moves, and what it asks for acts at once.
-    pub(crate) fn is_ideal(&self) -> bool {
-        self.sensors.are_ideal()
+    /// Torques [N m] up to which nothing stands between the law and the robot: the law sees how it moves, and what it asks for acts at once. None if
+    /// something does anyway.
+    pub(crate) fn ideal_up_to(&self) -> Option<Vector<f64, N>> {
+        let is_ideal = self.sensors.are_ideal()
             && self.estimator.is_none()
             && self.disturbance.is_none()
             && self.guard.is_none()
             && self.computer.is_in_time()
-            && self.watchdog.is_none()
-            && self.actuator.is_ideal()
+            && self.watchdog.is_none();
+        is_ideal.then(|| self.actuator.limits())?
     }
 
     /// Starts estimator and disturbance observer at the motion `x`, held by the motor torque `applied` [N m] until now. Sensors,

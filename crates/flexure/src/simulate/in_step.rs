@@ -130,8 +130,8 @@ struct Group<L: SideBySide<N>, const N: usize> {
     plants: Option<Plants<L, N>>,
     /// Whether all follow the same reference.
     one_path: bool,
-    /// Whether they may stay in lanes at all.
-    may_glide: bool,
+    /// Torques [N m] up to which they may stay in lanes; none if they may not.
+    may_glide: Option<Vector<Several, N>>,
     /// The loops while they do: they themselves know nothing of it until they are settled.
     gliding: Option<Gliding<N>>,
 }
@@ -151,7 +151,10 @@ impl<L: FromFile<f64, N> + SideBySide<N> + Clone, const N: usize> Group<L, N> {
         };
         match (models, laws, plants) {
             (Some(models), Some(laws), Some(plants)) => {
-                let may_glide = plants.is_some() && laws.memory().is_empty() && loops.iter().all(may_glide);
+                let limits: Option<Vec<_>> = each.into_iter().map(may_glide).collect();
+                let may_glide = limits
+                    .filter(|_| plants.is_some() && laws.memory().is_empty())
+                    .map(|limits| lanes::vector(&array::from_fn(|lane| &limits[lane])));
                 Ok(Self { loops, models, laws, plants, one_path, may_glide, gliding: None })
             }
             _ => Err(loops),
@@ -265,7 +268,9 @@ where
         if self.gliding.as_ref().is_some_and(|gliding| gliding.going != going) {
             self.settle();
         }
-        let Some(plants) = self.plants.as_mut().filter(|_| self.may_glide) else { return Glided::Not(None) };
+        let (Some(plants), Some(limits)) = (&mut self.plants, &self.may_glide) else {
+            return Glided::Not(None);
+        };
         if self.gliding.is_none() {
             let first = going.iter().zip(&self.loops).find(|(going, _)| **going);
             let last = first.and_then(|(_, held)| held.simulation.last_tick());
@@ -287,7 +292,8 @@ where
             };
             let energy = plants.total_energy(&strode.end);
             let u_m = self.laws.static_torque(&self.models, &strode.end, &q_ld);
-            if u_m.is_some_and(|u_m| gliding.arrive(&strode.end, &strode.work, energy, &q_ld, &u_m)) {
+            let arrived = |u_m| gliding.arrive(&strode.end, &strode.work, energy, &q_ld, [&u_m, limits]);
+            if u_m.is_some_and(arrived) {
                 return Glided::On;
             }
         }

@@ -13,6 +13,11 @@ pub trait Actuating: Memory<f64> + Send + Sync {
 
     /// Turns the torque [N m] that the stage before gives into what this one does. Nothing is allocated.
     fn actuate(&mut self, instant: &Tick, torque: &mut [f64]);
+
+    /// Largest torques [N m], one a joint, if all that it does is to cut others to them.
+    fn limits(&self) -> Option<&[f64]> {
+        None
+    }
 }
 
 /// From command to torque; an ideal drive by default.
@@ -49,9 +54,16 @@ impl Actuator {
         self.late.start(torque);
     }
 
-    /// Whether the torque of each command acts at once, as it is.
-    pub(crate) fn is_ideal(&self) -> bool {
-        self.stages.is_empty() && self.late.is_none()
+    /// Largest torques [N m] that act at once, as they are commanded, in both directions, infinite for joints without; none if something else than
+    /// limits is between command and torque.
+    pub(crate) fn limits<const N: usize>(&self) -> Option<Vector<f64, N>> {
+        let mut limits = Vector([f64::INFINITY; N]);
+        for (_, stage) in &self.stages {
+            for (least, limit) in limits.0.iter_mut().zip(stage.limits()?) {
+                *least = least.min(*limit);
+            }
+        }
+        self.late.is_none().then_some(limits)
     }
 
     /// Motor torque over the control period that begins now, when `torque` [N m] is commanded. Nothing is allocated.

@@ -38,12 +38,13 @@ pub(super) struct Gliding<const N: usize> {
     residual: Several,
 }
 
-/// Whether a loop may glide at all: nothing stands between law and robot, and nothing pushes it.
-pub(super) fn may_glide<L: Links<f64, N> + Clone, const N: usize>(held: &Held<L, N>) -> bool {
+/// Torques [N m] up to which a loop may glide; none if it may not at all, because something else stands between law and robot or pushes it.
+pub(super) fn may_glide<L: Links<f64, N> + Clone, const N: usize>(
+    held: &Held<L, N>,
+) -> Option<Vector<f64, N>> {
     let simulation = &held.simulation;
-    simulation.controller().is_ideal()
-        && simulation.pushes().is_empty()
-        && simulation.plant().torque_gain == Vector([1.0; N])
+    let is_free = simulation.pushes().is_empty() && simulation.plant().torque_gain == Vector([1.0; N]);
+    is_free.then(|| simulation.controller().ideal_up_to())?
 }
 
 impl<const N: usize> Gliding<N> {
@@ -88,14 +89,15 @@ impl<const N: usize> Gliding<N> {
     }
 
     /// Books an instant to which the robots have moved, with that `work` on the way and the total `energy` in J there, and at which their
-    /// laws ask for the torques `u_m` [N m] at the reference `q_ld`. Whether it is one of loops that go on; nothing is booked else.
+    /// laws ask for the torques `u_m` at the reference `q_ld`, cut at `limits` [N m]. Whether it is one of loops that go on without being cut;
+    /// nothing is booked else.
     pub(super) fn arrive(
         &mut self,
         motion: &Motion<Several, N>,
         work: &Ledger<Several>,
         energy: Several,
         q_ld: &Vector<Jet<Several, 5>, N>,
-        u_m: &Vector<Several, N>,
+        [u_m, limits]: [&Vector<Several, N>; 2],
     ) -> bool {
         let parts = [&motion.q_l, &motion.q_m, &motion.v_l, &motion.v_m];
         let magnitude = parts
@@ -104,7 +106,9 @@ impl<const N: usize> Gliding<N> {
             .fold(Several::ZERO, |m: Several, x| m.max(x.abs()))
             .to_array();
         let torque = u_m.iter().fold(Several::ZERO, |sum: Several, u| sum + u.abs()).to_array();
-        let goes_on = |lane: usize| magnitude[lane] < BEYOND && torque[lane].is_finite();
+        let over = u_m.iter().zip(limits.iter());
+        let over = over.fold(Several::ZERO, |most: Several, (u, limit)| most.max(u.abs() - limit)).to_array();
+        let goes_on = |lane: usize| magnitude[lane] < BEYOND && torque[lane].is_finite() && over[lane] <= 0.0;
         if !(0..WIDTH).all(|lane| !self.going[lane] || goes_on(lane)) {
             return false;
         }
