@@ -24,6 +24,8 @@ ALLOWED = 0.03
 WORKS = {
     "law2": (16, 144),
     "law7": (16, 80),
+    "law2-lanes": (16, 144),
+    "law7-lanes": (16, 80),
     "rnea7": (16, 144),
     "fd7": (16, 144),
     "rates7": (16, 80),
@@ -31,10 +33,13 @@ WORKS = {
     "plant7": (2, 6),
     "loop2": (5, 25),
     "batch2": (5, 25),
+    "batch2-midpoint": (5, 25),
 }
 TITLES = {
     "law2": "v-CBC law, two joints",
     "law7": "v-CBC law, seven joints with gravity",
+    "law2-lanes": "v-CBC law, two joints, four states in lanes",
+    "law7-lanes": "v-CBC law, seven joints with gravity, four states in lanes",
     "rnea7": "inverse dynamics, seven joints",
     "fd7": "forward dynamics, seven joints",
     "rates7": "torque with two rates, seven joints",
@@ -42,6 +47,7 @@ TITLES = {
     "plant7": "a millisecond of the elastic seven-joint arm",
     "loop2": "a period of the whole loop, two-link arm",
     "batch2": "a period of 16 such loops together",
+    "batch2-midpoint": "the same by steps of the midpoint rule",
 }
 
 
