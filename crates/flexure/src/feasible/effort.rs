@@ -1,7 +1,7 @@
 //! How much torque a reference takes.
 
 use crate::feasible::search::speed;
-use crate::feasible::track::{Demand, with_track};
+use crate::feasible::track::with_track;
 use crate::files::Problems;
 use crate::scenario::Scenario;
 
@@ -12,10 +12,9 @@ use crate::scenario::Scenario;
 /// # Errors
 /// As [`speed`].
 pub fn effort(scenario: &Scenario) -> Result<f64, Problems> {
-    let squared = (0_u32, vec![0.0; scenario.robot.joint_count()]);
-    let (instants, squared) = fold(scenario, squared, |(instants, sums), demand| {
-        *instants += 1;
-        for (sum, torque) in sums.iter_mut().zip(&demand.torque) {
+    let mut squared = vec![0.0; scenario.robot.joint_count()];
+    let instants = along(scenario, &mut |_, torques| {
+        for (sum, torque) in squared.iter_mut().zip(torques) {
             *sum += torque * torque;
         }
     })?;
@@ -29,30 +28,21 @@ pub fn effort(scenario: &Scenario) -> Result<f64, Problems> {
 /// As [`speed`].
 pub fn peak_torque(scenario: &Scenario) -> Result<Vec<(f64, f64)>, Problems> {
     let start = &scenario.initial.q_l;
-    fold(scenario, Vec::new(), |peaks: &mut Vec<(f64, f64)>, demand| {
+    let mut peaks: Vec<(f64, f64)> = Vec::new();
+    along(scenario, &mut |positions, torques| {
         if peaks.is_empty() {
-            let begins = demand.position.iter().zip(start);
-            *peaks = begins.map(|(q_ld, start)| (0.0, (q_ld - start).abs())).collect();
+            peaks = positions.iter().zip(start).map(|(q_ld, start)| (0.0, (q_ld - start).abs())).collect();
         }
-        for ((torque, _), u_m) in peaks.iter_mut().zip(&demand.torque) {
-            *torque = torque.max(u_m.abs());
+        for ((peak, _), torque) in peaks.iter_mut().zip(torques) {
+            *peak = peak.max(torque.abs());
         }
-    })
+    })?;
+    Ok(peaks)
 }
 
-/// What `each` makes of the demands at every control instant.
-fn fold<A: Clone>(scenario: &Scenario, from: A, each: impl Fn(&mut A, &Demand)) -> Result<A, Problems> {
-    let speed = speed(scenario)?;
-    with_track(scenario, |track| {
-        let demands = track.at_speed(speed);
-        let (mut sum, mut instants) = (from.clone(), 0);
-        loop {
-            let t = f64::from(instants) * scenario.control_period;
-            if t > scenario.duration {
-                return sum;
-            }
-            each(&mut sum, &demands(t));
-            instants += 1;
-        }
-    })
+/// Shows `each` the positions of the links in rad and the motor torques [N m] at every control instant; how many there are.
+fn along(scenario: &Scenario, each: &mut dyn FnMut(&[f64], &[f64])) -> Result<u32, Problems> {
+    let (speed, instants) = (speed(scenario)?, scenario.periods() + 1);
+    with_track(scenario, |track| track.torques(speed, scenario.control_period, instants, each))?;
+    Ok(instants)
 }

@@ -1,19 +1,29 @@
 //! What a robot must do to follow a reference.
 
+use std::array;
+
+use flexure_core::linalg::Vector;
+use flexure_core::model::{Fjr, Links};
 use flexure_core::reference::Reference as _;
+use flexure_core::scalar::Jet;
 
 use crate::feasible::at_speed;
 use crate::feasible::bounds::{Bound, LimitKind};
 use crate::files::Problems;
+use crate::lanes::{self, Each, Several, WIDTH};
 use crate::references::AnyReference;
 use crate::robot::Arm;
-use crate::robot::sized::sized;
+use crate::robot::sized::{OF_THE_KIND, fjr, sized};
 use crate::scenario::Scenario;
 
 /// A robot and a reference, whatever their types.
 pub trait Track {
     /// What follows from running along the reference at `speed`.
     fn at_speed(&self, speed: f64) -> Box<Demands<'_>>;
+
+    /// Shows `each` the positions of the links in rad and the motor torques [N m] along the reference at `speed`, at as many `instants` as there
+    /// are, a `period` in s apart, the first at 0: by exact inverse dynamics of several instants at once.
+    fn torques(&self, speed: f64, period: f64, instants: u32, each: &mut dyn FnMut(&[f64], &[f64]));
 }
 
 /// Numbers along a reference, at a time in s.
@@ -21,11 +31,11 @@ pub type Demands<'a> = dyn Fn(f64) -> Demand + 'a;
 
 /// What following the reference takes at some time, an entry per joint.
 pub struct Demand {
-    pub(super) torque: Vec<f64>,
+    torque: Vec<f64>,
     torque_rate: Vec<f64>,
     velocity: Vec<f64>,
     deflection: Vec<f64>,
-    pub(super) position: Vec<f64>,
+    position: Vec<f64>,
 }
 
 impl Demand {
@@ -43,19 +53,22 @@ impl Demand {
 }
 
 /// Hands robot and reference of `scenario` to `then`.
-pub fn with_track<R>(scenario: &Scenario, then: impl Fn(&dyn Track) -> R) -> Result<R, Problems> {
+pub fn with_track<R>(scenario: &Scenario, then: impl FnOnce(&dyn Track) -> R) -> Result<R, Problems> {
     let arm = scenario.robot.arm()?;
     Ok(sized!(&scenario.robot, L, N => {
-        then(&Pair { arm, reference: at_speed::<N>(scenario, 1.0)? })
+        let robot = &scenario.robot;
+        let robot = fjr::<f64, L<f64>, N>(robot, &robot.links, |x| x, &|x| x).expect(OF_THE_KIND);
+        then(&Pair { arm, robot, reference: at_speed::<N>(scenario, 1.0)? })
     }))
 }
 
-struct Pair<const N: usize> {
+struct Pair<L, const N: usize> {
     arm: Box<dyn Arm>,
+    robot: Fjr<f64, L, N>,
     reference: AnyReference<f64, N>,
 }
 
-impl<const N: usize> Track for Pair<N> {
+impl<L: Links<f64, N>, const N: usize> Track for Pair<L, N> {
     fn at_speed(&self, speed: f64) -> Box<Demands<'_>> {
         let reference = self.reference.paced(speed);
         let n = self.arm.joints();
@@ -65,6 +78,25 @@ impl<const N: usize> Track for Pair<N> {
                 q_l.iter().take(n).map(|q| std::array::from_fn(|k| q.coefficient(k))).collect();
             demand(&*self.arm, &series)
         })
+    }
+
+    fn torques(&self, speed: f64, period: f64, instants: u32, each: &mut dyn FnMut(&[f64], &[f64])) {
+        let reference = self.reference.paced(speed);
+        let n = self.arm.joints();
+        for first in (0..instants).step_by(WIDTH) {
+            let mut k = first;
+            // Beyond the last instant the register is filled with it.
+            let series: Each<Vector<Jet<f64, 5>, N>> = array::from_fn(|_| {
+                let at = reference.at::<5>(f64::from(k) * period);
+                k = (k + 1).min(instants - 1);
+                at
+            });
+            let forward = self.robot.inverse_dynamics::<Several, 1, 3, 5>(&lanes::series(&series.each_ref()));
+            let torques = lanes::apart(&forward.u_m.map(|u_m| u_m.coefficient(0)));
+            for ((q_l, u_m), _) in series.iter().zip(&torques).zip(first..instants) {
+                each(&q_l.map(|q_l| q_l.coefficient(0)).0[..n], &u_m.0[..n]);
+            }
+        }
     }
 }
 
@@ -79,5 +111,39 @@ fn demand(arm: &dyn Arm, q_l: &[[f64; 6]]) -> Demand {
         velocity: of(1),
         deflection: q_m.iter().zip(q_l).map(|(q_m, q_l)| q_m[0] - q_l[0]).collect(),
         position: of(0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::with_track;
+    use crate::scenario::load_scenario;
+
+    /// Torques of several instants at once beside those of each, with rates: they differ by rounding and by the last digits of sines in lanes.
+    /// Numbers of instants that fill no register, one, and some.
+    #[test]
+    fn torques_of_several_instants_are_those_of_each() {
+        for name in ["two-link-tanh-smooth", "panda-tanh-smooth", "pendulum-tanh"] {
+            let scenario = load_scenario(name).expect("built in");
+            for instants in [1, 3, 8, 1001] {
+                let mut k = 0;
+                let compared = with_track(&scenario, |track| {
+                    let demands = track.at_speed(0.7);
+                    track.torques(0.7, 2e-3, instants, &mut |positions, torques| {
+                        let demand = demands(2e-3 * f64::from(k));
+                        assert_eq!(positions, demand.position, "{name}, instant {k}");
+                        let largest =
+                            demand.torque.iter().fold(1.0, |most: f64, torque| most.max(torque.abs()));
+                        for (torque, expected) in torques.iter().zip(&demand.torque) {
+                            let off = (torque - expected).abs();
+                            assert!(off < 1e-12 * largest, "{name}, instant {k}: {torque} or {expected} N m");
+                        }
+                        k += 1;
+                    });
+                });
+                compared.expect("a track");
+                assert_eq!(k, instants, "{name}");
+            }
+        }
     }
 }
