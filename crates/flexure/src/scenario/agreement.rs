@@ -51,7 +51,7 @@ pub(crate) fn agree(real: &Loop<'_>) {
     real.ages();
     real.unguarded();
     real.unlimited();
-    real.tolerance();
+    real.integration();
 }
 
 impl<'a> Loop<'a> {
@@ -193,20 +193,19 @@ impl<'a> Loop<'a> {
         }
     }
 
-    /// A tolerance is of plants that are integrated to one.
-    fn tolerance(&self) {
-        let rough = self.found.iter().find(|found| found.what.is_rough());
-        if let (Some(found), Some(field)) = (rough, self.root.get("integration_tolerance")) {
-            let message = format!(
-                "{} in line {} makes the robot one that is stepped at 0.1 ms, whatever integration_tolerance is",
-                found.what.kind(),
-                found.field.line()
-            );
-            field.warn(
-                "unused",
-                message,
-                "smooth robots are integrated to it: those without friction, play and hysteresis",
-            );
+    /// How smooth plants are integrated is of no effect on others, and a tolerance of none on steps of one length.
+    fn integration(&self) {
+        if let Some(found) = self.found.iter().find(|found| found.what.is_rough()) {
+            let given = ["integration", "integration_tolerance"].map(|key| Some((key, self.root.get(key)?)));
+            for (key, field) in given.into_iter().flatten() {
+                let message = format!(
+                    "{} in line {} makes the robot one that is stepped at 0.1 ms, whatever {key} is",
+                    found.what.kind(),
+                    found.field.line()
+                );
+                let help = "smooth robots are integrated by it: those without friction, play and hysteresis";
+                field.warn("unused", message, help);
+            }
         } else if let (Some(midpoint), Some(field)) =
             (self.midpoint(), self.root.get("integration_tolerance"))
         {

@@ -131,6 +131,11 @@ fn suspicious_numbers_are_warned_about() {
     warned(SCENARIO, "q_l = [0.0, 0.0]", "q_l = [0.1, 0.0]", "initial.q_m is not given");
     warned(SCENARIO, "duration = 10.0", "duration = 0.0124", "the run takes 12 periods, 0.012 s");
     warned(SCENARIO, "control_period = 0.001", "control_period = 1.0", "is it in milliseconds");
+    let midpoint = "control_period = 0.001\nintegration = 'midpoint'";
+    let both = format!("{midpoint}\nintegration_tolerance = 1e-6");
+    warned(SCENARIO, "control_period = 0.001", &both, "steps of 1 ms, whatever integration_tolerance is");
+    let rubs = format!("imperfection = [{{ kind = 'friction', side = 'link', coulomb = 0.1 }}]\n{midpoint}");
+    warned(SCENARIO, "control_period = 0.001", &rubs, "stepped at 0.1 ms, whatever integration is");
 }
 
 #[test]
