@@ -1,11 +1,10 @@
 //! A control law of one's own against one from the literature, on an arm whose joints bend.
 
 use flexure::core::control::{ControlLaw, MotorPd, Pd};
-use flexure::core::linalg::Vector;
 use flexure::core::model::{Fjr, Links, Motion};
 use flexure::core::reference::{PointToPoint, Smoothstep};
-use flexure::core::robots::PlanarTwoLink;
 use flexure::core::scalar::{Jet, Over, Scalar};
+use flexure::core::{linalg::Vector, robots::PlanarTwoLink};
 use flexure::simulate::{Controller, Feedback, Hold, Method, Simulation, TOLERANCE, Timing};
 
 /// PD control of the motors that winds the springs up for the torque that the links will need.
