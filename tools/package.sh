@@ -4,13 +4,15 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 folder=${1:-target/package}
-mkdir -p "$folder"
-for set in x86-64 x86-64-v3 x86-64-v4; do
+sets=(x86-64 x86-64-v3 x86-64-v4)
+for set in "${sets[@]}"; do
     # As .cargo/config.toml, which RUSTFLAGS takes the place of.
     RUSTFLAGS="-C target-cpu=$set -C llvm-args=-slp-max-reg-size=128" \
         cargo build --quiet --locked --profile dist --workspace --bin flexure --target-dir "target/package-$set"
-    name=flexure
-    [ "$set" = x86-64 ] || name=flexure-$set
-    install "target/package-$set/dist/flexure" "$folder/$name"
 done
+# All or none, and the one that hands over last: none goes on in the place of a program of another version.
+rm -f "$folder"/flexure "$folder"/flexure-x86-64*
+mkdir -p "$folder"
+for set in x86-64-v4 x86-64-v3; do install "target/package-$set/dist/flexure" "$folder/flexure-$set"; done
+install target/package-x86-64/dist/flexure "$folder/flexure"
 ls -l "$folder"

@@ -5,7 +5,7 @@ use std::error::Error;
 use flexure::Scenario;
 use flexure::plant::Plant;
 use flexure::scenario::Integration;
-use flexure::simulate::{Batch, Ledger, Loop, Method, Observed, Stepper, Stepping, TOLERANCE};
+use flexure::simulate::{Batch, Ledger, Loop, Observed, Stepper, Stepping, TOLERANCE};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{self, Fjr, Links};
 
@@ -77,10 +77,10 @@ where
     let hold = robot.links.gravity_torque(&q_l);
     let start = model::Motion { q_m: robot.motors_at_rest(&q_l), ..model::Motion::at_rest(q_l) };
     let by = match method {
-        "midpoint" => Method::Midpoint,
-        "tight" => Method::Collocation { tolerance: 1e-15 },
-        "" => Method::Collocation { tolerance: TOLERANCE },
-        tolerance => Method::Collocation { tolerance: tolerance.parse()? },
+        "midpoint" => Integration::Midpoint,
+        "tight" => Integration::Collocation { tolerance: 1e-15 },
+        "" => Integration::Collocation { tolerance: TOLERANCE },
+        tolerance => Integration::Collocation { tolerance: tolerance.parse()? },
     };
     let fresh = Stepper::new(&plant, by, Stepping::<N>::STEP);
     let pieces: u32 = if method == "tight" { 10 } else { 1 };
@@ -111,7 +111,7 @@ fn scenario(name: &str, method: &str) -> Result<Scenario, Box<dyn Error>> {
     let mut scenario = Scenario::load(name)?;
     match method {
         "" => {}
-        "tight" => scenario.integration_tolerance = 1e-13,
+        "tight" => scenario.integration = Integration::Collocation { tolerance: 1e-13 },
         "midpoint" => scenario.integration = Integration::Midpoint,
         _ => return Err(format!("no method {method}").into()),
     }

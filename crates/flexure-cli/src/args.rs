@@ -7,22 +7,31 @@ mod paged;
 
 use std::num::NonZeroU32;
 use std::path::PathBuf;
+use std::sync::LazyLock;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use flexure::files::Change;
+use flexure::processor;
 
 pub use import::Import;
 pub use laws::{Certify, Compare, Margins, OfFolder, Sweep, Tune};
 pub use logs::{Excite, Identify, Replay};
 pub use paged::Paged;
 
+/// The version, and what instructions this build is for: one of several may have been chosen when the program started.
+fn version() -> &'static str {
+    static VERSION: LazyLock<String> =
+        LazyLock::new(|| format!("{} ({})", env!("CARGO_PKG_VERSION"), processor::BUILT_FOR));
+    &VERSION
+}
+
 /// Model, design, simulate and compare controllers for robots with elastic joints.
 #[derive(Debug, Parser)]
 #[command(
     name = "flexure",
     bin_name = "flexure",
-    version,
+    version = version(),
     propagate_version = true,
     arg_required_else_help = true
 )]

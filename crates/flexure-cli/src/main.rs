@@ -8,7 +8,9 @@ mod grammar;
 mod interrupt;
 mod progress;
 
-use std::process::ExitCode;
+use std::path::Path;
+use std::process::{Command as Program, ExitCode};
+use std::{env, io};
 
 use flexure::files::{Outside, Reading};
 use flexure::processor;
@@ -18,7 +20,10 @@ use commands::print;
 use failure::Failure;
 
 fn main() -> ExitCode {
-    hand_over();
+    if let Err(message) = hand_over() {
+        eprintln!("flexure: {message}");
+        return ExitCode::from(2);
+    }
     if let Some(lacking) = processor::lacking() {
         eprintln!(
             "flexure: this processor has no {lacking}, which the program was built for; build it where it is to run, with \
@@ -33,29 +38,38 @@ fn main() -> ExitCode {
 const AT_MOST: &str = "FLEXURE_INSTRUCTIONS";
 
 /// Has the build of this program for the most of what this processor can do go on in its place, if one lies beside it (`tools/package.sh`).
-#[cfg(unix)]
-fn hand_over() {
-    use std::env;
-    use std::os::unix::process::CommandExt as _;
-    use std::process::Command;
-
-    let at_most = env::var(AT_MOST).ok();
+///
+/// # Errors
+/// What is wrong with [`AT_MOST`].
+fn hand_over() -> Result<(), String> {
+    let at_most = env::var_os(AT_MOST).map(|set| set.to_string_lossy().into_owned());
+    if let Some(set) = at_most.as_deref().filter(|set| !processor::names().contains(set)) {
+        return Err(format!("{AT_MOST} is '{set}', must be one of {}", processor::names().join(", ")));
+    }
     let better = env::current_exe().ok().and_then(|own| processor::better(&own, at_most.as_deref()));
     if let Some(program) = better {
-        let mut arguments = env::args_os();
-        let name = arguments.next().unwrap_or_else(|| "flexure".into());
-        let error = Command::new(&program).arg0(name).args(arguments).exec();
-        eprintln!(
-            "flexure: {} does not run ({error}); this one, for {}, goes on",
-            program.display(),
-            processor::BUILT_FOR
-        );
+        let error = replaced_by(&program);
+        let own = processor::BUILT_FOR;
+        eprintln!("flexure: {} does not run ({error}); this one, for {own}, goes on", program.display());
     }
+    Ok(())
 }
 
-/// Elsewhere there is one build.
+/// Comes back only if `program` does not run.
+#[cfg(unix)]
+fn replaced_by(program: &Path) -> io::Error {
+    use std::os::unix::process::CommandExt as _;
+
+    let mut arguments = env::args_os();
+    let name = arguments.next().unwrap_or_else(|| "flexure".into());
+    Program::new(program).arg0(name).args(arguments).exec()
+}
+
+/// No program takes the place of another here.
 #[cfg(not(unix))]
-fn hand_over() {}
+fn replaced_by(_: &Path) -> io::Error {
+    io::ErrorKind::Unsupported.into()
+}
 
 /// Everything else: not a part of [`main`], so that nothing of it comes before the question there.
 #[inline(never)]
@@ -64,7 +78,7 @@ fn answered() -> ExitCode {
     let cli = match grammar::parsed() {
         Ok(cli) => cli,
         Err(error) => {
-            if std::env::args_os().any(|argument| argument == "--json") {
+            if env::args_os().any(|argument| argument == "--json") {
                 let _ = print::end(failure::usage(&error));
             }
             error.exit()

@@ -12,7 +12,8 @@ mod rough_plant {
 
     use flexure::plant::{Friction, Hysteresis, Plant};
     use flexure::robot::{self, load_robot};
-    use flexure::simulate::{Ledger, Method, Stepper, Stepping};
+    use flexure::scenario::Integration;
+    use flexure::simulate::{Ledger, Stepper, Stepping};
     use flexure_core::linalg::Vector;
     use flexure_core::model::Fjr;
     use flexure_core::model::Links;
@@ -33,7 +34,8 @@ mod rough_plant {
             motor_friction: friction(0.1),
             ..Plant::from(robot)
         };
-        let mut stepper = Stepper::new(&plant, Method::Collocation { tolerance: 1e-10 }, Stepping::<N>::STEP);
+        let mut stepper =
+            Stepper::new(&plant, Integration::Collocation { tolerance: 1e-10 }, Stepping::<N>::STEP);
         let (mut x, mut t) = (Motion::at_rest(Vector::ZERO), 0.0);
         let mut ledger = Ledger::default();
         bencher.bench_local(|| {

@@ -61,18 +61,24 @@ fn sets() -> Vec<(&'static str, bool)> {
 }
 
 /// The name of the set that this program was built for.
-pub const BUILT_FOR: &str = if cfg!(not(target_arch = "x86_64")) {
-    std::env::consts::ARCH
-} else if cfg!(target_feature = "avx512f") {
+pub const BUILT_FOR: &str = if cfg!(target_feature = "avx512f") {
     "x86-64-v4"
 } else if cfg!(target_feature = "avx2") {
     "x86-64-v3"
 } else {
-    "x86-64"
+    ALL
 };
 
+/// What all processors of this kind have, by the name that compilers have for it.
+const ALL: &str = if cfg!(target_arch = "x86_64") { "x86-64" } else { std::env::consts::ARCH };
+
+/// The names of the sets that programs are built for here, the smallest first.
+pub fn names() -> Vec<&'static str> {
+    std::iter::once(ALL).chain(sets().into_iter().map(|(name, _)| name)).collect()
+}
+
 /// The build of this `program` for the largest set of instructions that this processor has: the file beside it with the name of the set at its
-/// end, as `flexure-x86-64-v4`. None if this one is it. `at_most` is the name of the largest set that may be taken.
+/// end, as `flexure-x86-64-v4`. None if this one is it. `at_most` is one of the [`names`], of the largest set that may be taken.
 pub fn better(program: &Path, at_most: Option<&str>) -> Option<PathBuf> {
     let stem = program.file_stem()?.to_str()?;
     let file = |set: &str| {

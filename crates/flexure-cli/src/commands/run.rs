@@ -11,7 +11,7 @@ use flexure::prove::standing::outside_of_proofs;
 use flexure::report::{RunTold, Verdict, summary_table, view_name, write_ran, write_view};
 use flexure::reproduce::{Experiment, trace_file, write_experiment};
 use flexure::sampled::{Sampled, not_looked_at};
-use flexure::scenario::{Scenario, load_scenario_with};
+use flexure::scenario::{Integration, Scenario, load_scenario_with};
 use flexure::simulate::{Excerpt, FaultLog, Summary, preload};
 use flexure::verify::Rejected;
 use serde::Serialize;
@@ -358,14 +358,22 @@ fn unbalanced(Experiment { scenario, run, .. }: &Experiment) -> Option<Problem> 
         scenario.name,
         short(100.0 * drift, 2)
     );
-    let help = if scenario.is_rough() {
-        "friction, play and hysteresis are stepped at 0.1 ms: springs or links of this robot are too fast for that"
-    } else {
-        "a smaller integration_tolerance in the scenario, or a shorter control_period"
+    let (key, help) = match scenario.integration {
+        _ if scenario.is_rough() => (
+            "imperfection",
+            "friction, play and hysteresis are stepped at 0.1 ms: springs or links of this robot are too fast for that",
+        ),
+        Integration::Midpoint => {
+            ("integration", "remove integration = \"midpoint\": its steps of 1 ms are too long for this loop")
+        }
+        Integration::Collocation { .. } => (
+            "integration_tolerance",
+            "a smaller integration_tolerance in the scenario, or a shorter control_period",
+        ),
     };
     // A loop that diverges is told for that.
     (run.divergence.is_none() && drift > LOST_ENERGY)
-        .then(|| scenario.places.problem("integration_tolerance", "energy", message, help).warning())
+        .then(|| scenario.places.problem(key, "energy", message, help).warning())
 }
 
 /// What the table does not say of a real loop.

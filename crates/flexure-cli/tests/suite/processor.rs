@@ -62,3 +62,15 @@ fn a_build_that_does_not_run_is_named() {
         assert!(error.contains("flexure-x86-64-v4 does not run (Permission denied"), "{error}");
     }
 }
+
+/// A set that does not exist is named with those that do; nothing runs.
+#[test]
+fn a_set_that_is_unknown_is_refused() {
+    let folder = folder(&[]);
+    for set in ["avx2", "", "x86-64-v5"] {
+        let output = list(folder.path(), Some(set));
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && output.stdout.is_empty(), "{output:?}");
+        assert!(error.contains(&format!("FLEXURE_INSTRUCTIONS is '{set}', must be one of")), "{error}");
+    }
+}

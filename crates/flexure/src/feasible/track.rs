@@ -12,7 +12,6 @@ use crate::feasible::bounds::{Bound, LimitKind};
 use crate::files::Problems;
 use crate::lanes::{self, Each, Several, WIDTH};
 use crate::references::AnyReference;
-use crate::robot::Arm;
 use crate::robot::sized::{OF_THE_KIND, fjr, sized};
 use crate::scenario::Scenario;
 
@@ -54,16 +53,14 @@ impl Demand {
 
 /// Hands robot and reference of `scenario` to `then`.
 pub fn with_track<R>(scenario: &Scenario, then: impl FnOnce(&dyn Track) -> R) -> Result<R, Problems> {
-    let arm = scenario.robot.arm()?;
-    Ok(sized!(&scenario.robot, L, N => {
-        let robot = &scenario.robot;
+    let robot = &scenario.robot;
+    Ok(sized!(robot, L, N => {
         let robot = fjr::<f64, L<f64>, N>(robot, &robot.links, |x| x, &|x| x).expect(OF_THE_KIND);
-        then(&Pair { arm, robot, reference: at_speed::<N>(scenario, 1.0)? })
+        then(&Pair { robot, reference: at_speed::<N>(scenario, 1.0)? })
     }))
 }
 
 struct Pair<L, const N: usize> {
-    arm: Box<dyn Arm>,
     robot: Fjr<f64, L, N>,
     reference: AnyReference<f64, N>,
 }
@@ -71,18 +68,12 @@ struct Pair<L, const N: usize> {
 impl<L: Links<f64, N>, const N: usize> Track for Pair<L, N> {
     fn at_speed(&self, speed: f64) -> Box<Demands<'_>> {
         let reference = self.reference.paced(speed);
-        let n = self.arm.joints();
-        Box::new(move |t| {
-            let q_l = reference.at::<6>(t);
-            let series: Vec<[f64; 6]> =
-                q_l.iter().take(n).map(|q| std::array::from_fn(|k| q.coefficient(k))).collect();
-            demand(&*self.arm, &series)
-        })
+        Box::new(move |t| demand(&self.robot, &reference.at::<6>(t)))
     }
 
     fn torques(&self, speed: f64, period: f64, instants: u32, each: &mut dyn FnMut(&[f64], &[f64])) {
         let reference = self.reference.paced(speed);
-        let n = self.arm.joints();
+        let n = self.robot.links.joints();
         for first in (0..instants).step_by(WIDTH) {
             let mut k = first;
             // Beyond the last instant the register is filled with it.
@@ -100,17 +91,16 @@ impl<L: Links<f64, N>, const N: usize> Track for Pair<L, N> {
     }
 }
 
-/// What a motion of the links takes at an instant, given by its Taylor coefficients: by exact inverse dynamics.
-fn demand(arm: &dyn Arm, q_l: &[[f64; 6]]) -> Demand {
-    let (mut q_m, mut u_m) = (vec![[0.0; 4]; q_l.len()], vec![[0.0; 2]; q_l.len()]);
-    arm.feed_forward(q_l, &mut q_m, &mut u_m).expect("a series a joint");
-    let of = |k: usize| q_l.iter().map(|q| q[k]).collect();
+/// What the motion `q_l` of the links takes at an instant, by exact inverse dynamics.
+fn demand<L: Links<f64, N>, const N: usize>(robot: &Fjr<f64, L, N>, q_l: &Vector<Jet<f64, 6>, N>) -> Demand {
+    let forward = robot.inverse_dynamics::<f64, 2, 4, 6>(q_l);
+    let list = |of: &dyn Fn(usize) -> f64| (0..robot.links.joints()).map(of).collect();
     Demand {
-        torque: u_m.iter().map(|u| u[0]).collect(),
-        torque_rate: u_m.iter().map(|u| u[1]).collect(),
-        velocity: of(1),
-        deflection: q_m.iter().zip(q_l).map(|(q_m, q_l)| q_m[0] - q_l[0]).collect(),
-        position: of(0),
+        torque: list(&|i| forward.u_m[i].coefficient(0)),
+        torque_rate: list(&|i| forward.u_m[i].coefficient(1)),
+        velocity: list(&|i| q_l[i].coefficient(1)),
+        deflection: list(&|i| forward.q_m[i].coefficient(0) - q_l[i].coefficient(0)),
+        position: list(&|i| q_l[i].coefficient(0)),
     }
 }
 

@@ -1,7 +1,6 @@
 //! Whether the parts of a real loop can be meant together.
 
 use crate::estimators::{Encoders, Estimator};
-use crate::files::field::Field;
 use crate::files::table::Table;
 use crate::imperfections::document::{Context, Found};
 use crate::imperfections::{
@@ -11,6 +10,7 @@ use crate::imperfections::{
 use crate::laws::Controller;
 use crate::scenario::document::Hold;
 use crate::scenario::guard::GuardSettings;
+use crate::scenario::integration::{self, midpoint};
 use crate::scenario::plant::Plant;
 
 /// What to do where hold is "continuous" and must not be.
@@ -101,18 +101,13 @@ impl<'a> Loop<'a> {
             );
             field.error("contradiction", message, HELD);
         }
-        if let (Some(field), Some(hold)) = (self.midpoint(), self.root.get("hold")) {
+        if let (Some(field), Some(hold)) = (midpoint(self.root), self.root.get("hold")) {
             let message = format!(
                 "integration is \"midpoint\", but hold is \"continuous\" in line {}: steps of one length do not follow a stiff law",
                 hold.line()
             );
             field.error("contradiction", message, "remove one of them");
         }
-    }
-
-    /// Where the file asks for steps of one length.
-    fn midpoint(&self) -> Option<Field<'_>> {
-        self.root.get("integration").filter(|field| field.text() == Some("midpoint"))
     }
 
     /// One source of velocities; what is measured of them is used.
@@ -193,24 +188,28 @@ impl<'a> Loop<'a> {
         }
     }
 
-    /// How smooth plants are integrated is of no effect on others, and a tolerance of none on steps of one length.
+    /// How smooth plants are integrated is of no effect on others, and a tolerance of none on steps of one length, whose errors nobody estimates.
     fn integration(&self) {
         if let Some(found) = self.found.iter().find(|found| found.what.is_rough()) {
-            let given = ["integration", "integration_tolerance"].map(|key| Some((key, self.root.get(key)?)));
-            for (key, field) in given.into_iter().flatten() {
+            for field in integration::KEYS.iter().filter_map(|key| self.root.get(key)) {
                 let message = format!(
-                    "{} in line {} makes the robot one that is stepped at 0.1 ms, whatever {key} is",
+                    "{} in line {} makes the robot one that is stepped at 0.1 ms, whatever {} is",
                     found.what.kind(),
-                    found.field.line()
+                    found.field.line(),
+                    field.path
                 );
                 let help = "smooth robots are integrated by it: those without friction, play and hysteresis";
                 field.warn("unused", message, help);
             }
-        } else if let (Some(midpoint), Some(field)) =
-            (self.midpoint(), self.root.get("integration_tolerance"))
-        {
+            return;
+        }
+        let Some(midpoint) = midpoint(self.root) else { return };
+        let message = "integration is \"midpoint\": steps of at most 1 ms, whose errors are not estimated";
+        let help = "good for searches through many loops; numbers to rely on are those without it";
+        midpoint.warn("midpoint", message.to_owned(), help);
+        if let Some(field) = self.root.get("integration_tolerance") {
             let message = format!(
-                "integration is \"midpoint\" in line {}: steps of 1 ms, whatever integration_tolerance is",
+                "integration is \"midpoint\" in line {}: steps of at most 1 ms, whatever integration_tolerance is",
                 midpoint.line()
             );
             field.warn("unused", message, "remove one of them");

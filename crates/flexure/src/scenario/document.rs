@@ -24,6 +24,7 @@ use crate::scenario::accept::{self, Accept};
 use crate::scenario::agreement;
 use crate::scenario::guard::{self, GuardSettings};
 use crate::scenario::initial::{self, Initial, Rest};
+use crate::scenario::integration::{self, Integration};
 use crate::scenario::plant::{self, Plant};
 
 /// Farthest that a reference without smooth start may be from the robot at t = 0 \[rad\].
@@ -34,14 +35,6 @@ const MOST_PERIODS: f64 = 5e6;
 
 /// Largest part of a control period that a run may be longer or shorter than whole ones without a word.
 const UNEVEN: f64 = 1e-6;
-
-/// Tolerated local error of integration steps, relative to the speeds of the joints, where the file has none: links and motors of the
-/// built-in arms under given torques are then within 2e-10 rad of their motion after a second, and the built-in loops, over all of their
-/// time, within 6e-9 rad of what they are with 1e-12.
-pub(crate) const INTEGRATION_TOLERANCE: f64 = 1e-7;
-
-/// The smallest and the largest that a file may have.
-const TOLERANCES: (f64, f64) = (1e-13, 1e-3);
 
 /// One closed loop, as data.
 ///
@@ -66,9 +59,6 @@ pub struct Scenario {
     pub hold: Hold,
     /// How the motion of smooth plants is computed.
     pub integration: Integration,
-    /// Tolerated local error of the steps in which the motion is integrated, relative to the speeds of the joints; without effect on
-    /// plants with dry friction, play or hysteresis, whose steps are of one length.
-    pub integration_tolerance: f64,
     /// State at t = 0.
     pub initial: Initial,
     /// Positions of the links over time that the law shall follow \[rad\].
@@ -209,17 +199,6 @@ pub enum Hold {
     Continuous,
 }
 
-/// How the motion of smooth plants is computed. Plants with dry friction, play or hysteresis are stepped by the midpoint rule at 0.1 ms
-/// whatever it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Integration {
-    /// Collocation of order 4 or 8, to a tolerance.
-    #[default]
-    Collocation,
-    /// Steps of the midpoint rule of at most 1 ms: always the same work, whatever the error.
-    Midpoint,
-}
-
 /// Reads a scenario from `text`; `name` stands for the file in messages, relative paths in it start from `folder`
 /// and stay there or below.
 ///
@@ -275,10 +254,7 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base, of_robot: &[Change])
         field.choice(&[("zero-order", Hold::ZeroOrder), ("continuous", Hold::Continuous)])
     });
     let hold = hold.map(Option::unwrap_or_default);
-    let integration = root.optional("integration", |field| {
-        field.choice(&[("collocation", Integration::Collocation), ("midpoint", Integration::Midpoint)])
-    });
-    let tolerance = root.optional("integration_tolerance", integration_tolerance);
+    let integration = integration::read(root);
     let mut assumed = robot.as_ref().map(Robot::assumptions).unwrap_or_default();
     let reference_field = root.required("reference", "a table with the kind");
     let end = times.map_or(f64::NAN, |(duration, _)| duration);
@@ -313,8 +289,7 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base, of_robot: &[Change])
         duration,
         control_period,
         hold: hold?,
-        integration: integration?.unwrap_or_default(),
-        integration_tolerance: tolerance?.unwrap_or(INTEGRATION_TOLERANCE),
+        integration: integration?,
         initial: initial?,
         reference,
         time_scaling,
@@ -336,32 +311,14 @@ fn scenario(root: &Table<'_>, places: &Places, base: &Base, of_robot: &[Change])
 
 /// What a scenario file says of the loop: the robot is told apart, free texts are left out, and what is said anyway.
 fn normal(root: &Table<'_>) -> Normal {
-    let normal = root.normal().without(&["robot", "sources"]);
+    let normal = integration::normal(root.normal().without(&["robot", "sources"]));
     normal
         .without_default("hold", &Normal::Text("zero-order".to_owned()))
-        .without_default("integration", &Normal::Text("collocation".to_owned()))
-        .without_default("integration_tolerance", &Normal::number(INTEGRATION_TOLERANCE))
         .without_default("seed", &Normal::number(0.0))
 }
 
 fn stem(file: &str) -> String {
     Path::new(file).file_stem().map_or_else(|| file.to_owned(), |stem| stem.to_string_lossy().into_owned())
-}
-
-/// A tolerance that steps can keep and that keeps them to the motion.
-fn integration_tolerance(field: &Field<'_>) -> Option<f64> {
-    let tolerance = field.number(&quantity::INTEGRATION_TOLERANCE)?;
-    let (least, most) = TOLERANCES;
-    if (least..=most).contains(&tolerance) {
-        return Some(tolerance);
-    }
-    let message =
-        format!("{} is {}, must be from {least:e} to {most:e}", field.path, quantity::shortest(tolerance));
-    let hint = format!(
-        "smaller errors are lost in rounding, larger ones lose the motion; without the key it is {INTEGRATION_TOLERANCE:e}"
-    );
-    field.error("range", message, hint);
-    None
 }
 
 /// Duration and control period.

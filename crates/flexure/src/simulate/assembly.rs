@@ -17,11 +17,10 @@ use crate::simulate::feedback::Feedback;
 use crate::simulate::guard_settings::{guarded, watchdog};
 use crate::simulate::signals::Columns;
 use crate::simulate::simulation::{Hold, Timing};
-use crate::simulate::stepper::Method;
 use crate::simulate::stepping::Stepping;
 
 /// Tolerated local error of the integrator of smooth plants, relative to the joint speeds, where a scenario says nothing else.
-pub const TOLERANCE: f64 = scenario::INTEGRATION_TOLERANCE;
+pub const TOLERANCE: f64 = scenario::TOLERANCE;
 
 /// Longest step in s of the integrator of plants with dry friction, play or hysteresis.
 pub(crate) const LONGEST_STEP: f64 = Stepping::<1>::STEP;
@@ -34,18 +33,8 @@ pub(crate) fn timing(scenario: &Scenario) -> Timing {
             scenario::Hold::ZeroOrder => Hold::ZeroOrder,
             scenario::Hold::Continuous => Hold::Continuous,
         },
-        method: method(scenario),
+        integration: scenario.integration,
         longest_step: LONGEST_STEP,
-    }
-}
-
-/// How its plant is moved if it is smooth.
-pub(crate) fn method(scenario: &Scenario) -> Method {
-    match scenario.integration {
-        scenario::Integration::Collocation => {
-            Method::Collocation { tolerance: scenario.integration_tolerance }
-        }
-        scenario::Integration::Midpoint => Method::Midpoint,
     }
 }
 

@@ -9,11 +9,11 @@ use crate::robot::Mismatch;
 use crate::robot::links::FromFile;
 use crate::robot::sized::{OF_THE_KIND, fjr, sized};
 use crate::robot::slices::{check, read, read_motion, write_motion};
-use crate::scenario::Scenario;
+use crate::scenario::{Integration, Scenario};
 use crate::simulate::assembly;
 use crate::simulate::ledger::Ledger;
 use crate::simulate::simulation::World;
-use crate::simulate::stepper::{Method, Stepper};
+use crate::simulate::stepper::Stepper;
 
 /// The simulated robot of a scenario with its joint count hidden: model errors, friction, coupled rotors, springs that are not
 /// linear, torque constants that are off and pushes included.
@@ -43,8 +43,8 @@ impl Scenario {
         Ok(sized!(&simulated, L, N => {
             let robot = fjr::<f64, L<f64>, N>(&simulated, &simulated.links, |x| x, &|x| x).expect(OF_THE_KIND);
             let plant = assembly::plant(self, robot);
-            let (method, longest) = (assembly::method(self), assembly::LONGEST_STEP);
-            Box::new(Sized { plant, pushes: assembly::pushes(self), method, longest })
+            let (integration, longest) = (self.integration, assembly::LONGEST_STEP);
+            Box::new(Sized { plant, pushes: assembly::pushes(self), integration, longest })
         }))
     }
 }
@@ -53,7 +53,7 @@ impl Scenario {
 struct Sized<L, const N: usize> {
     plant: Plant<L, N>,
     pushes: Vec<Push<N>>,
-    method: Method,
+    integration: Integration,
     longest: f64,
 }
 
@@ -70,7 +70,7 @@ where
         let mut x: Motion<f64, N> = read_motion(start, n)?;
         check("u_m", "n for each period", u_m.len(), u_m.len().next_multiple_of(n))?;
         let plant = self.plant.clone();
-        let stepper = Stepper::new(&plant, self.method, self.longest);
+        let stepper = Stepper::new(&plant, self.integration, self.longest);
         let mut world = World { plant, pushes: self.pushes.clone(), stepper, ledger: Ledger::default() };
         let mut motions = vec![f64::NAN; 4 * u_m.len()];
         for ((k, torque), motion) in (first..).zip(u_m.chunks_exact(n)).zip(motions.chunks_exact_mut(4 * n)) {

@@ -58,7 +58,6 @@ pub(crate) fn may_go_together(a: &Scenario, b: &Scenario) -> bool {
         && a.robot.joint_count() == b.robot.joint_count()
         && a.control_period.to_bits() == b.control_period.to_bits()
         && a.integration == b.integration
-        && a.integration_tolerance.to_bits() == b.integration_tolerance.to_bits()
 }
 
 /// Whether loops of a scenario go in step with others at all: those in continuous time ask their law within steps.

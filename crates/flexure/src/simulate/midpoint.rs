@@ -19,12 +19,14 @@ pub(crate) const LONGEST: f64 = 1e-3;
 pub(crate) struct Midpoint<const N: usize, T> {
     /// Accelerations of the last step [rad/s²].
     pub(crate) last: Sides<N, T>,
+    /// The same before the last interval: what is left of a lane that did not come through it.
+    pub(crate) before: Sides<N, T>,
 }
 
 impl<const N: usize, T: Piecewise + Over<T> + Over<f64>> Midpoint<N, T> {
     /// From rest.
     pub(crate) fn new() -> Self {
-        Self { last: [Vector::ZERO; 2] }
+        Self { last: [Vector::ZERO; 2], before: [Vector::ZERO; 2] }
     }
 
     /// Moves `x` over `interval` s under the constant torque `u_m` [N m]; with the work on the way.
@@ -38,6 +40,7 @@ impl<const N: usize, T: Piecewise + Over<T> + Over<f64>> Midpoint<N, T> {
         let count = steps_in(interval, LONGEST);
         let h = interval / f64::from(count);
         let (mut x, mut work) = (*x, Ledger::ZERO);
+        self.before = self.last;
         for _ in 0..count {
             x = self.step(plant, &x, u_m, h, &mut work);
         }
@@ -55,8 +58,7 @@ impl<const N: usize, T: Piecewise + Over<T> + Over<f64>> Midpoint<N, T> {
     ) -> Motion<T, N> {
         let (robot, half) = (&plant.robot, 0.5 * h);
         let part = |v: &Vector<T, N>, seconds: f64| v.map(|v| v.scale(seconds));
-        let [v_l, v_m] = [(&x.v_l, &self.last[0]), (&x.v_m, &self.last[1])].map(|(v, a)| *v + part(a, half));
-        let middle = Motion { q_l: x.q_l + part(&v_l, half), q_m: x.q_m + part(&v_m, half), v_l, v_m };
+        let middle = middle(x, &self.last, h);
         // The springs by their slope about the middle, where they would be there without acceleration.
         let tangent = plant.tangent_stiffness(&middle);
         let ahead = x.deflection() + part(&(x.v_m - x.v_l), half) - middle.deflection();
@@ -92,6 +94,18 @@ impl<const N: usize, T: Piecewise + Over<T> + Over<f64>> Midpoint<N, T> {
             v_m: x.v_m + part(&a_m, h),
         }
     }
+}
+
+/// Where the accelerations `last` lead to from `x` in half a step of `h` s; the position that of the mean velocity.
+#[inline]
+pub(super) fn middle<const N: usize, T: Over<f64>>(
+    x: &Motion<T, N>,
+    last: &Sides<N, T>,
+    h: f64,
+) -> Motion<T, N> {
+    let half = |v: &Vector<T, N>| v.map(|v| v.scale(0.5 * h));
+    let (v_l, v_m) = (x.v_l + half(&last[0]), x.v_m + half(&last[1]));
+    Motion { q_l: x.q_l + half(&v_l), q_m: x.q_m + half(&v_m), v_l, v_m }
 }
 
 #[cfg(test)]

@@ -68,7 +68,7 @@ pub use preload::preload;
 pub use run::{Run, measure, measure_by, measure_watched, run, run_into, run_shaped, run_with};
 pub use simulation::{Cause, Divergence, Hold, Instant, Simulation, Timing};
 pub use sink::Sink;
-pub use stepper::{Method, Stepper};
+pub use stepper::Stepper;
 pub use stepping::Stepping;
 pub use summary::Summary;
 pub use together::{Job, SIDE_BY_SIDE, measure_together};

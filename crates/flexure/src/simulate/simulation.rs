@@ -7,11 +7,12 @@ use flexure_core::reference::Reference;
 
 use crate::imperfections::stages::{Pieces, Tick};
 use crate::plant::{Plant, Push};
+use crate::scenario::Integration;
 use crate::simulate::controller::{Action, Controller};
 use crate::simulate::feedback::Feedback;
 use crate::simulate::gauss::StepFailure;
 use crate::simulate::ledger::Ledger;
-use crate::simulate::stepper::{Method, Stepper};
+use crate::simulate::stepper::Stepper;
 
 /// How the torque behaves between control instants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +31,7 @@ pub struct Timing {
     /// What the torque does between control instants.
     pub hold: Hold,
     /// How smooth plants are moved.
-    pub method: Method,
+    pub integration: Integration,
     /// Longest step of other plants in s.
     pub longest_step: f64,
 }
@@ -145,7 +146,7 @@ where
         pushes: Vec<Push<N>>,
         controller: Controller<L, R, F, E, N>,
     ) -> Self {
-        let stepper = Stepper::new(&plant, timing.method, timing.longest_step);
+        let stepper = Stepper::new(&plant, timing.integration, timing.longest_step);
         let world = World { plant, pushes, stepper, ledger: Ledger::default() };
         let start = world.energy(&x);
         let balance = Balance { start, worst: 0.0, scale: start.abs() };

@@ -4,22 +4,11 @@ use flexure_core::linalg::Vector;
 use flexure_core::model::{Links, Motion};
 
 use crate::plant::Plant;
+use crate::scenario::Integration;
 use crate::simulate::gauss::{Integrator, StepFailure};
 use crate::simulate::ledger::Ledger;
 use crate::simulate::midpoint;
 use crate::simulate::stepping::Stepping;
-
-/// How smooth plants are moved. Those with dry friction, play or hysteresis are moved in short steps of the midpoint rule anyway.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Method {
-    /// Collocation in steps as long as their error allows.
-    Collocation {
-        /// Tolerated local error of a step, relative to the speeds of the joints.
-        tolerance: f64,
-    },
-    /// The midpoint rule in steps of at most 1 ms, whatever their error.
-    Midpoint,
-}
 
 /// Moves a plant, by the method that suits it, and keeps what the plant remembers.
 #[derive(Clone, Debug)]
@@ -32,12 +21,12 @@ pub enum Stepper<const N: usize> {
 }
 
 impl<const N: usize> Stepper<N> {
-    /// For `plant`: by `method` if it is smooth, in steps of at most `longest` s if not.
-    pub fn new<L>(plant: &Plant<L, N>, method: Method, longest: f64) -> Self {
-        match method {
+    /// For `plant`: by `integration` if it is smooth, in steps of at most `longest` s if not.
+    pub fn new<L>(plant: &Plant<L, N>, integration: Integration, longest: f64) -> Self {
+        match integration {
             _ if !plant.is_smooth() => Self::Rough(Stepping::new(longest)),
-            Method::Collocation { tolerance } => Self::Smooth(Integrator::new(tolerance)),
-            Method::Midpoint => Self::Rough(Stepping::new(midpoint::LONGEST)),
+            Integration::Collocation { tolerance } => Self::Smooth(Integrator::new(tolerance)),
+            Integration::Midpoint => Self::Rough(Stepping::new(midpoint::LONGEST)),
         }
     }
 

@@ -13,6 +13,7 @@ use crate::plant::{Friction, Plant, Sides};
 use crate::simulate::collocation::is_finite;
 use crate::simulate::gauss::{StepFailure, steps_in};
 use crate::simulate::ledger::Ledger;
+use crate::simulate::midpoint::middle;
 use crate::simulate::stiction::{Slid, Stiction};
 
 /// Times that joints turn back within a step, at most; what turns later in it rubs as it does at the end.
@@ -84,22 +85,6 @@ impl<const N: usize> Stepping<N> {
         Ok(x)
     }
 
-    /// Where the last accelerations lead to in half a step; the position that of the mean velocity.
-    #[inline]
-    fn middle(&self, x: &Motion<f64, N>, h: f64) -> Motion<f64, N> {
-        let [a_l, a_m] = &self.last;
-        let velocity = |v: &Vector<f64, N>, a: &Vector<f64, N>| *v + a.scaled(0.5 * h);
-        let position = |q: &Vector<f64, N>, v: &Vector<f64, N>, a: &Vector<f64, N>| {
-            *q + (*v + a.scaled(0.5 * h)).scaled(0.5 * h)
-        };
-        Motion {
-            q_l: position(&x.q_l, &x.v_l, a_l),
-            q_m: position(&x.q_m, &x.v_m, a_m),
-            v_l: velocity(&x.v_l, a_l),
-            v_m: velocity(&x.v_m, a_m),
-        }
-    }
-
     /// A step of `h` s from `x` at `t`. Where a joint turns back in it, friction acts one way until then and the other way after: a step up
     /// to there, and one for what is left.
     #[inline(never)]
@@ -115,16 +100,16 @@ impl<const N: usize> Stepping<N> {
         let (mut x, mut done, mut turns) = (*x, 0.0, 0);
         loop {
             let left = h - done;
-            let middle = self.middle(&x, left);
-            let u_m = torque(t + done + 0.5 * left, &middle);
-            let stiction = self.stiction(plant, &x, &middle, &u_m, left);
+            let ahead = middle(&x, &self.last, left);
+            let u_m = torque(t + done + 0.5 * left, &ahead);
+            let stiction = self.stiction(plant, &x, &ahead, &u_m, left);
             let solved = stiction.solve();
             let Some(part) = stiction.first_turn(&solved).filter(|_| turns < TURNS) else {
                 return self.moved(plant, &x, &u_m, left, &solved, ledger);
             };
             let until = part * left;
-            let middle = self.middle(&x, until);
-            let solved = self.stiction(plant, &x, &middle, &u_m, until).solve();
+            let ahead = middle(&x, &self.last, until);
+            let solved = self.stiction(plant, &x, &ahead, &u_m, until).solve();
             x = self.moved(plant, &x, &u_m, until, &solved, ledger);
             done += until;
             turns += 1;

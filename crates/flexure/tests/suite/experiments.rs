@@ -10,11 +10,14 @@ use flexure::plant;
 use flexure::reproduce::REPRODUCED;
 use flexure::robot::Links;
 use flexure::scenario::load_scenario;
-use flexure::scenario::{Hold, Scenario};
+use flexure::scenario::{Hold, Integration, Scenario};
 use flexure::simulate;
 use flexure::simulate::Run;
 use flexure::simulate::run;
-use flexure::simulate::{Controller, Method, Simulation, Timing};
+use flexure::simulate::{Controller, Simulation, Timing};
+
+/// To the last digits that runs are compared in.
+const TIGHT: Integration = Integration::Collocation { tolerance: 1e-12 };
 
 fn simulate(change: impl Fn(&mut Scenario), name: &str) -> Run {
     let mut scenario = load_scenario(name).expect("built in");
@@ -42,10 +45,7 @@ fn the_ideal_loop_tracks_at_one_kilohertz() {
 #[test]
 fn the_continuous_loop_tracks_to_rounding() {
     for name in ["two-link-tanh", "two-link-linear", "two-link-coupled-tanh"] {
-        let run = simulate(
-            |s| (s.hold, s.duration, s.integration_tolerance) = (Hold::Continuous, 6.0, 1e-12),
-            name,
-        );
+        let run = simulate(|s| (s.hold, s.duration, s.integration) = (Hold::Continuous, 6.0, TIGHT), name);
         assert!(error_after(&run, 4.0) < 1e-11, "{name}: {}", error_after(&run, 4.0));
     }
 }
@@ -133,10 +133,7 @@ fn trace_and_summary_say_what_happened() {
 fn the_continuous_loop_starts_from_rest_on_the_reference() {
     // Exactly at rest, corrections of the stage equations are rounding of torques that cancel.
     for name in ["two-link-tanh-smooth", "two-link-linear-smooth", "two-link-coupled-tanh-smooth"] {
-        let run = simulate(
-            |s| (s.hold, s.duration, s.integration_tolerance) = (Hold::Continuous, 5.0, 1e-12),
-            name,
-        );
+        let run = simulate(|s| (s.hold, s.duration, s.integration) = (Hold::Continuous, 5.0, TIGHT), name);
         assert!(run.divergence.is_none(), "{name}: {:?}", run.divergence);
         assert!(error_after(&run, 4.0) < 1e-11, "{name}: {}", error_after(&run, 4.0));
     }
@@ -201,7 +198,7 @@ fn seven_joints_with_gravity_off_by(factor: f64) -> f64 {
     let timing = Timing {
         period: 1e-3,
         hold: simulate::Hold::ZeroOrder,
-        method: Method::Collocation { tolerance: flexure::simulate::TOLERANCE },
+        integration: Integration::Collocation { tolerance: flexure::simulate::TOLERANCE },
         longest_step: 1e-3,
     };
     let controller = Controller::ideal(model, reference, torque);

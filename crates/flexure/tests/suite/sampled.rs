@@ -5,7 +5,7 @@ use flexure::compare::entrants;
 use flexure::laws::{CONTROLLERS, Controller};
 use flexure::linalg::{Dense, spectral_radius};
 use flexure::sampled::{Place, probe, radii};
-use flexure::scenario::scenario_from_text;
+use flexure::scenario::{Integration, scenario_from_text};
 use flexure::simulate::Observed;
 
 use crate::common::root;
@@ -23,7 +23,7 @@ fn two_link(period: f64, reference: &str, more: &str) -> Scenario {
          [controller]\nkind = \"pd\"\nstiffness = 1.0\ndamping = 1.0"
     ));
     // What is measured are differences of motions.
-    scenario.integration_tolerance = 1e-12;
+    scenario.integration = Integration::Collocation { tolerance: 1e-12 };
     scenario.controller =
         entrants(&["vcbc:tanh".to_owned()]).unwrap()[0].controller(&scenario.robot).unwrap();
     scenario

@@ -12,12 +12,13 @@ use crate::lanes::{self, Each, Several, WIDTH};
 use crate::plant::Plant;
 use crate::references::AnyReference;
 use crate::robot::links::SideBySide;
+use crate::scenario::Integration;
 use crate::simulate::gauss::{Order, steps_in};
 use crate::simulate::held::Held;
 use crate::simulate::midpoint::{self, Midpoint};
 use crate::simulate::own_law::HeldLaw;
 use crate::simulate::simulation::{Divergence, Simulation, World};
-use crate::simulate::stepper::{Method, Stepper};
+use crate::simulate::stepper::Stepper;
 use crate::simulate::strides::{Effort, Strides, Strode, finite, likely, put, replace, taken};
 
 /// How plants are moved side by side.
@@ -35,9 +36,9 @@ pub(super) fn gait<L: SideBySide<N>, const N: usize>(held: &Held<L, N>) -> Optio
     if !plant.is_smooth() || plant.rotor_coupling.is_some() {
         return None;
     }
-    match timing.method {
-        Method::Midpoint => Some(Gait::Midpoint),
-        Method::Collocation { tolerance } => likely(plant, motion, timing.period, tolerance)
+    match timing.integration {
+        Integration::Midpoint => Some(Gait::Midpoint),
+        Integration::Collocation { tolerance } => likely(plant, motion, timing.period, tolerance)
             .map(|(order, effort)| Gait::Strides(order, effort, tolerance)),
     }
 }
@@ -194,8 +195,13 @@ impl<L: SideBySide<N>, const N: usize> Plants<L, N> {
                 (rider.failed, rider.rests) = (MANY - 1, (k + REST).next_multiple_of(RENEWED));
             }
             let was_elsewhere = std::mem::take(&mut rider.strode);
-            if let (Stepper::Smooth(integrator), true) = (&mut simulation.world.stepper, was_elsewhere) {
-                integrator.forget();
+            match (&mut simulation.world.stepper, &self.steps) {
+                (Stepper::Smooth(integrator), _) if was_elsewhere => integrator.forget(),
+                // What it was settled with may be of the attempt.
+                (Stepper::Rough(stepping), Steps::Midpoint(midpoint)) if strode.is_some() => {
+                    stepping.last = midpoint.before.map(|a| a.map(|a| a.to_array()[lane]));
+                }
+                _ => {}
             }
             ended[lane] = simulation.advance().err();
             self.steps.resume(lane, &simulation.world.stepper);

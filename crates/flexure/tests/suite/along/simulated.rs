@@ -4,9 +4,10 @@ use flexure::core::linalg::Vector;
 use flexure::core::model::{Links, Motion};
 use flexure::progress::unwatched;
 use flexure::prove::along::{along, start_level};
+use flexure::scenario::Integration;
 use flexure::scenario::Scenario;
 use flexure::scenario::load_scenario;
-use flexure::simulate::{Controller, Hold, Method, Simulation, Timing};
+use flexure::simulate::{Controller, Hold, Simulation, Timing};
 
 use super::floats::{self, Floats};
 use super::{bounds, level};
@@ -28,8 +29,8 @@ fn stays<L: Links<f64, N> + Clone, const N: usize>(
     let law =
         |t: f64, x: &Motion<f64, N>, _: &Vector<_, N>| system.command(t, x).u_m.map(|u| u + disturbance(t));
     let controller = Controller::ideal(system.robot.clone(), &system.reference, law);
-    let method = Method::Collocation { tolerance: 1e-10 };
-    let timing = Timing { period: 0.001, hold: Hold::Continuous, method, longest_step: 1e-3 };
+    let integration = Integration::Collocation { tolerance: 1e-10 };
+    let timing = Timing { period: 0.001, hold: Hold::Continuous, integration, longest_step: 1e-3 };
     let mut run = Simulation::new(timing, system.robot.clone().into(), start, Vec::new(), controller);
     let mut worst = 0.0_f64;
     for _ in 0..=4000 {

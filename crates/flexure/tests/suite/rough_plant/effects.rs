@@ -1,7 +1,8 @@
 //! What holds for every imperfection of the plant: none at zero strength, more with more, the same every time.
 
 use flexure::plant::{Friction, Hysteresis, Plant};
-use flexure::simulate::{Integrator, Ledger, Method, Stepper};
+use flexure::scenario::Integration;
+use flexure::simulate::{Integrator, Ledger, Stepper};
 use flexure_core::linalg::Vector;
 use flexure_core::model::Motion;
 use flexure_core::robots::PlanarTwoLink;
@@ -51,7 +52,7 @@ fn nothing_is_nothing_to_the_last_bit() {
         assert!(plant.is_smooth(), "{name}");
         assert!(!imperfection(1e-9).is_smooth(), "{name}");
         let mut ledger = Ledger::default();
-        let same = Stepper::new(&plant, Method::Collocation { tolerance: 1e-10 }, STEP).advance(
+        let same = Stepper::new(&plant, Integration::Collocation { tolerance: 1e-10 }, STEP).advance(
             &plant,
             start,
             0.0,
@@ -94,7 +95,7 @@ fn friction_leaves_a_law_off_its_target() {
     let off = [0.25, 0.5, 1.0].map(|strength| {
         let plant = Plant { motor_friction: friction(strength), ..two_link() };
         let torque = |_: f64, x: &Motion<f64, 2>| Vector::from_fn(|i| 20.0 * (0.5 - x.q_m[i]));
-        let mut stepper = Stepper::new(&plant, Method::Collocation { tolerance: 1e-10 }, STEP);
+        let mut stepper = Stepper::new(&plant, Integration::Collocation { tolerance: 1e-10 }, STEP);
         let end = stepper.advance(&plant, at_rest(), 0.0, 40.0, &torque, &mut Ledger::default());
         let end = end.expect("bounded");
         for i in 0..2 {

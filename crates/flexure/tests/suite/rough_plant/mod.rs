@@ -6,7 +6,8 @@ mod spring;
 mod stepping;
 
 use flexure::plant::Plant;
-use flexure::simulate::{Ledger, Method, Stepper, Stepping};
+use flexure::scenario::Integration;
+use flexure::simulate::{Ledger, Stepper, Stepping};
 use flexure_core::linalg::Vector;
 use flexure_core::model::{Fjr, Links, Motion};
 use flexure_core::robots::{Pendulum, PlanarTwoLink};
@@ -51,7 +52,7 @@ struct Ride<'a, L, const N: usize> {
 
 impl<'a, L: Links<f64, N>, const N: usize> Ride<'a, L, N> {
     fn new(plant: &'a Plant<L, N>, x: Motion<f64, N>, step: f64) -> Self {
-        let stepper = Stepper::new(plant, Method::Collocation { tolerance: 1e-10 }, step);
+        let stepper = Stepper::new(plant, Integration::Collocation { tolerance: 1e-10 }, step);
         Self { plant, x, ledger: Ledger::default(), start: stepper.total_energy(plant, &x), stepper }
     }
 
