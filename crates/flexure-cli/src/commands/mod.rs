@@ -2,6 +2,7 @@
 
 mod certify;
 mod check;
+mod collocated;
 mod compare;
 mod completions;
 mod eval;
@@ -15,6 +16,7 @@ mod margins;
 mod model;
 mod objections;
 pub mod print;
+mod ran;
 mod replay;
 mod reproduce;
 mod run;

@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use super::objections::objections;
 use super::print;
-use super::run::Outcome;
+use super::ran::Outcome;
 use crate::failure::Failure;
 use crate::progress::Progress;
 

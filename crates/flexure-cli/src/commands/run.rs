@@ -12,59 +12,24 @@ use flexure::report::{RunTold, Verdict, summary_table, view_name, write_ran, wri
 use flexure::reproduce::{Experiment, trace_file, write_experiment};
 use flexure::sampled::{Sampled, not_looked_at};
 use flexure::scenario::{Integration, Scenario, load_scenario_with};
-use flexure::simulate::{Excerpt, FaultLog, Summary, preload};
+use flexure::simulate::{Excerpt, Summary, preload};
 use flexure::verify::Rejected;
 use serde::Serialize;
 
+use super::collocated::Collocated;
 use super::objections::objections;
 use super::print;
+use super::ran::Outcome;
 use super::verify::{clipped, malformed, shown};
 use crate::args::Traced;
 use crate::failure::{Failure, say};
 use crate::progress::Progress;
-
-/// A summary and where the files are.
-#[derive(Serialize)]
-pub struct Outcome<'a> {
-    #[serde(flatten)]
-    pub summary: &'a Summary,
-    /// Time of divergence in s; none if the loop ran to the end.
-    pub diverged_at: Option<f64>,
-    /// Whether the loop is stable that holds its torque for a control period; none for laws in continuous time.
-    pub sampled: Option<&'a Sampled>,
-    /// What the guard kept of its stops; not there without a guard.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub faults: Option<&'a FaultLog>,
-    /// Where it was in its tube; not there without `--tube`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub tube: Option<&'a InTube>,
-    pub files: Vec<PathBuf>,
-    /// Its page and the figure of that; not there without `--page`.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub pages: Vec<PathBuf>,
-}
 
 /// Two runs, and the page that shows both.
 #[derive(Serialize)]
 struct Both<'a> {
     runs: Vec<Outcome<'a>>,
     files: Vec<PathBuf>,
-}
-
-impl<'a> Outcome<'a> {
-    pub fn new(experiment: &'a Experiment, files: Vec<PathBuf>) -> Self {
-        let diverged_at = experiment.run.divergence.map(|divergence| divergence.time);
-        let run = &experiment.run;
-        Self {
-            summary: &run.summary,
-            diverged_at,
-            sampled: experiment.sampled.as_ref(),
-            faults: run.faults.as_ref(),
-            tube: None,
-            files,
-            pages: Vec::new(),
-        }
-    }
 }
 
 pub fn run(
@@ -102,6 +67,8 @@ struct Finished {
     answers: Vec<Problem>,
     /// Where it was in the tube beside which it was watched.
     tube: Option<InTube>,
+    /// What it is by collocation, if it was moved by midpoint steps.
+    collocated: Option<Collocated>,
     files: Vec<PathBuf>,
     /// Its page and the figure of that, if they were asked for.
     pages: Vec<PathBuf>,
@@ -175,13 +142,16 @@ fn run_of(scenario: Scenario, traced: &Traced) -> Result<Finished, Failure> {
     say(&feasible::slowed(&scenario)?);
     let beyond = feasible::exceeded(&scenario, &feasible::usage(&scenario)?);
     let mut trace = trace_file(&output.out, &scenario, excerpt)?;
-    let experiment = {
+    let (experiment, collocated) = {
         let progress = Progress::of_one(&scenario.name);
         let told = |fraction| progress.set(0, fraction);
-        match &mut tube {
+        let experiment = match &mut tube {
             None => Experiment::new(scenario, &mut [&mut trace], &told)?,
             Some(tube) => Experiment::new(scenario, &mut [&mut tube.before(&mut trace)], &told)?,
-        }
+        };
+        let is_whole = experiment.run.broken_off.is_none();
+        let collocated = is_whole.then(|| Collocated::of(&experiment.scenario, &told)).transpose()?.flatten();
+        (experiment, collocated)
     };
     let tube = tube.map(|tube| tube.found());
     let files = write_experiment(&experiment, trace)?;
@@ -190,11 +160,13 @@ fn run_of(scenario: Scenario, traced: &Traced) -> Result<Finished, Failure> {
     }
     say(unbalanced(&experiment).as_slice());
     let left = tube.as_ref().and_then(|tube| outside(&experiment.scenario, tube));
+    let beside = collocated.as_ref();
+    let apart = beside.and_then(|beside| beside.disagreement(&experiment.scenario, &experiment.run.summary));
     let answers = match experiment.run.broken_off {
         Some(_) => Vec::new(),
-        None => objections(&experiment).into_iter().chain(beyond).chain(left).collect(),
+        None => apart.into_iter().chain(objections(&experiment)).chain(beyond).chain(left).collect(),
     };
-    Ok(Finished { experiment, answers, tube, files, pages: Vec::new() })
+    Ok(Finished { experiment, answers, tube, collocated, files, pages: Vec::new() })
 }
 
 /// The tube of `file`, for a run of `scenario`.
@@ -272,6 +244,7 @@ impl Finished {
         Outcome {
             pages: self.pages.clone(),
             tube: self.tube.as_ref(),
+            collocated: self.collocated.as_ref(),
             ..Outcome::new(&self.experiment, files)
         }
     }
@@ -282,7 +255,8 @@ impl Finished {
         let conditions = scenario.vcbc().map_or_else(|_| Vec::new(), |_| scenario.beyond_ideal());
         let sampled = sampled.as_ref().map(Sampled::line).or_else(|| not_looked_at(scenario));
         let tube = self.tube.as_ref().map(where_in);
-        let all = [summary_line(&run.summary), outside_of_proofs(&conditions), sampled, tube];
+        let collocated = self.collocated.as_ref().map(|collocated| collocated.line(&run.summary));
+        let all = [summary_line(&run.summary), collocated, outside_of_proofs(&conditions), sampled, tube];
         all.into_iter().flatten().collect()
     }
 
@@ -358,18 +332,18 @@ fn unbalanced(Experiment { scenario, run, .. }: &Experiment) -> Option<Problem> 
         scenario.name,
         short(100.0 * drift, 2)
     );
-    let (key, help) = match scenario.integration {
-        _ if scenario.is_rough() => (
+    let (key, help) = if scenario.is_rough() {
+        (
             "imperfection",
             "friction, play and hysteresis are stepped at 0.1 ms: springs or links of this robot are too fast for that",
-        ),
-        Integration::Midpoint => {
-            ("integration", "remove integration = \"midpoint\": its steps of 1 ms are too long for this loop")
-        }
-        Integration::Collocation { .. } => (
+        )
+    } else if scenario.integration == Integration::Midpoint {
+        ("integration", "remove integration = \"midpoint\": its steps of 1 ms are too long for this loop")
+    } else {
+        (
             "integration_tolerance",
             "a smaller integration_tolerance in the scenario, or a shorter control_period",
-        ),
+        )
     };
     // A loop that diverges is told for that.
     (run.divergence.is_none() && drift > LOST_ENERGY)

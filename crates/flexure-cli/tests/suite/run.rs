@@ -293,3 +293,30 @@ fn names_that_are_taken_or_too_long_are_found_before_the_run() {
     place.run(&["run", &long, "--view", "--out", "there"]).refused(&["has a name that is too long"]);
     assert!(!place.path().join("there").exists());
 }
+
+/// Errors of midpoint steps are not estimated, so the run is told beside collocation: where both agree, and where they do not, which no
+/// answer of either hides. From rest off its reference the arm takes torques of thousands of N m in its first milliseconds.
+#[test]
+fn midpoint_steps_are_told_beside_collocation() {
+    let place = Place::new();
+    let by = ["--set", "integration=midpoint"];
+    let near =
+        place.run(&[&["run", "two-link-tanh-smooth", "--set", "duration=0.5"][..], &by].concat()).done();
+    assert!(near.stderr.contains("whose errors are not estimated"), "{}", near.stderr);
+    let line =
+        near.stdout.lines().find(|line| line.starts_with("by collocation, midpoint steps in brackets"));
+    assert!(line.is_some_and(|line| line.ends_with("follows its reference: yes")), "{}", near.stdout);
+
+    let off = place.run(&[&["run", "two-link-tanh", "--json"][..], &by].concat());
+    assert_eq!(off.code, Some(1));
+    let words = "does not follow by midpoint steps and follows by collocation: the steps are too long for it";
+    assert!(off.stderr.contains(words), "{}", off.stderr);
+    let summary = off.json();
+    assert_eq!((&summary["follows"], &summary["collocated"]["follows"]), (&false.into(), &true.into()));
+
+    let rough = ["--set", "imperfection=[{ kind = 'friction', side = 'link', coulomb = 0.1 }]"];
+    let same =
+        place.run(&[&["run", "two-link-tanh-smooth", "--set", "duration=0.5"][..], &by, &rough].concat());
+    assert!(!same.stdout.contains("by collocation"), "{}", same.stdout);
+    assert!(same.stderr.contains("stepped at 0.1 ms, whatever integration is"), "{}", same.stderr);
+}

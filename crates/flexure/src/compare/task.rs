@@ -24,7 +24,7 @@ impl Task {
     /// # Errors
     /// If its robot has too many joints, or its reference is no path or keeps no limits at any speed.
     pub fn new(scenario: &Scenario) -> Result<Self, Problems> {
-        let scenario = pinned(scenario)?;
+        let scenario = pinned(&scenario.by_collocation())?;
         let needed_torque = effort(&scenario)?;
         Ok(Self { scenario, needed_torque })
     }

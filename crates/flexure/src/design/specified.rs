@@ -72,7 +72,7 @@ impl Specified {
                 of_spec().or_else(|| own.places.origin(key))
             };
             let source = traced(&source.name, &document.to_string(), origin);
-            document::read(&source, &base, &[])
+            document::read(&source, &base, &[]).map(|scenario| scenario.by_collocation())
         };
         let mut scenarios = Vec::new();
         for (name, reference) in references.iter().rev() {

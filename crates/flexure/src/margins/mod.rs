@@ -122,7 +122,7 @@ pub fn margins(scenario: &Scenario, progress: Progress<'_>) -> Result<Margins, P
         let help = "remove hold: the torque is then held between control instants";
         return Err(scenario.places.problem("hold", "unsupported", message.to_owned(), help).into());
     }
-    let scenario = feasible::pinned(scenario)?;
+    let scenario = feasible::pinned(&scenario.by_collocation())?;
     let criteria = Criteria::of(&scenario)?;
     let before = 1.0 - SEARCHES;
     let nominal = || measure_watched(&scenario, &criteria, &|fraction| progress(before * fraction));

@@ -205,7 +205,7 @@ impl<'a> Loop<'a> {
         }
         let Some(midpoint) = midpoint(self.root) else { return };
         let message = "integration is \"midpoint\": steps of at most 1 ms, whose errors are not estimated";
-        let help = "good for searches through many loops; numbers to rely on are those without it";
+        let help = "good for sweeps and batches of many loops; margins, tune and compare go by collocation whatever it is";
         midpoint.warn("midpoint", message.to_owned(), help);
         if let Some(field) = self.root.get("integration_tolerance") {
             let message = format!(

@@ -167,6 +167,16 @@ impl Scenario {
         self.imperfections.iter().any(Imperfection::is_rough)
     }
 
+    /// The same by collocation to the default tolerance, if it asks for midpoint steps, whose errors nobody estimates: for what decides by its runs.
+    #[must_use]
+    pub fn by_collocation(&self) -> Self {
+        let integration = match self.integration {
+            Integration::Midpoint => Integration::default(),
+            collocation @ Integration::Collocation { .. } => collocation,
+        };
+        Self { integration, ..self.clone() }
+    }
+
     /// Whether the file leaves the gains to the [starting rule](Controller::default_for): it has none.
     pub fn has_starting_gains(&self) -> bool {
         let gains = self.controller.gains();

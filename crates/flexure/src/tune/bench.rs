@@ -55,7 +55,7 @@ impl<'a> Bench<'a> {
     ) -> Result<Self, Problems> {
         let budget = budget.max(1);
         let trial = |(scenario, _): &(Scenario, u64)| {
-            let scenario = feasible::pinned(scenario)?;
+            let scenario = feasible::pinned(&scenario.by_collocation())?;
             let criteria = Criteria::of(&scenario)?;
             Ok(Trial { scenario, criteria, parts: Parts::new(budget), asked: AtomicUsize::new(0), budget })
         };
