@@ -133,7 +133,12 @@ fn suspicious_numbers_are_warned_about() {
     warned(SCENARIO, "control_period = 0.001", "control_period = 1.0", "is it in milliseconds");
     let midpoint = "control_period = 0.001\nintegration = 'midpoint'";
     let both = format!("{midpoint}\nintegration_tolerance = 1e-6");
-    warned(SCENARIO, "control_period = 0.001", &both, "steps of 1 ms, whatever integration_tolerance is");
+    warned(
+        SCENARIO,
+        "control_period = 0.001",
+        &both,
+        "steps of at most 1 ms, whatever integration_tolerance is",
+    );
     let rubs = format!("imperfection = [{{ kind = 'friction', side = 'link', coulomb = 0.1 }}]\n{midpoint}");
     warned(SCENARIO, "control_period = 0.001", &rubs, "stepped at 0.1 ms, whatever integration is");
 }
