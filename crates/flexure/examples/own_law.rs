@@ -5,7 +5,7 @@ use flexure::core::model::{Fjr, Links, Motion};
 use flexure::core::reference::{PointToPoint, Smoothstep};
 use flexure::core::scalar::{Jet, Over, Scalar};
 use flexure::core::{linalg::Vector, robots::PlanarTwoLink};
-use flexure::simulate::{Controller, Feedback, Hold, Simulation, Timing};
+use flexure::simulate::{Controller, Feedback, Simulation, Timing};
 
 /// PD control of the motors that winds the springs up for the torque that the links will need.
 struct WindUp<C, const N: usize>(MotorPd<C, N>);
@@ -31,8 +31,7 @@ impl<C: Scalar, const N: usize> ControlLaw<C, N> for WindUp<C, N> {
 fn worst_error(robot: Fjr<f64, PlanarTwoLink<f64>, 2>, law: impl Feedback<PlanarTwoLink<f64>, 2>) -> f64 {
     let (x, to) = (Motion::at_rest(Vector([0.0, 0.0])), Vector([1.0, -1.0]));
     let path = PointToPoint { from: x.q_l, to, start: 0.0, duration: 1.0, step: Smoothstep::Nonic };
-    let integration = Default::default();
-    let timing = Timing { period: 1e-3, hold: Hold::ZeroOrder, integration, longest_step: 1e-3 };
+    let timing = Timing::sampled(1e-3);
     let mut held = Simulation::new(timing, robot.into(), x, vec![], Controller::ideal(robot, path, law));
     let error = |_| {
         held.step().expect("the loop is stable");

@@ -180,6 +180,14 @@ impl<S: Piecewise, const M: usize> Piecewise for Dual<S, M> {
     ) -> R {
         self.value.select_of(then, otherwise, |_, then, otherwise| merge(self, then, otherwise))
     }
+    #[inline]
+    fn lowest(self) -> f64 {
+        self.value.lowest()
+    }
+    #[inline]
+    fn highest(self) -> f64 {
+        self.value.highest()
+    }
 }
 
 /// A value and its derivative in one direction.

@@ -90,6 +90,14 @@ macro_rules! float {
                     merge(self, then(), otherwise())
                 }
             }
+            #[inline]
+            fn lowest(self) -> f64 {
+                self.into()
+            }
+            #[inline]
+            fn highest(self) -> f64 {
+                self.into()
+            }
             // Comparing, not subtracting: ∞ − ∞ is not a number, yet equals itself.
             #[inline]
             fn min(self, other: Self) -> Self {

@@ -282,6 +282,14 @@ impl Piecewise for Interval {
         }
     }
     #[inline]
+    fn lowest(self) -> f64 {
+        self.lo
+    }
+    #[inline]
+    fn highest(self) -> f64 {
+        self.hi
+    }
+    #[inline]
     fn abs(self) -> Self {
         Self { lo: self.mignitude(), hi: self.magnitude() }
     }

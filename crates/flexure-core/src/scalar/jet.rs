@@ -335,4 +335,12 @@ impl<S: Piecewise, const K: usize> Piecewise for Jet<S, K> {
     ) -> R {
         self.head().select_of(then, otherwise, |_, then, otherwise| merge(self, then, otherwise))
     }
+    #[inline]
+    fn lowest(self) -> f64 {
+        self.head().lowest()
+    }
+    #[inline]
+    fn highest(self) -> f64 {
+        self.head().highest()
+    }
 }

@@ -288,6 +288,14 @@ impl<S: Lane<W>, const W: usize> Piecewise for Lanes<S, W> {
         self.zip(Self::ZERO, |x, zero| S::blend(x, zero, then.register, otherwise.register))
     }
     #[inline]
+    fn lowest(self) -> f64 {
+        self.to_array().into_iter().map(Piecewise::lowest).fold(f64::INFINITY, f64::min)
+    }
+    #[inline]
+    fn highest(self) -> f64 {
+        self.to_array().into_iter().map(Piecewise::highest).fold(f64::NEG_INFINITY, f64::max)
+    }
+    #[inline]
     fn abs(self) -> Self {
         self.map(S::absolute)
     }

@@ -131,6 +131,12 @@ pub trait Piecewise: Scalar {
         merge(self, then(), otherwise())
     }
 
+    /// The least number that it may be, whatever its derivatives: to look pieces up by. NaN or not in it, where a number is none.
+    fn lowest(self) -> f64;
+
+    /// The largest.
+    fn highest(self) -> f64;
+
     /// Absolute value.
     #[inline]
     fn abs(self) -> Self {

@@ -77,15 +77,17 @@ impl<L: Links<f64, N>, const N: usize> Track for Pair<L, N> {
         for first in (0..instants).step_by(WIDTH) {
             let mut k = first;
             // Beyond the last instant the register is filled with it.
-            let series: Each<Vector<Jet<f64, 5>, N>> = array::from_fn(|_| {
-                let at = reference.at::<5>(f64::from(k) * period);
+            let t: Each<f64> = array::from_fn(|_| {
+                let t = f64::from(k) * period;
                 k = (k + 1).min(instants - 1);
-                at
+                t
             });
-            let forward = self.robot.inverse_dynamics::<Several, 1, 3, 5>(&lanes::series(&series.each_ref()));
-            let torques = lanes::apart(&forward.u_m.map(|u_m| u_m.coefficient(0)));
-            for ((q_l, u_m), _) in series.iter().zip(&torques).zip(first..instants) {
-                each(&q_l.map(|q_l| q_l.coefficient(0)).0[..n], &u_m.0[..n]);
+            let q_l: Vector<Jet<Several, 5>, N> = reference.on(Jet::variable(Several::from_array(t)));
+            let u_m = self.robot.inverse_dynamics::<Several, 1, 3, 5>(&q_l).u_m;
+            let [positions, torques] = [q_l.map(|q_l| q_l.coefficient(0)), u_m.map(|u_m| u_m.coefficient(0))]
+                .map(|vector| lanes::apart(&vector));
+            for ((q_l, u_m), _) in positions.iter().zip(&torques).zip(first..instants) {
+                each(&q_l.0[..n], &u_m.0[..n]);
             }
         }
     }
@@ -121,12 +123,12 @@ mod tests {
                     let demands = track.at_speed(0.7);
                     track.torques(0.7, 2e-3, instants, &mut |positions, torques| {
                         let demand = demands(2e-3 * f64::from(k));
-                        assert_eq!(positions, demand.position, "{name}, instant {k}");
-                        let largest =
-                            demand.torque.iter().fold(1.0, |most: f64, torque| most.max(torque.abs()));
-                        for (torque, expected) in torques.iter().zip(&demand.torque) {
-                            let off = (torque - expected).abs();
-                            assert!(off < 1e-12 * largest, "{name}, instant {k}: {torque} or {expected} N m");
+                        for (found, expected) in [(positions, demand.position), (torques, demand.torque)] {
+                            let largest = expected.iter().fold(1.0, |most: f64, each| most.max(each.abs()));
+                            for (found, expected) in found.iter().zip(&expected) {
+                                let off = (found - expected).abs();
+                                assert!(off < 1e-12 * largest, "{name}, instant {k}: {found} or {expected}");
+                            }
                         }
                         k += 1;
                     });

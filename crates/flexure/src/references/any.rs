@@ -131,6 +131,7 @@ impl<C: Instant, const N: usize> Reference<C, N> for AnyReference<C, N> {
         match self {
             Self::Path(reference) => reference.on(t),
             Self::Retimed(reference) => reference.on(t),
+            Self::SmoothStart(joined) if is_over(joined, t) => joined.then.on(t),
             Self::SmoothStart(reference) => reference.on(t),
         }
     }
@@ -142,11 +143,13 @@ impl<C: Instant, const N: usize> Reference<C, N> for AnyReference<C, N> {
         match self {
             Self::Path(reference) => reference.at(t),
             Self::Retimed(reference) => reference.at(t),
-            // From the end of the transition on it is the reference joined, exactly.
-            Self::SmoothStart(joined) if t.lowest() >= (joined.from.start + joined.duration).highest() => {
-                joined.then.at(t)
-            }
+            Self::SmoothStart(joined) if is_over(joined, t) => joined.then.at(t),
             Self::SmoothStart(reference) => reference.at(t),
         }
     }
+}
+
+/// Whether the transition is over at `t` in s: from then on it is the reference joined, exactly.
+fn is_over<C: Instant, R, const N: usize>(joined: &SmoothStart<C, R, N>, t: impl Piecewise) -> bool {
+    t.lowest() >= (joined.from.start + joined.duration).highest()
 }

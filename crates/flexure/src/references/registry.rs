@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 
 use flexure_core::reference;
-use flexure_core::scalar::{Interval, Scalar};
+use flexure_core::scalar::{Interval, Piecewise};
 
 use crate::files::base::Base;
 use crate::files::field::Joints;
@@ -11,33 +11,10 @@ use crate::files::table::Table;
 use crate::files::{Entry, Places, Problem};
 use crate::references::Reference;
 
-/// A number that a time can be: where it lies among floats.
-pub trait Instant: Scalar + PartialEq {
-    /// The largest float that is at most the number.
-    fn lowest(self) -> f64;
-    /// The smallest float that is at least the number.
-    fn highest(self) -> f64;
-}
+/// A number that a time can be, of which it is known where it lies among floats.
+pub trait Instant: Piecewise + PartialEq {}
 
-impl Instant for f64 {
-    fn lowest(self) -> f64 {
-        self
-    }
-
-    fn highest(self) -> f64 {
-        self
-    }
-}
-
-impl Instant for Interval {
-    fn lowest(self) -> f64 {
-        self.lo()
-    }
-
-    fn highest(self) -> f64 {
-        self.hi()
-    }
-}
+impl<C: Piecewise + PartialEq> Instant for C {}
 
 /// Where derivatives of a reference jump.
 #[derive(Clone, Copy, Debug, PartialEq)]

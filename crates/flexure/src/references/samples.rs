@@ -2,7 +2,7 @@
 
 use flexure_core::linalg::Vector;
 use flexure_core::reference::Reference;
-use flexure_core::scalar::{Jet, Over, Piecewise, Scalar};
+use flexure_core::scalar::{Over, Piecewise, Scalar};
 use thiserror::Error;
 
 use crate::references::registry::Instant;
@@ -167,18 +167,10 @@ impl<C: Scalar, const N: usize> Samples<C, N> {
 }
 
 impl<C: Instant, const N: usize> Reference<C, N> for Samples<C, N> {
-    /// Looks at every segment, for numbers that have no order; [`at`](Self::at) finds those it needs.
+    /// In O(log of the number of samples) and the number of segments that `t` meets.
     fn on<T: Over<C> + Piecewise>(&self, t: T) -> Vector<T, N> {
-        self.along(&self.segments, t)
-    }
-
-    /// [`on`](Self::on) the time variable, in O(log of the number of samples) and the number of segments that `t` meets.
-    fn at<const K: usize>(&self, t: C) -> Vector<Jet<C, K>, N>
-    where
-        C: Over<C> + Piecewise,
-    {
         let begun = self.segments.partition_point(|segment| segment.start.highest() <= t.lowest());
         let possible = self.segments.partition_point(|segment| segment.start.lowest() <= t.highest());
-        self.along(self.needed(begun, possible), Jet::variable(t))
+        self.along(self.needed(begun, possible), t)
     }
 }

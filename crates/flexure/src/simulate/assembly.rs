@@ -27,15 +27,11 @@ pub(crate) const LONGEST_STEP: f64 = Stepping::<1>::STEP;
 
 /// Times and tolerances of the loop.
 pub(crate) fn timing(scenario: &Scenario) -> Timing {
-    Timing {
-        period: scenario.control_period,
-        hold: match scenario.hold {
-            scenario::Hold::ZeroOrder => Hold::ZeroOrder,
-            scenario::Hold::Continuous => Hold::Continuous,
-        },
-        integration: scenario.integration,
-        longest_step: LONGEST_STEP,
-    }
+    let hold = match scenario.hold {
+        scenario::Hold::ZeroOrder => Hold::ZeroOrder,
+        scenario::Hold::Continuous => Hold::Continuous,
+    };
+    Timing { hold, integration: scenario.integration, ..Timing::sampled(scenario.control_period) }
 }
 
 /// What can be read of the loop beside the motion; `errors` says whether its law computes those of v-CBC.

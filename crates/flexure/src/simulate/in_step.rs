@@ -5,14 +5,13 @@
 //! go beside it.
 
 mod gliding;
+mod paths;
 mod plants;
 
 use std::array;
 
 use flexure_core::linalg::Vector;
 use flexure_core::model::Fjr;
-use flexure_core::reference::Reference;
-use flexure_core::scalar::Jet;
 
 use crate::files::Problems;
 use crate::lanes::{self, Each, Several, WIDTH};
@@ -22,6 +21,7 @@ use crate::scenario::{self, Scenario};
 use crate::simulate::controller::Sensed;
 use crate::simulate::held::Held;
 use crate::simulate::in_step::gliding::{Gliding, may_glide};
+use crate::simulate::in_step::paths::Paths;
 use crate::simulate::in_step::plants::{Gait, Plants, gait};
 use crate::simulate::interface::{Loop, Observed};
 use crate::simulate::simulation::{Divergence, Kept, Simulation};
@@ -127,8 +127,7 @@ struct Group<L: SideBySide<N>, const N: usize> {
     laws: AnyLaw<Several, N>,
     /// Where strides are likely to move them.
     plants: Option<Plants<L, N>>,
-    /// Whether all follow the same reference.
-    one_path: bool,
+    paths: Paths<N>,
     /// Torques [N m] up to which they may stay in lanes; none if they may not.
     may_glide: Option<Vector<Several, N>>,
     /// The loops while they do: they themselves know nothing of it until they are settled.
@@ -142,8 +141,6 @@ impl<L: FromFile<f64, N> + SideBySide<N> + Clone, const N: usize> Group<L, N> {
         let each: Each<&Held<L, N>> = array::from_fn(lane);
         let models = robots(&each.map(Held::robot));
         let laws = laws(&each.map(Held::scenario));
-        let path = |held: &Held<L, N>| held.simulation.controller().reference.clone();
-        let one_path = loops.iter().all(|held| path(held) == path(&loops[0]));
         let plants = match gait {
             None => Some(None),
             Some(gait) => Plants::new(&each, gait).map(Some),
@@ -154,7 +151,8 @@ impl<L: FromFile<f64, N> + SideBySide<N> + Clone, const N: usize> Group<L, N> {
                 let may_glide = limits
                     .filter(|_| plants.is_some() && laws.memory().is_empty())
                     .map(|limits| lanes::vector(&array::from_fn(|lane| &limits[lane])));
-                Ok(Self { loops, models, laws, plants, one_path, may_glide, gliding: None })
+                let paths = Paths::of(&loops);
+                Ok(Self { loops, models, laws, plants, paths, may_glide, gliding: None })
             }
             _ => Err(loops),
         }
@@ -281,14 +279,8 @@ where
         let strode = plants.stride(&gliding.tick, &gliding.motion, &gliding.u_m);
         if (0..WIDTH).all(|lane| !going[lane] || strode.trusted[lane]) {
             let next = gliding.next();
-            let path = |held: &Held<L, N>| held.simulation.controller().reference.at(next.t);
-            let q_ld = if self.one_path {
-                path(&self.loops[0]).map(|jet| Jet::from_fn(|k| Several::splat(jet.coefficient(k))))
-            } else {
-                let each: Each<_> =
-                    array::from_fn(|lane| path(self.loops.get(lane).unwrap_or(&self.loops[0])));
-                lanes::series(&each.each_ref())
-            };
+            self.paths.reach(&next, &self.loops);
+            let q_ld = self.paths.side_by_side(&next);
             let energy = plants.total_energy(&strode.end);
             let u_m = self.laws.static_torque(&self.models, &strode.end, &q_ld);
             let arrived = |u_m| gliding.arrive(&strode.end, &strode.work, energy, &q_ld, [&u_m, limits]);
@@ -316,16 +308,11 @@ where
     /// What each controller knows before its law is asked.
     fn sensed(&mut self, arriving: Each<bool>) -> Each<Option<Sensed<N>>> {
         let mut sensed = [None; WIDTH];
-        let mut path: Option<(f64, Vector<Jet<f64, 5>, N>)> = None;
         for lane in (0..WIDTH).filter(|&lane| arriving[lane]) {
             let tick = self.loops[lane].simulation.tick();
+            self.paths.reach(&tick, &self.loops);
             let Simulation { controller, motion, .. } = &mut self.loops[lane].simulation;
-            #[expect(clippy::float_cmp, reason = "the same instant, or another")]
-            let known = path.as_ref().filter(|(t, _)| self.one_path && *t == tick.t).map(|(_, path)| path);
-            sensed[lane] = controller.sense(&tick, motion, known);
-            if let Some(found) = sensed[lane].as_ref().filter(|_| !controller.has_rejoined()) {
-                path = Some((tick.t, found.reference));
-            }
+            sensed[lane] = controller.sense(&tick, motion, Some(self.paths.at(&tick, lane)));
         }
         sensed
     }

@@ -8,6 +8,7 @@ use flexure_core::reference::Reference;
 use crate::imperfections::stages::{Pieces, Tick};
 use crate::plant::{Plant, Push};
 use crate::scenario::Integration;
+use crate::simulate::assembly;
 use crate::simulate::controller::{Action, Controller};
 use crate::simulate::feedback::Feedback;
 use crate::simulate::gauss::StepFailure;
@@ -34,6 +35,14 @@ pub struct Timing {
     pub integration: Integration,
     /// Longest step of other plants in s.
     pub longest_step: f64,
+}
+
+impl Timing {
+    /// Torques held for a control `period` in s, and plants moved as a scenario that says nothing of it has them moved.
+    pub fn sampled(period: f64) -> Self {
+        let (integration, longest_step) = (Integration::default(), assembly::LONGEST_STEP);
+        Self { period, hold: Hold::ZeroOrder, integration, longest_step }
+    }
 }
 
 /// What a control instant looks like to an observer.

@@ -11,7 +11,6 @@ use flexure::reproduce::REPRODUCED;
 use flexure::robot::Links;
 use flexure::scenario::load_scenario;
 use flexure::scenario::{Hold, Integration, Scenario};
-use flexure::simulate;
 use flexure::simulate::Run;
 use flexure::simulate::run;
 use flexure::simulate::{Controller, Simulation, Timing};
@@ -195,14 +194,8 @@ fn seven_joints_with_gravity_off_by(factor: f64) -> f64 {
     let q = |values: &[f64]| Vector::from_fn(|i| values[i]);
     let (q_l, q_m) = (q(&scenario.initial.q_l), q(&scenario.initial.q_m));
     let start = Motion { q_l, q_m, ..Motion::at_rest(q_l) };
-    let timing = Timing {
-        period: 1e-3,
-        hold: simulate::Hold::ZeroOrder,
-        integration: Integration::Collocation { tolerance: flexure::simulate::TOLERANCE },
-        longest_step: 1e-3,
-    };
     let controller = Controller::ideal(model, reference, torque);
-    let mut simulation = Simulation::new(timing, plant, start, Vec::new(), controller);
+    let mut simulation = Simulation::new(Timing::sampled(1e-3), plant, start, Vec::new(), controller);
     let mut error = 0.0_f64;
     for _ in 0..=4000 {
         if simulation.step().is_err() {

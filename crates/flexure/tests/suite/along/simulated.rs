@@ -30,7 +30,7 @@ fn stays<L: Links<f64, N> + Clone, const N: usize>(
         |t: f64, x: &Motion<f64, N>, _: &Vector<_, N>| system.command(t, x).u_m.map(|u| u + disturbance(t));
     let controller = Controller::ideal(system.robot.clone(), &system.reference, law);
     let integration = Integration::Collocation { tolerance: 1e-10 };
-    let timing = Timing { period: 0.001, hold: Hold::Continuous, integration, longest_step: 1e-3 };
+    let timing = Timing { hold: Hold::Continuous, integration, ..Timing::sampled(1e-3) };
     let mut run = Simulation::new(timing, system.robot.clone().into(), start, Vec::new(), controller);
     let mut worst = 0.0_f64;
     for _ in 0..=4000 {
