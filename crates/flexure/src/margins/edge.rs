@@ -54,6 +54,9 @@ const LEAST: f64 = 1e-6;
 /// Factor from one change to the next until one fails.
 const GROWTH: f64 = 1.5;
 
+/// How likely a loop is believed to hold under the next change while none has failed.
+const OUTWARD: f64 = 0.75;
+
 impl Way {
     /// From `from` by a first step `first`, growing, to `last`.
     pub fn outward(from: f64, first: f64, last: f64) -> Self {
@@ -111,6 +114,26 @@ impl Search {
             Phase::Done(_) => return None,
         };
         Some((next, Stage { tried: self.tried, left }))
+    }
+
+    /// At most `most` changes to try: the [next](Self::next) one, then those that it is likely to be followed by, whatever comes of it. None once
+    /// the edge is found.
+    pub fn ahead(&self, most: usize) -> Vec<f64> {
+        let (mut courses, mut changes) = (vec![(1.0, *self)], Vec::new());
+        while changes.len() < most {
+            let likeliest = courses.iter().map(|(part, _)| *part).fold(0.0, f64::max);
+            let Some(place) = courses.iter().position(|(part, _)| *part >= likeliest) else { break };
+            let (part, course) = courses.remove(place);
+            let Some((next, _)) = course.next() else { continue };
+            changes.push(next);
+            let holds = if matches!(course.phase, Phase::Outward { .. }) { OUTWARD } else { 0.5 };
+            for (holds, probability) in [(true, holds), (false, 1.0 - holds)] {
+                let mut after = course;
+                after.tell(holds);
+                courses.push((part * probability, after));
+            }
+        }
+        changes
     }
 
     /// Takes in whether the loop holds under the [next](Self::next) change.
@@ -237,6 +260,28 @@ mod tests {
     fn stops_at_the_end_of_the_way() {
         assert_eq!(edge(Way::inward(1.0, 0.01), |_| true).0, Edge::Beyond { holds: 0.01 });
         assert_eq!(edge(Way::outward(0.0, 0.1, 1.0), |_| true).0, Edge::Beyond { holds: 1.0 });
+    }
+
+    /// Changes that are tried before it is their turn are those that come one after the other, and some more.
+    #[test]
+    fn changes_ahead_are_those_that_come() {
+        let (way, at) = (Way::outward(0.0, 1e-4, 1.0), 0.0123);
+        let (found, tried, _) = edge(way, |x| x < at);
+        for (most, enough) in [(1, tried), (2, tried), (3, 2 * tried / 3 + 1), (8, tried / 2)] {
+            let (mut search, mut rounds, mut known) = (way.search(), 0, Vec::new());
+            while search.next().is_some() {
+                let ahead = search.ahead(most);
+                assert_eq!(search.next().map(|(x, _)| x), ahead.first().copied());
+                assert!(ahead.len() <= most);
+                (rounds, known) = (rounds + 1, [known, ahead].concat());
+                while let Some((x, _)) = search.next().filter(|(x, _)| known.contains(x)) {
+                    search.tell(x < at);
+                }
+            }
+            assert_eq!(search.edge(), (found, tried));
+            assert!(rounds <= enough, "{most}: {rounds} of {tried}");
+            assert!(search.ahead(most).is_empty());
+        }
     }
 
     /// A search that is broken off says how far it came; its fraction is 1 at the end, near the truth once the edge lies between

@@ -151,6 +151,8 @@ pub fn margins(scenario: &Scenario, progress: Progress<'_>) -> Result<Margins, P
         criteria: &criteria,
         allowed: &allowed,
         tell: &tell,
+        asked: Vec::new(),
+        known: Vec::new(),
         little: Little::of(change(0.0)),
         problems: None,
     });
@@ -207,6 +209,10 @@ struct Hunt<'a> {
     allowed: &'a Allowed,
     /// Told the number of the search and how far it is.
     tell: PartProgress<'a>,
+    /// Changes whose runs are on their way.
+    asked: Vec<f64>,
+    /// Whether the loop holds under changes that the search has not come to yet.
+    known: Vec<(f64, Result<bool, Problems>)>,
     little: Little,
     /// What ended it.
     problems: Option<Problems>,
@@ -260,18 +266,21 @@ impl Hunt<'_> {
 }
 
 impl Asking for Hunt<'_> {
-    fn ask(&mut self) -> Option<Scenario> {
-        let mut next = self.search.next().map(|(x, _)| x);
-        if next.is_none() && matches!(self.little, Little::Wanted) {
-            next = self.search.edge().0.holds().map(|holds| LITTLE * holds);
-            self.little = next.map_or(Little::None, Little::Asked);
+    fn ask(&mut self, most: usize) -> Vec<Scenario> {
+        self.asked = self.search.ahead(most);
+        if self.asked.is_empty() && matches!(self.little, Little::Wanted) {
+            let little = self.search.edge().0.holds().map(|holds| LITTLE * holds);
+            self.little = little.map_or(Little::None, Little::Asked);
+            self.asked.extend(little);
         }
-        let next = next.filter(|_| self.problems.is_none());
-        if next.is_none() {
+        if self.problems.is_some() {
+            self.asked.clear();
+        }
+        if self.asked.is_empty() {
             // One that is done sooner than it seemed counts as done.
             let _ = (self.tell)(self.part, 1.0);
         }
-        next.map(|x| (self.change)(x).of(self.scenario))
+        self.asked.iter().map(|&x| (self.change)(x).of(self.scenario)).collect()
     }
 
     fn criteria(&self) -> &Criteria {
@@ -283,11 +292,21 @@ impl Asking for Hunt<'_> {
         (self.tell)(self.part, done)
     }
 
-    fn tell(&mut self, _: &Scenario, run: Result<Run, Problems>) {
-        match (run, &self.little) {
-            (Err(problems), _) => self.problems = Some(problems),
-            (Ok(run), &Little::Asked(little)) => self.little = Little::Run(little, Box::new(run)),
-            (Ok(run), _) => self.search.tell(self.allowed.holds(&run)),
+    fn tell(&mut self, runs: Vec<(Scenario, Result<Run, Problems>)>) {
+        for (x, (_, run)) in std::mem::take(&mut self.asked).into_iter().zip(runs) {
+            match (run, &self.little) {
+                (Ok(run), &Little::Asked(little)) => self.little = Little::Run(little, Box::new(run)),
+                (Err(problems), Little::Asked(_)) => self.problems = Some(problems),
+                (run, _) => self.known.push((x, run.map(|run| self.allowed.holds(&run)))),
+            }
+        }
+        while let Some((next, _)) = self.search.next().filter(|_| self.problems.is_none()) {
+            let known = self.known.iter().position(|(x, _)| x.to_bits() == next.to_bits());
+            match known.map(|known| self.known.swap_remove(known).1) {
+                Some(Ok(holds)) => self.search.tell(holds),
+                Some(Err(problems)) => self.problems = Some(problems),
+                None => break,
+            }
         }
     }
 }

@@ -172,11 +172,12 @@ pub(super) struct Climb<'a> {
 }
 
 impl Asking for Climb<'_> {
-    fn ask(&mut self) -> Option<Scenario> {
+    /// One: where the method of Powell goes from there nobody knows.
+    fn ask(&mut self, _: usize) -> Vec<Scenario> {
         let Self { bench, place, .. } = *self;
         let trial = &bench.trials[place];
         while !self.broken {
-            let at = self.local.next()?;
+            let Some(at) = self.local.next() else { break };
             let part = trial.next();
             let known = bench.known().get(&key(trial, &at)).copied();
             if let Some(cost) = known {
@@ -185,10 +186,10 @@ impl Asking for Climb<'_> {
             } else {
                 let scenario = bench.with(place, &at);
                 self.at = Some((at, part));
-                return Some(scenario);
+                return vec![scenario];
             }
         }
-        None
+        Vec::new()
     }
 
     fn criteria(&self) -> &Criteria {
@@ -200,12 +201,14 @@ impl Asking for Climb<'_> {
         self.bench.tell(self.place, part, fraction)
     }
 
-    fn tell(&mut self, scenario: &Scenario, run: Result<Run, Problems>) {
-        let Some((at, part)) = self.at.take() else { return };
-        let _ = self.bench.tell(self.place, part, 1.0);
-        match self.bench.judge(self.place, &at, scenario, run) {
-            Ok(cost) => self.local.tell(cost),
-            Err(_) => self.broken = true,
+    fn tell(&mut self, runs: Vec<(Scenario, Result<Run, Problems>)>) {
+        for (scenario, run) in runs {
+            let Some((at, part)) = self.at.take() else { return };
+            let _ = self.bench.tell(self.place, part, 1.0);
+            match self.bench.judge(self.place, &at, &scenario, run) {
+                Ok(cost) => self.local.tell(cost),
+                Err(_) => self.broken = true,
+            }
         }
     }
 }
