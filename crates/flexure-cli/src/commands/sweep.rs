@@ -4,8 +4,9 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use flexure::files::{Reading, Unfinished};
+use flexure::progress;
 use flexure::report::{sweep_table, write_swept};
-use flexure::sweep::{Folder, Statistics, Sweep as Many, Told};
+use flexure::sweep::{Collocated, Folder, Sweep as Many, Told};
 use serde::Serialize;
 
 use super::{print, run};
@@ -31,6 +32,9 @@ struct Outcome<'a> {
     /// Its page and figure; not there without `--page`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pages: Vec<PathBuf>,
+    /// What collocation makes of some of its rows; there for those by midpoint steps.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    collocated: Option<&'a Collocated>,
     #[serde(flatten)]
     told: Told<'a>,
 }
@@ -113,36 +117,31 @@ fn show(
     let statistics = folder.statistics(sweep)?;
     let pages = page.map_or_else(|| Ok(Vec::new()), |page| write_swept(page, sweep, &statistics))?;
     let there = folder.parts()?.len() as u64;
+    let collocated = if statistics.rows > 0 { sweep.beside_collocation(&progress::unwatched)? } else { None };
     if json {
-        return print::json(&outcome(sweep, folder, &statistics, there, computed, pages));
+        print::json(&Outcome {
+            name: sweep.name(),
+            identity: sweep.identity(),
+            folder: folder.path(),
+            rows: sweep.rows(),
+            shards: sweep.shards(),
+            shards_there: there,
+            computed,
+            pages,
+            collocated: collocated.as_ref(),
+            told: statistics.told(sweep),
+        })?;
+    } else {
+        if statistics.rows > 0 {
+            print::line(&sweep_table(sweep, &statistics, print::columns()))?;
+        }
+        print::line(&statistics.sentence(sweep))?;
+        print::line(&format!("{there} of {} shards in {}", sweep.shards(), folder.path().display()))?;
+        collocated.as_ref().map_or(Ok(()), |collocated| print::line(&collocated.line()))?;
+        print::wrote(&pages)?;
     }
-    if statistics.rows > 0 {
-        print::line(&sweep_table(sweep, &statistics, print::columns()))?;
-    }
-    print::line(&statistics.sentence(sweep))?;
-    print::line(&format!("{there} of {} shards in {}", sweep.shards(), folder.path().display()))?;
-    print::wrote(&pages)
-}
-
-fn outcome<'a>(
-    sweep: &'a Many,
-    folder: &'a Folder,
-    statistics: &'a Statistics,
-    there: u64,
-    computed: u64,
-    pages: Vec<PathBuf>,
-) -> Outcome<'a> {
-    Outcome {
-        name: sweep.name(),
-        identity: sweep.identity(),
-        folder: folder.path(),
-        rows: sweep.rows(),
-        shards: sweep.shards(),
-        shards_there: there,
-        computed,
-        pages,
-        told: statistics.told(sweep),
-    }
+    let answer = collocated.and_then(|collocated| collocated.disagreement(sweep));
+    answer.map_or(Ok(()), |answer| Err(Failure::No(vec![answer.into()])))
 }
 
 /// Runs a row again, with its trace.

@@ -257,3 +257,38 @@ fn a_sweep_that_is_broken_off_goes_on() {
     outcome.said(&["error[interrupted]", "of 1600 shards are there", "the same command goes on"]);
     assert!(place.names("o").iter().all(|name| name == "sweep.json" || name.ends_with(".parquet")));
 }
+
+/// Rows by midpoint steps, whose errors nobody estimates, are told beside some by collocation: where they agree, and where they do not, which is
+/// an answer of no, whenever it is asked for. The same loops as of a run by such steps.
+#[test]
+fn midpoint_rows_are_told_beside_collocation() {
+    let place = Place::new();
+    for (scenario, code, status) in
+        [("two-link-tanh-smooth", 0, "in status 0 times"), ("two-link-tanh", 1, "")]
+    {
+        let text = format!(
+            "scenario = \"{scenario}\"\npoints = 4\ndesign = \"sobol\"\n[set]\nduration = 0.5\nintegration = \"midpoint\"\n[parameters]\n\
+             \"robot.joints.stiffness\" = {{ from = 0.9, to = 1.1, relative = true }}\n"
+        );
+        place.write("m.toml", text);
+        let out = ["--out", scenario];
+        let swept = place.run(&[&["sweep", "m.toml"][..], &out].concat());
+        let shown = place.run(&["sweep", "show", scenario]);
+        for told in [&swept, &shown] {
+            assert_eq!(told.code, Some(code), "{}", told.stderr);
+            let line = told.stdout.lines().find(|line| line.starts_with("by midpoint steps, whose errors"));
+            assert!(line.is_some_and(|line| line.contains(status)), "{}", told.stdout);
+            assert_eq!(
+                code == 1,
+                told.stderr.contains("have another status by collocation"),
+                "{}",
+                told.stderr
+            );
+        }
+        let json = place.run(&["sweep", "show", scenario, "--json"]).json();
+        assert_eq!(json["collocated"]["rows"], 4, "{json}");
+        assert_eq!(json["collocated"]["other_status"].as_u64() > Some(0), code == 1, "{json}");
+    }
+    let plain = place.write("sweep.toml", SWEEP).run(&["sweep", "sweep.toml", "--out", "plain", "--json"]);
+    assert_eq!(plain.done().json()["collocated"], serde_json::Value::Null);
+}

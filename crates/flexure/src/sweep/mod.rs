@@ -5,6 +5,7 @@
 //! with its trace. Rows come in shards: a shard is computed, written, taken into account and repeated as a whole, as a Parquet file
 //! that is there or not. What there is to do is what is not in the folder; nobody keeps books.
 
+mod collocated;
 mod design;
 mod document;
 mod folder;
@@ -37,6 +38,7 @@ use crate::simulate::SIDE_BY_SIDE;
 use document::{FORM, IN_HAND, Said, Seeds};
 use streams::Stream;
 
+pub use collocated::Collocated;
 pub use design::Kind;
 pub use folder::{Folder, MANIFEST, part_name};
 pub use metric::{METRICS, Metric};

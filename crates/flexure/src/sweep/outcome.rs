@@ -48,7 +48,7 @@ impl Status {
         }
     }
 
-    fn of(run: &Run) -> Self {
+    pub(super) fn of(run: &Run) -> Self {
         match (&run.divergence, run.summary.following.follows) {
             (Some(_), _) => Self::Diverges,
             (None, true) => Self::Follows,
