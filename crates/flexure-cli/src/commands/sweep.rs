@@ -117,7 +117,10 @@ fn show(
     let statistics = folder.statistics(sweep)?;
     let pages = page.map_or_else(|| Ok(Vec::new()), |page| write_swept(page, sweep, &statistics))?;
     let there = folder.parts()?.len() as u64;
-    let collocated = if statistics.rows > 0 { sweep.beside_collocation(&progress::unwatched)? } else { None };
+    let (collocated, broken_off) = match sweep.beside_collocation(&progress::unwatched) {
+        Err(problems) if problems.is_interrupted() => (None, true),
+        collocated => (collocated?.filter(|_| statistics.rows > 0), false),
+    };
     if json {
         print::json(&Outcome {
             name: sweep.name(),
@@ -139,6 +142,10 @@ fn show(
         print::line(&format!("{there} of {} shards in {}", sweep.shards(), folder.path().display()))?;
         collocated.as_ref().map_or(Ok(()), |collocated| print::line(&collocated.line()))?;
         print::wrote(&pages)?;
+    }
+    if broken_off {
+        let message = "broken off: what rows by midpoint steps are by collocation is not known".to_owned();
+        return Err(Failure::interrupted(message, "`flexure sweep show` looks again"));
     }
     let answer = collocated.and_then(|collocated| collocated.disagreement(sweep));
     answer.map_or(Ok(()), |answer| Err(Failure::No(vec![answer.into()])))

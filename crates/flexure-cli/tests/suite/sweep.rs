@@ -289,6 +289,12 @@ fn midpoint_rows_are_told_beside_collocation() {
         assert_eq!(json["collocated"]["rows"], 4, "{json}");
         assert_eq!(json["collocated"]["other_status"].as_u64() > Some(0), code == 1, "{json}");
     }
+    // Rows by midpoint steps that begin with the second are found as well.
+    let mixed = "scenario = \"two-link-tanh\"\n[set]\nduration = 0.5\n[parameters]\n\"robot.joints.stiffness\" = { from = 0.9, to = 1.1, points = 8, relative = true }\n\
+                 integration = { values = [\"collocation\", \"midpoint\"] }\n";
+    let mixed = place.write("mixed.toml", mixed).run(&["sweep", "mixed.toml", "--out", "mixed", "--json"]);
+    assert_eq!(mixed.code, Some(1), "{}", mixed.stderr);
+    assert!(mixed.json()["collocated"]["rows"].as_u64() >= Some(4), "{}", mixed.stdout);
     let plain = place.write("sweep.toml", SWEEP).run(&["sweep", "sweep.toml", "--out", "plain", "--json"]);
     assert_eq!(plain.done().json()["collocated"], serde_json::Value::Null);
 }

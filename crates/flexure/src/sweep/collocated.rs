@@ -1,5 +1,7 @@
 //! Rows whose plants were moved by steps of the midpoint rule, beside what they are by collocation.
 
+use std::ops::Range;
+
 use serde::Serialize;
 
 use super::{Status, Sweep};
@@ -22,8 +24,11 @@ pub struct Collocated {
     pub rms_u_m: Option<f64>,
 }
 
-/// How many rows are looked at, evenly from the first on.
+/// Rows are looked at in so many equal parts of the sweep: the first by midpoint steps in each …
 const ROWS: u64 = 8;
+
+/// … if it is one of so many.
+const TRIED: usize = 64;
 
 impl Sweep {
     /// Whether the first row asks for midpoint steps.
@@ -36,20 +41,30 @@ impl Sweep {
     /// # Errors
     /// [`Problems::interrupted`] if it was broken off.
     pub fn beside_collocation(&self, progress: Progress<'_>) -> Result<Option<Collocated>, Problems> {
-        let count = self.rows().min(ROWS);
-        let rows = (0..count).filter_map(|i| self.scenario(i * self.rows() / count).ok());
-        let both: Vec<[Scenario; 2]> =
-            rows.filter(is_by_midpoint).map(|scenario| [scenario.by_collocation(), scenario]).collect();
-        let criteria: Vec<Criteria> =
-            both.iter().map(|[_, scenario]| Criteria::of(scenario)).collect::<Result<_, _>>()?;
-        let jobs: Vec<_> = both
-            .iter()
-            .zip(&criteria)
-            .flat_map(|(both, criteria)| both.iter().map(move |one| (one, criteria)))
+        let parts = self.rows().min(ROWS);
+        let part = |i: u64| i * self.rows() / parts..(i + 1) * self.rows() / parts;
+        let first = |rows: Range<u64>| {
+            rows.take(TRIED).filter_map(|row| self.scenario(row).ok()).find(is_by_midpoint)
+        };
+        // Rows whose numbers do not go together are refused, and neither way is a run.
+        let found = (0..parts).filter_map(|i| first(part(i)));
+        let both: Vec<([Scenario; 2], Criteria)> = found
+            .filter_map(|scenario| {
+                let criteria = Criteria::of(&scenario).ok()?;
+                Some(([scenario.by_collocation(), scenario], criteria))
+            })
             .collect();
-        let runs = measure_together(&jobs, &|_, fraction| progress(fraction));
-        let runs: Vec<Run> = runs.into_iter().collect::<Result<_, _>>()?;
-        let pairs: Vec<&[Run; 2]> = runs.as_chunks().0.iter().collect();
+        let jobs: Vec<_> =
+            both.iter().flat_map(|(both, criteria)| both.iter().map(move |one| (one, criteria))).collect();
+        let mut runs = measure_together(&jobs, &|_, fraction| progress(fraction)).into_iter();
+        let mut pairs: Vec<[Run; 2]> = Vec::new();
+        while let (Some(collocation), Some(midpoint)) = (runs.next(), runs.next()) {
+            match (collocation, midpoint) {
+                (Ok(collocation), Ok(midpoint)) => pairs.push([collocation, midpoint]),
+                (Err(problems), _) | (_, Err(problems)) if problems.is_interrupted() => return Err(problems),
+                _ => {}
+            }
+        }
         let factor = |of: fn(&Run) -> f64| {
             let each = pairs.iter().map(|[a, b]| (of(a) / of(b)).max(of(b) / of(a)));
             each.filter(|factor| factor.is_finite()).reduce(f64::max)
