@@ -4,7 +4,6 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use flexure::files::{Reading, Unfinished};
-use flexure::progress;
 use flexure::report::{sweep_table, write_swept};
 use flexure::sweep::{Collocated, Folder, Sweep as Many, Told};
 use serde::Serialize;
@@ -117,9 +116,12 @@ fn show(
     let statistics = folder.statistics(sweep)?;
     let pages = page.map_or_else(|| Ok(Vec::new()), |page| write_swept(page, sweep, &statistics))?;
     let there = folder.parts()?.len() as u64;
-    let (collocated, broken_off) = match sweep.beside_collocation(&progress::unwatched) {
-        Err(problems) if problems.is_interrupted() => (None, true),
-        collocated => (collocated?.filter(|_| statistics.rows > 0), false),
+    let (collocated, broken_off) = {
+        let progress = Progress::of_one(sweep.name());
+        match sweep.beside_collocation(&|fraction| progress.set(0, fraction)) {
+            Err(problems) if problems.is_interrupted() => (None, true),
+            collocated => (collocated?.filter(|_| statistics.rows > 0), false),
+        }
     };
     if json {
         print::json(&Outcome {
